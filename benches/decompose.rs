@@ -7,14 +7,14 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{LibraryError, Light, Options, Setting, decompose};
 use hadar::material::Library;
 use hadar::planck::photon_radiance_into;
-use hadar::render::{self, Rig, Scene, StreetSpec};
-use hadar::segmentation::{Categories, Part, Rule, objects, segment, smoothed};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_estimate::decompose::{LibraryError, Light, Options, Setting, decompose};
+use hadar_estimate::segmentation::{Categories, Part, Rule, objects, segment, smoothed};
+use hadar_simulate::draws::{Draws, generator};
+use hadar_simulate::render::{self, Rig, Scene, StreetSpec};
 
 const PHOTONS: f64 = 1e7;
 

@@ -9,12 +9,12 @@ use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::identifiability::ratio::{RatioLaw, State};
 use hadar::material::Library;
 use hadar::scene::{EnvironmentObject, Surroundings};
-use hadar::simulate::classifier::{Confusion, LikelihoodRatio, Method};
-use hadar::simulate::draws::Draws;
-use hadar::simulate::ratio::RatioDraws;
-use hadar::simulate::spectra::Split;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_simulate::classifier::{Confusion, LikelihoodRatio, Method};
+use hadar_simulate::draws::Draws;
+use hadar_simulate::ratio::RatioDraws;
+use hadar_simulate::spectra::Split;
 use std::hint::black_box;
 
 /// Spectra of each of two classes that are drawn and judged at once, and values of the ratio.

@@ -10,11 +10,11 @@ use hadar::identifiability::detection::probability;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::scene::{EnvironmentObject, Surroundings};
-use hadar::simulate::classifier::Method;
-use hadar::simulate::draws::Draws;
-use hadar::simulate::experiment::{Design, Experiment};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_simulate::classifier::Method;
+use hadar_simulate::draws::Draws;
+use hadar_simulate::experiment::{Design, Experiment};
 
 fn main() -> hadar::Result<()> {
     let bands = Bands::from_ranges(&[(715.0, 895.0), (895.0, 1070.0), (1070.0, 1250.0)])?;

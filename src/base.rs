@@ -1,9 +1,10 @@
-//! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
+//! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, best-first search, least squares in a box,
+//! statistics.
 
 pub mod allowed;
 pub(crate) mod best_first;
 pub(crate) mod box_least_squares;
-pub(crate) mod correlation;
+pub mod correlation;
 pub mod cube;
 pub mod demand;
 pub mod envi_header;
@@ -13,8 +14,9 @@ pub mod grid;
 pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
+pub mod random;
 pub mod root;
-pub(crate) mod simd;
+pub mod simd;
 pub mod spectral_unit;
 pub mod statistics;
 pub mod sum;

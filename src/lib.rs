@@ -95,17 +95,15 @@ mod base;
 pub mod instrument;
 mod limits;
 mod physics;
-mod witness;
 
 pub use base::error::{Error, Result};
 pub use base::{
-    allowed, cube, demand, envi_header, error, file, grid, inputs, lattice_points, minimum, root,
-    spectral_unit, statistics, sum, units, words,
+    allowed, correlation, cube, demand, envi_header, error, file, grid, inputs, lattice_points, minimum,
+    random, root, simd, spectral_unit, statistics, sum, units, words,
 };
-pub(crate) use base::{best_first, box_least_squares, correlation, simd, wide};
+pub(crate) use base::{best_first, box_least_squares, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
-pub use witness::{calibrate, decompose, render, segmentation, separation, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("README.md")]

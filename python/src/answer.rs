@@ -13,10 +13,10 @@ use hadar_report::{
     air_ranging, identify as identify_report, range, rule as rule_report, simulate as simulate_report,
     size as size_report,
 };
-use hadar_study::scenario::{DistanceKind, RangingScenario, Rule, Scenario, day};
-use hadar_study::study::air_ranging::{AirPlan, AirRangingStudy};
-use hadar_study::study::range::{RangePlan, RangeStudy};
-use hadar_study::study::{
+use hadar_scenario::{DistanceKind, RangingScenario, Rule, Scenario, day};
+use hadar_study::air_ranging::{AirPlan, AirRangingStudy};
+use hadar_study::range::{RangePlan, RangeStudy};
+use hadar_study::{
     Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Warning, Watch,
 };
 use pyo3::prelude::*;
@@ -360,7 +360,7 @@ pub(crate) fn simulate(
     common.answer(py, &question, |_, reading| {
         let study = common.study(&question, None, reading)?;
         if let Some(range) = &more.thermometry {
-            let temperatures = hadar_study::study::true_temperatures(range, more.temperatures)?;
+            let temperatures = hadar_study::true_temperatures(range, more.temperatures)?;
             let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|_, _| ())?;
             let text = simulate_report::thermometry::text(&result);
             result.stats.add(&no_report());

@@ -5,9 +5,11 @@ use crate::error::{named, raised};
 use crate::lent::Lent;
 use crate::scene::bands;
 use crate::threads::with_threads;
-use hadar::decompose::{LibraryError, Light, Maps, Method, Options, Setting, SpatialPrior, decompose_by};
 use hadar::demand::Skipping;
 use hadar::error::Error;
+use hadar_estimate::decompose::{
+    LibraryError, Light, Maps, Method, Options, Setting, SpatialPrior, decompose_by,
+};
 use numpy::PyUntypedArrayMethods as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -14,13 +14,13 @@ const SMALL_MODE: f64 = 1e-6;
 const QUARTER: f64 = 3.55;
 
 /// The correlation of two places that are `apart`, with `length` where it is a quarter, in the same unit.
-pub(crate) fn matern(apart: f64, length: f64) -> f64 {
+pub fn matern(apart: f64, length: f64) -> f64 {
     let x = QUARTER * apart.abs() / length;
     (1.0 + x + x * x / 3.0) * libm::exp(-x)
 }
 
 /// A of a covariance A Aᵀ: √eigenvalue × eigenvector of the largest few, a column each.
-pub(crate) fn modes(covariance: DMatrix<f64>, most: usize) -> DMatrix<f64> {
+pub fn modes(covariance: DMatrix<f64>, most: usize) -> DMatrix<f64> {
     let eigen = SymmetricEigen::new(covariance);
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));

@@ -307,11 +307,7 @@ pub mod check {
     ///
     /// # Errors
     /// That of `one`.
-    pub(crate) fn each(
-        values: &[f64],
-        good: impl Fn(f64) -> bool,
-        one: impl Fn(f64) -> Result<f64>,
-    ) -> Result<()> {
+    pub fn each(values: &[f64], good: impl Fn(f64) -> bool, one: impl Fn(f64) -> Result<f64>) -> Result<()> {
         if values.iter().fold(true, |all, value| all & good(*value)) {
             return Ok(());
         }

@@ -9,6 +9,8 @@
 //! distance rests on sums, products and roots, and such functions enter solutions and probabilities below what is printed.
 
 /// Declares a function whose body is compiled per instruction set. Borrowed arguments take `'a`.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! dispatched {
     ($(#[$meta:meta])* $vis:vis fn $name:ident<'a>($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
         $(#[$meta])*
@@ -19,21 +21,23 @@ macro_rules! dispatched {
                 $($arg: $ty,)*
                 scope: std::marker::PhantomData<&'a ()>,
             }
-            impl<'a> pulp::NullaryFnOnce for Kernel<'a> {
-                type Output = $crate::simd::output!($($ret)?);
+            impl<'a> $crate::simd::pulp::NullaryFnOnce for Kernel<'a> {
+                type Output = $crate::dispatched_output!($($ret)?);
                 #[inline(always)]
                 fn call(self) -> Self::Output {
                     let Self { $($arg,)* scope: _ } = self;
                     $body
                 }
             }
-            pulp::Arch::new().dispatch(Kernel { $($arg,)* scope: std::marker::PhantomData })
+            $crate::simd::pulp::Arch::new().dispatch(Kernel { $($arg,)* scope: std::marker::PhantomData })
         }
     };
 }
 
 /// The return type, or `()` where none is written.
-macro_rules! output {
+#[doc(hidden)]
+#[macro_export]
+macro_rules! dispatched_output {
     () => {
         ()
     };
@@ -42,36 +46,38 @@ macro_rules! output {
     };
 }
 
-pub(crate) use {dispatched, output};
+pub use crate::dispatched;
+#[doc(hidden)]
+pub use pulp;
 
 /// Doubles per cache line, and per chunk of a loop with sums.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// Values that are worked on side by side. They are passed by value: then the compiler keeps them in
 /// registers of any width.
-pub(crate) type Chunk = [f64; LANES];
+pub type Chunk = [f64; LANES];
 
 /// a·b.
 #[inline(always)]
-pub(crate) fn product(a: Chunk, b: Chunk) -> Chunk {
+pub fn product(a: Chunk, b: Chunk) -> Chunk {
     std::array::from_fn(|i| a[i] * b[i])
 }
 
 /// a·b + c.
 #[inline(always)]
-pub(crate) fn added(a: Chunk, b: Chunk, c: Chunk) -> Chunk {
+pub fn added(a: Chunk, b: Chunk, c: Chunk) -> Chunk {
     std::array::from_fn(|i| a[i].mul_add(b[i], c[i]))
 }
 
 /// factor·a + b.
 #[inline(always)]
-pub(crate) fn fused(factor: f64, a: Chunk, b: Chunk) -> Chunk {
+pub fn fused(factor: f64, a: Chunk, b: Chunk) -> Chunk {
     std::array::from_fn(|i| factor.mul_add(a[i], b[i]))
 }
 
 /// Fewer than [`LANES`] values, followed by zeros.
 #[inline(always)]
-pub(crate) fn padded(rest: &[f64]) -> Chunk {
+pub fn padded(rest: &[f64]) -> Chunk {
     let mut chunk = [0.0; LANES];
     for (to, from) in chunk.iter_mut().zip(rest) {
         *to = *from;
@@ -81,25 +87,26 @@ pub(crate) fn padded(rest: &[f64]) -> Chunk {
 
 /// The largest magnitude so far, in every lane.
 #[derive(Default)]
-pub(crate) struct Largest(Chunk);
+pub struct Largest(Chunk);
 
 impl Largest {
     #[inline(always)]
-    pub(crate) fn see(&mut self, x: Chunk) {
+    /// Takes a chunk into account.
+    pub fn see(&mut self, x: Chunk) {
         let so_far = self.0;
         self.0 = std::array::from_fn(|i| if x[i].abs() > so_far[i] { x[i].abs() } else { so_far[i] });
     }
 
     /// Never inlined, for the reason given at [`crate::sum::CompensatedLanes::value`].
     #[inline(never)]
-    pub(crate) fn value(&self) -> f64 {
+    pub fn value(&self) -> f64 {
         self.0.iter().fold(0.0, |largest, x| x.max(largest))
     }
 }
 
 dispatched! {
     /// Largest |x|.
-    pub(crate) fn largest<'a>(x: &'a [f64]) -> f64 {
+    pub fn largest<'a>(x: &'a [f64]) -> f64 {
         let (eights, rest) = x.as_chunks::<LANES>();
         let mut largest = Largest::default();
         for x in eights {
@@ -113,7 +120,7 @@ dispatched! {
 /// Room for `len` doubles such that arrays laid out one after the other do not start at nearly the same
 /// place in a page of 512 doubles: a processor takes a load for one of a store not yet done if their places in the
 /// page agree, and waits.
-pub(crate) fn spaced(len: usize) -> usize {
+pub fn spaced(len: usize) -> usize {
     const PAGE: usize = 512;
     const APART: usize = 64;
     let whole = len.next_multiple_of(LANES);
@@ -129,7 +136,7 @@ pub(crate) fn spaced(len: usize) -> usize {
 ///
 /// Only speed depends on the alignment, never a result.
 #[derive(Debug, Default)]
-pub(crate) struct Aligned {
+pub struct Aligned {
     storage: Vec<f64>,
     start: usize,
     len: usize,
@@ -137,14 +144,14 @@ pub(crate) struct Aligned {
 
 impl Aligned {
     /// `len` zeros.
-    pub(crate) fn zeros(len: usize) -> Self {
+    pub fn zeros(len: usize) -> Self {
         let storage = vec![0.0; spaced(len) + LANES - 1];
         let start = storage.as_ptr().align_offset(LANES * size_of::<f64>()).min(LANES - 1);
         Self { storage, start, len }
     }
 
     /// Changes the length; what the values are afterwards is not said.
-    pub(crate) fn set_len(&mut self, len: usize) {
+    pub fn set_len(&mut self, len: usize) {
         if self.start + len <= self.storage.len() {
             self.len = len;
         } else {
@@ -183,7 +190,7 @@ impl std::ops::DerefMut for Aligned {
 
 /// Adds the lanes pairwise.
 #[inline(always)]
-pub(crate) fn fold(lanes: &Chunk) -> f64 {
+pub fn fold(lanes: &Chunk) -> f64 {
     ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
 }
 
@@ -201,7 +208,7 @@ fn halved<const HALF: usize>(a: Chunk, b: Chunk) -> Chunk {
 /// factor · the sum of the lanes of each, added in the order of [`fold`]; eight at a time, so that all
 /// lanes of all additions are used.
 #[inline(always)]
-pub(crate) fn fold_all(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
+pub fn fold_all(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
     let (eights, rest) = lanes.as_chunks::<LANES>();
     let (to, to_rest) = sums.split_at_mut(eights.len() * LANES);
     for (lanes, to) in eights.iter().zip(to.as_chunks_mut::<LANES>().0) {

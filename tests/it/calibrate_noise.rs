@@ -1,9 +1,9 @@
 //! Photon transfer on twins whose noise is known.
 
-use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
 use hadar::cube::{MemoryCube, Rows, Shape};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 
 const ASKED: Asked = Asked { dark_level: 0.0, gain_spread: false };

@@ -1,8 +1,8 @@
 //! Stripes put into twins and taken out again.
 
-use hadar::calibrate::{Axis, Destriped, Sought, Why, find_stripes};
 use hadar::cube::{MemoryCube, Shape};
-use hadar::simulate::draws::generator;
+use hadar_estimate::calibrate::{Axis, Destriped, Sought, Why, find_stripes};
+use hadar_simulate::draws::generator;
 use rand::RngExt;
 
 const SOUGHT: Sought = Sought { axis: Axis::Rows, gain_deviation: 0.1, in_all_bands: false };

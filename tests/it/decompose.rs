@@ -1,14 +1,14 @@
 //! Heat cubes with known truth, made without this program, decomposed: shares, errors and intervals against what is known of them.
 
 use hadar::cube::{Cube, MemoryCube, Rows, Shape};
-use hadar::decompose::{LibraryError, Light, Maps, NO_MATERIAL, Options, Setting, decompose, flag};
 use hadar::demand::Skipping;
 use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::planck::photon_radiance;
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
-use hadar::simulate::draws::generator;
 use hadar::spectrum::Bands;
+use hadar_estimate::decompose::{LibraryError, Light, Maps, NO_MATERIAL, Options, Setting, decompose, flag};
+use hadar_simulate::draws::generator;
 use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 use std::path::PathBuf;

@@ -1,11 +1,11 @@
 //! The methods that a decomposition is compared with, against closed forms, and errors of the inverse functions against drawn counts.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{
-    Light, Maps, Method, NO_MATERIAL, Options, Setting, decompose_by, flag, inverse_error,
-};
 use hadar::planck::{brightness_temperature, photon_radiance};
 use hadar::spectrum::Bands;
+use hadar_estimate::decompose::{
+    Light, Maps, Method, NO_MATERIAL, Options, Setting, decompose_by, flag, inverse_error,
+};
 
 const SCALE: f64 = 1e-12;
 const STEP_CM1: f64 = 10.0;

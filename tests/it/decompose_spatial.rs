@@ -1,9 +1,9 @@
 //! Priors over the image held against the plain estimator where it is known what is there.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Maps, Options, Setting, SpatialPrior, decompose, flag};
 use hadar::planck::photon_radiance;
 use hadar::spectrum::Bands;
+use hadar_estimate::decompose::{Light, Maps, Options, Setting, SpatialPrior, decompose, flag};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use rand_distr::{Distribution, Poisson};
 

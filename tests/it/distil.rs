@@ -1,13 +1,13 @@
 //! Textures distilled from cubes drawn of the model: closed forms, coverage of the deviations, what a residue is worth.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{
-    Distilled, Light, Maps, Options, Setting, Sky, decompose, distil, texture_information,
-};
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_estimate::decompose::{
+    Distilled, Light, Maps, Options, Setting, Sky, decompose, distil, texture_information,
+};
+use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 
 const COLUMNS: usize = 60;

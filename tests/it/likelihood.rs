@@ -5,9 +5,9 @@ use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::likelihood::{Fit, MaximumLikelihood};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::State;
-use hadar::simulate::decision::DecisionScene;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_simulate::decision::DecisionScene;
+use hadar_simulate::draws::{Draws, generator};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 

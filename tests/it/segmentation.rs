@@ -1,6 +1,6 @@
 //! Maps of materials as maps of categories.
 
-use hadar::segmentation::{
+use hadar_estimate::segmentation::{
     Agreement, Categories, NO_CATEGORY, Object, Part, Rule, objects, segment, smoothed,
 };
 use proptest::prelude::*;

@@ -1,12 +1,12 @@
 //! Libraries made out of random cubes: what is said of their errors, and what is found without noise.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Setting, flag};
 use hadar::fisher::emissivity::{EmissivityPrior, Smoothness};
 use hadar::planck::photon_radiance;
-use hadar::separation::{Asked, Found, library_from_cube, ratio};
-use hadar::simulate::draws::generator;
 use hadar::spectrum::Bands;
+use hadar_estimate::decompose::{Light, Setting, flag};
+use hadar_estimate::separation::{Asked, Found, library_from_cube, ratio};
+use hadar_simulate::draws::generator;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 

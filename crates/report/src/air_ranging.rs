@@ -9,7 +9,7 @@ pub use text::text;
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
-use hadar_study::study::air_ranging::{AirPoint, AirRanging};
+use hadar_study::air_ranging::{AirPoint, AirRanging};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.

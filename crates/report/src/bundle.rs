@@ -11,7 +11,7 @@ use super::plot::{Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
 use hadar::error::Result;
-use hadar_study::study::Warning;
+use hadar_study::Warning;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::path::PathBuf;

@@ -5,7 +5,7 @@ use crate::plot::{Axis, Figure, Matrix};
 use crate::table::{Table, number, optional};
 use crate::text::significant;
 use hadar::words::share;
-use hadar_study::study::{ClassAnswer, ClassSide};
+use hadar_study::{ClassAnswer, ClassSide};
 use std::fmt::Write as _;
 
 /// Members of a mixture that are named.

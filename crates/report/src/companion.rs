@@ -7,9 +7,9 @@ use crate::table::{Table, number, optional};
 use crate::text::numbers::significant;
 use hadar::policy::practice::resolution::{PERCEPTION, SIGNIFICANT_K};
 use hadar::words::share;
-use hadar_study::scenario::Units;
-use hadar_study::study::Companion;
-use hadar_study::study::companion::{CompanionRow, Condition, Kind, Measure};
+use hadar_scenario::Units;
+use hadar_study::Companion;
+use hadar_study::companion::{CompanionRow, Condition, Kind, Measure};
 use hadar_study::words::probability;
 use std::fmt::Write as _;
 
@@ -29,8 +29,8 @@ const LINES: [(Measure, &str); 9] = [
 /// The table as text: a line a measure, the label of its kind before the first of each, then what must be known of them.
 ///
 /// ```
-/// use hadar_study::scenario::Units;
-/// use hadar_study::study::companion::{Companion, Given};
+/// use hadar_scenario::Units;
+/// use hadar_study::companion::{Companion, Given};
 /// let bands = hadar::spectrum::Bands::uniform(800.0, 1200.0, 10.0)?;
 /// let camera = hadar::instrument::presets::get("flir-boson-640-14mm").ok();
 /// let given = Given { camera: camera.as_ref(), bands: &bands, size_m: Some(0.5), distance_m: Some(40.0), told: None };
@@ -186,7 +186,7 @@ mod tests {
     use super::*;
     use hadar::instrument::{Camera, presets};
     use hadar::spectrum::Bands;
-    use hadar_study::study::companion::{Given, Told};
+    use hadar_study::companion::{Given, Told};
 
     fn camera() -> Camera {
         let mut camera = presets::get("flir-a325sc").unwrap();

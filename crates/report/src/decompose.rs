@@ -16,7 +16,7 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use hadar::cube::npy_map;
 use hadar::error::{Error, Result};
-use hadar_study::study::decompose::{Block, Decomposed, Kept, TruthFound};
+use hadar_study::decompose::{Block, Decomposed, Kept, TruthFound};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;

@@ -11,7 +11,7 @@ mod table;
 use self::element::{escape, wide};
 use crate::manifest::{Provenance, VERSION};
 use crate::table::Table;
-use hadar_study::study::Warning;
+use hadar_study::Warning;
 use hadar_study::warning::Code;
 use std::borrow::Cow;
 use std::fmt::Write as _;

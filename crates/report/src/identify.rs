@@ -11,7 +11,7 @@ use crate::size::pictures_of_pairs;
 use crate::table::{Table, number, optional};
 use crate::tables;
 use hadar::error::Result;
-use hadar_study::study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
+use hadar_study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
 use std::path::Path;
 
 /// All files of the answers; paths in the scenario are written relative to `out` where they lie below it.

@@ -9,9 +9,9 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use hadar::cube::npy_map;
 use hadar::error::Result;
-use hadar_study::scenario::decompose::{LibrarySpec, TruthSpec};
-use hadar_study::scenario::{DecomposeScenario, Source};
-use hadar_study::study::library::LibraryFound;
+use hadar_scenario::decompose::{LibrarySpec, TruthSpec};
+use hadar_scenario::{DecomposeScenario, Source};
+use hadar_study::library::LibraryFound;
 use std::path::Path;
 
 /// Least error of the emissivities that is handed on: with less than this a library is exact.

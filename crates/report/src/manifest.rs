@@ -5,7 +5,7 @@
 
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
-use hadar_study::scenario::Setting;
+use hadar_scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

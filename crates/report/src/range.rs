@@ -13,7 +13,7 @@ use self::maps::add_maps;
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
-use hadar_study::study::range::{Line, Ranging};
+use hadar_study::range::{Line, Ranging};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it. `large` has the maps that the result does

@@ -11,11 +11,11 @@ use crate::cube_format::CubeFormat;
 use crate::table::{Table, number};
 use hadar::cube::{mat_file, npy_map};
 use hadar::error::Result;
-use hadar_study::scenario::decompose::{
+use hadar_scenario::decompose::{
     CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
-use hadar_study::scenario::{DecomposeScenario, Source};
-use hadar_study::study::render::{Picture, Rendered};
+use hadar_scenario::{DecomposeScenario, Source};
+use hadar_study::render::{Picture, Rendered};
 use std::path::Path;
 
 /// 0 degC, K.

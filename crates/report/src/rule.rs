@@ -28,11 +28,9 @@ use super::text::shortfalls::no;
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::companion::Companion;
-use hadar_study::study::{
-    CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning,
-};
+use hadar_scenario::rule::Verdict;
+use hadar_study::companion::Companion;
+use hadar_study::{CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning};
 use std::path::Path;
 
 /// What can be changed of a camera.

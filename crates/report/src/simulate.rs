@@ -11,7 +11,7 @@ use self::text::pair;
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use hadar::error::Result;
-use hadar_study::study::{NoiseCurves, Simulation, Study};
+use hadar_study::{NoiseCurves, Simulation, Study};
 use std::path::Path;
 
 /// All files of a simulation; paths in the scenario are written relative to `out` where they lie below it.

@@ -16,7 +16,7 @@ use crate::{classes, companion};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::policy::TradeOff;
-use hadar_study::study::{PairResult, Sensitivity, Sizing, Study, Surface};
+use hadar_study::{PairResult, Sensitivity, Sizing, Study, Surface};
 use std::path::Path;
 
 /// Most alternatives that are drawn into one plot.

@@ -1,7 +1,7 @@
 //! Tables that several commands write.
 
 use super::table::{Table, number, optional};
-use hadar_study::study::{PairResult, Warning};
+use hadar_study::{PairResult, Warning};
 
 /// All pairs as a table.
 #[must_use]

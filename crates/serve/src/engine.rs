@@ -12,10 +12,10 @@ use hadar_report::bundle::About;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
-use hadar_study::scenario::{Scenario, Written};
-use hadar_study::study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
+use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
 use hadar_study::words::probability;
+use hadar_study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

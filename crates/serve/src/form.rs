@@ -3,7 +3,7 @@
 use crate::place::{join, root, word};
 use crate::slider::{Slider, slider};
 use hadar::atmosphere::Atmosphere;
-use hadar_study::scenario::keys::{Key, Silent, Table, Value};
+use hadar_scenario::keys::{Key, Silent, Table, Value};
 use serde::Serialize;
 use toml_edit::{DocumentMut, Item, TableLike};
 

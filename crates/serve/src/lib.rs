@@ -2,7 +2,7 @@
 //!
 //! Nothing leaves this machine and nothing of it is read: the page listens on a loopback address, takes requests of its own page
 //! alone (`guard`), bounds their size and number (`http`), and reads scenarios that name no files
-//! ([`Written::refusing_files`](hadar_study::scenario::Written::refusing_files)). The answers are those of `hadar size`.
+//! ([`Written::refusing_files`](hadar_scenario::Written::refusing_files)). The answers are those of `hadar size`.
 //!
 //! | file | what is there |
 //! |---|---|

@@ -1,6 +1,6 @@
 //! Paths of a scenario: what may stand at one, and what is written there where nothing was.
 
-use hadar_study::scenario::keys::{FILES, Key, Silent, Table, Value};
+use hadar_scenario::keys::{FILES, Key, Silent, Table, Value};
 use toml_edit::Item;
 
 /// The root of the kind of file that `hadar size` reads.

@@ -2,7 +2,7 @@
 //! either side, and no value that is refused.
 
 use hadar::units::Dimension;
-use hadar_study::scenario::keys::{Key, Value};
+use hadar_scenario::keys::{Key, Value};
 use serde::Serialize;
 
 /// A range that a slider covers, in the unit that is written.

@@ -2,10 +2,10 @@
 //! that is sent brings it down.
 
 use hadar::material::Library;
+use hadar_scenario::Scenario;
+use hadar_scenario::keys::{FILES, Table, Value};
 use hadar_serve::Engine;
-use hadar_study::scenario::Scenario;
-use hadar_study::scenario::keys::{FILES, Table, Value};
-use hadar_study::study::Study;
+use hadar_study::Study;
 use serde_json::{Value as Json, json};
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};

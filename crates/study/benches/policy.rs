@@ -4,8 +4,8 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::material::Library;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::Study;
+use hadar_scenario::Scenario;
+use hadar_study::Study;
 
 fn policy(criterion: &mut Criterion) {
     let library = Library::embedded().expect("the library");

@@ -4,8 +4,8 @@
 //! told by the documentation of the fields that they are made of: `results.tsv` is collected from the sources by a test, which
 //! fails where it is not what the sources say; `named.tsv` has those that are no fields.
 
-use crate::scenario::keys::{self, Place, Silent};
 use crate::warning::Code;
+use hadar_scenario::keys::{self, Place, Silent};
 use serde::Serialize;
 
 const RESULTS: &str = include_str!("explain/results.tsv");

@@ -1,13 +1,14 @@
-//! Questions about thermal cameras answered: scenarios from files, results as data.
+//! Questions about thermal cameras answered: from names and files to physics, and from physics to results as data.
 //!
-//! * [`scenario`]: what a file says, checked, in one unit per dimension; errors name file, line and key.
-//! * [`study`]: a scenario with its materials, bands, surroundings and camera looked up, and what follows: a folder a command.
-//! * [`explain`]: what a key, a warning and a part of an answer mean.
-//! * [`sweep`]: one question about many scenes or cameras, a row of a table for each.
+//! [`Study`] is a scenario with its materials, bands, surroundings and camera looked up. [`Study::identify`] gives the distances to every
+//! alternative, [`Study::size`] the verdict on the camera and what each hardware quantity would have to be; a folder a command. [`sweep`] asks one question
+//! about many scenes or cameras, [`explain`] says what a key, a warning and a part of an answer mean. Results are plain data that serialise to the
+//! JSON of the command line; text, tables and plots only render them.
 //!
 //! ```
 //! use hadar::material::Library;
-//! use hadar_study::{scenario::Scenario, study::Study};
+//! use hadar_scenario::Scenario;
+//! use hadar_study::Study;
 //!
 //! let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[alternatives]\nmaterials = [\"aluminium\"]";
 //! let study = Study::new(&Scenario::from_toml(text, None)?, &Library::embedded()?)?;
@@ -15,13 +16,76 @@
 //! # Ok::<(), hadar::Error>(())
 //! ```
 
+mod air;
+pub mod air_ranging;
+mod bands;
+pub mod calibrate;
+mod camera;
+mod camera_bands;
+mod classes;
+pub mod companion;
+mod cube_bands;
+mod cube_noise;
+mod cube_unit;
+pub mod decompose;
+mod distances;
 pub mod explain;
+mod heat_cube;
+mod identify;
+pub mod library;
+mod looked_up;
+mod memory;
+mod own_cameras;
+mod per_photon;
 mod proviso;
-pub mod scenario;
-pub mod study;
+pub mod range;
+mod remembered;
+pub mod render;
+mod resolve;
+mod rule;
+mod shortfall;
+mod sight;
+mod simulate;
+mod size;
+mod stage;
+mod surface;
 pub mod sweep;
+mod warn;
 pub mod warning;
 pub mod words;
+
+pub use crate::proviso::Proviso;
+pub use crate::warning::{Warning, WorstBlackbody};
+pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
+pub use companion::Companion;
+pub use identify::{
+    Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
+    Identifiability, Identification, Law, LibrarySize, Matrix, NearestProof, NearestState, PairResult,
+    Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial, Watch,
+};
+pub use looked_up::Study;
+pub use own_cameras::OwnCameras;
+pub use remembered::Remembered;
+pub use rule::{
+    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
+    EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
+    Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
+    NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
+    StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+};
+pub use shortfall::Shortfall;
+pub use sight::Sight;
+pub use simulate::{
+    FIXED_EMISSIVITY, ImagerErrors, NoiseCurve, NoiseCurves, PhotonLaw, Reader, SimulatedClass,
+    SimulatedPerformance, SimulatedPoint, Simulation, SimulationAsked, SimulationPlan, Standing, Thermometry,
+    ThermometryRow, true_temperatures,
+};
+pub use size::{
+    Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
+    RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    no_limit,
+};
+pub use surface::Surface;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]

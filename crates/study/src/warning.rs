@@ -10,7 +10,7 @@ pub use catalogue::Code;
 use crate::proviso::Proviso;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
-use hadar::simulate::classifier::Method;
+use hadar_simulate::classifier::Method;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use toml::value::Date;
 

@@ -326,7 +326,7 @@ impl<'a> NearestSolver<'a> {
     ///
     /// # Errors
     /// A scene without photons.
-    pub(crate) fn minima_with_counting(
+    pub fn minima_with_counting(
         &mut self,
         emissivity: &[f64],
         alternative: &[f64],

@@ -6,7 +6,7 @@ use hadar::demand::{Reason, Thing, Work};
 use hadar::error::Result;
 use hadar::instrument::presets::{self, Preset};
 use hadar_report::cameras::{self, Sheet, SideBySide};
-use hadar_study::study::OwnCameras;
+use hadar_study::OwnCameras;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]

@@ -2,12 +2,12 @@
 
 use super::global::Global;
 use clap::Args;
-use hadar::decompose::Method;
 use hadar::error::Result;
+use hadar_estimate::decompose::Method;
 use hadar_report::decompose;
 use hadar_report::folder::Scratch;
-use hadar_study::scenario::DecomposeScenario;
-use hadar_study::study::decompose::{DecomposeStudy, Keep};
+use hadar_scenario::DecomposeScenario;
+use hadar_study::decompose::{DecomposeStudy, Keep};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -14,9 +14,9 @@ use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text::{self, with_settings};
-use hadar_study::scenario::{Scenario, Setting, Written};
-use hadar_study::study::{OwnCameras, Study};
+use hadar_scenario::{Scenario, Setting, Written};
 use hadar_study::warning::Warning;
+use hadar_study::{OwnCameras, Study};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Write as _;
@@ -267,11 +267,7 @@ impl Global {
         put(&text)
     }
 
-    pub(super) fn study(
-        &self,
-        path: &Path,
-        by: Option<hadar_study::scenario::DistanceKind>,
-    ) -> Result<Study> {
+    pub(super) fn study(&self, path: &Path, by: Option<hadar_scenario::DistanceKind>) -> Result<Study> {
         let mut scenario = Scenario::from_written(&self.written(path)?)?;
         if let Some(by) = by {
             scenario.requirement.by = by;
@@ -375,7 +371,7 @@ pub(super) enum By {
     LocalUnknownGain,
 }
 
-impl From<By> for hadar_study::scenario::DistanceKind {
+impl From<By> for hadar_scenario::DistanceKind {
     fn from(by: By) -> Self {
         match by {
             By::Nearest => Self::Nearest,

@@ -6,8 +6,8 @@ use super::several;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::identify;
-use hadar_study::study::{Asked, Law, Study, Trial, Watch};
 use hadar_study::sweep::Question;
+use hadar_study::{Asked, Law, Study, Trial, Watch};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

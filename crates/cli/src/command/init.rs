@@ -5,7 +5,7 @@
 use super::global::Global;
 use clap::{Args, ValueEnum};
 use hadar::error::{Error, Result};
-use hadar_study::scenario::keys::commented;
+use hadar_scenario::keys::commented;
 use serde::Serialize;
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write as _};

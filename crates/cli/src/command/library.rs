@@ -4,8 +4,8 @@ use super::global::Global;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::library;
-use hadar_study::scenario::LibraryScenario;
-use hadar_study::study::library::LibraryStudy;
+use hadar_scenario::LibraryScenario;
+use hadar_study::library::LibraryStudy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -12,7 +12,7 @@ use hadar::material::{Library, Material, MaterialRef, Summary};
 use hadar_report::bundle::Bundle;
 use hadar_report::size::figures;
 use hadar_report::text::significant;
-use hadar_study::study::Surface;
+use hadar_study::Surface;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;

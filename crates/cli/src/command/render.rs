@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use hadar::error::{Error, Result};
 use hadar_report::cube_format::CubeFormat;
 use hadar_report::render::{self, Layout};
-use hadar_study::scenario::RenderScenario;
-use hadar_study::study::render::{RenderPlan, RenderStudy};
+use hadar_scenario::RenderScenario;
+use hadar_study::render::{RenderPlan, RenderStudy};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

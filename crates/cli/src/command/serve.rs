@@ -5,7 +5,7 @@ use super::{init, provenance};
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_serve::Engine;
-use hadar_study::study::OwnCameras;
+use hadar_study::OwnCameras;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -8,7 +8,7 @@ use hadar::demand::Work;
 use hadar::error::{Error, Result};
 use hadar::inputs::{self, inputs_of};
 use hadar_report::several::{self, Row};
-use hadar_study::scenario::STDIN;
+use hadar_scenario::STDIN;
 use hadar_study::sweep::Question;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

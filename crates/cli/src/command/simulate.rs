@@ -6,7 +6,7 @@ use hadar::demand::ledger_of;
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
 use hadar_report::simulate::{self, thermometry as thermometry_report};
-use hadar_study::study::{PhotonLaw, SimulationAsked, SimulationPlan, Study, true_temperatures};
+use hadar_study::{PhotonLaw, SimulationAsked, SimulationPlan, Study, true_temperatures};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -6,7 +6,7 @@ use clap::Args;
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar_report::size;
-use hadar_study::study::Verdict;
+use hadar_study::Verdict;
 use hadar_study::sweep::Question;
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};

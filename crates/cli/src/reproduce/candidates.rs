@@ -1,8 +1,8 @@
 //! Costs of every candidate material for some pixels, with scattered light (TeX) and without (TE), as in Fig. S20.
 
 use super::pixels::{Pixel, Street, loss};
-use hadar::decompose::Method;
 use hadar::error::Result;
+use hadar_estimate::decompose::Method;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, NamedSeries, NamedValues};
 use hadar_report::table::{Table, number};

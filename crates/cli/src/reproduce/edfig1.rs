@@ -1,13 +1,13 @@
 //! Ext. Data Fig. 1b: texture distilled from a decomposed cube, held against a rendering with only the sky on.
 //!
-//! The rule by which forward texture and residue are fused is not in the paper; it is that of [`hadar::decompose::distil`].
+//! The rule by which forward texture and residue are fused is not in the paper; it is that of [`hadar_estimate::decompose::distil`].
 
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::{EXPOSURE, Textured, correlation, median};
-use hadar::decompose::{Distilled, Maps};
 use hadar::error::Result;
 use hadar::words::significant;
+use hadar_estimate::decompose::{Distilled, Maps};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range::picture_plot;

@@ -7,7 +7,7 @@
 //!
 //! * Information of an equalised image: a pointwise rising map steepens image and noise alike, so that all of J stays; 256 levels take
 //!   a share away ([`hadar::ranging::levels`]).
-//! * Information of a texture: S37 with the deviation that the fit gives it ([`hadar::decompose::texture_information`]).
+//! * Information of a texture: S37 with the deviation that the fit gives it ([`hadar_estimate::decompose::texture_information`]).
 
 mod compared;
 
@@ -16,16 +16,16 @@ use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::window_sums;
 use hadar::error::Result;
-use hadar::separation::k_means;
 use hadar::words::significant;
+use hadar_estimate::separation::k_means;
 use hadar_report::bundle::Bundle;
 use hadar_report::decompose::{DARKEST, Vision, brightness, saturation};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, Painted, Picture};
 use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, number};
-use hadar_study::study::decompose::hues_deg;
-use hadar_study::study::range::quantile;
+use hadar_study::decompose::hues_deg;
+use hadar_study::range::quantile;
 use std::path::Path;
 
 /// Segments of the thermal image in pseudo-TeX vision.

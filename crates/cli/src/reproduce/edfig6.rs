@@ -5,10 +5,10 @@ use super::order::{Figures, Made, Order, Progress};
 use super::scene;
 use hadar::demand::Skipping;
 use hadar::error::Result;
-use hadar::simulate::sequential::Plan;
 use hadar_report::identify;
-use hadar_study::scenario::examples;
-use hadar_study::study::{Answers, Asked, Trial, Watch};
+use hadar_scenario::examples;
+use hadar_simulate::sequential::Plan;
+use hadar_study::{Answers, Asked, Trial, Watch};
 use std::path::Path;
 
 /// Half width of the simulated decisions' intervals, and most trials.

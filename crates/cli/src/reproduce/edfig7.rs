@@ -2,14 +2,14 @@
 //!
 //! The paper detects people by networks that were trained on thermal images; here is none. Detection is a region of the material, as its
 //! own figure does first: an object is a connected region of a category. What the thermal image could say at the most is laid out with
-//! the truth ([`hadar::segmentation::by_brightness`]).
+//! the truth ([`hadar_estimate::segmentation::by_brightness`]).
 
 use super::ledger::{Line, Verdict};
 use super::night::Night;
 use super::order::{Figures, Made, Order};
 use hadar::error::Result;
-use hadar::segmentation::{NO_CATEGORY, Objects, Rule, objects};
 use hadar::words::{share, significant};
+use hadar_estimate::segmentation::{NO_CATEGORY, Objects, Rule, objects};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::plot::Pictures;

@@ -7,13 +7,13 @@ use super::ledger::{Line, Verdict};
 use super::order::{Effort, Figures, Made, Order, Progress};
 use super::scene;
 use hadar::error::Result;
-use hadar::simulate::efficiency::{Errors, Verdict as Standing};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::simulate::thermometry;
 use hadar_report::text::significant;
-use hadar_study::scenario::examples;
-use hadar_study::study::{Reader, Thermometry, ThermometryRow};
+use hadar_scenario::examples;
+use hadar_simulate::efficiency::{Errors, Verdict as Standing};
+use hadar_study::{Reader, Thermometry, ThermometryRow};
 use std::path::Path;
 
 /// Heating powers.

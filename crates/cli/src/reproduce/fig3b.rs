@@ -9,13 +9,13 @@ use super::scene;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::instrument::{gamma_per_band, presets};
-use hadar::simulate::classifier::Method;
-use hadar::simulate::experiment::Design;
 use hadar_report::bundle::Bundle;
 use hadar_report::simulate::curves;
 use hadar_report::simulate::figures::{self, SimulationCurves};
-use hadar_study::scenario::examples;
-use hadar_study::study::{
+use hadar_scenario::examples;
+use hadar_simulate::classifier::Method;
+use hadar_simulate::experiment::Design;
+use hadar_study::{
     NoiseCurves, PhotonLaw, SimulatedPerformance, Simulation, SimulationPlan, Standing, Study,
 };
 use std::path::Path;

@@ -6,7 +6,7 @@ use super::scene;
 use hadar::error::Result;
 use hadar_report::bundle::Bundle;
 use hadar_report::size::figures;
-use hadar_study::scenario::examples;
+use hadar_scenario::examples;
 use std::path::Path;
 
 pub(super) fn make(out: &Path) -> Result<Made> {

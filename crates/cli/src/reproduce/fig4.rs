@@ -10,16 +10,16 @@ use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::ranging::texture::{global_entropy, local_entropy, standard_deviation};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range;
 use hadar_report::table::{Table, number};
-use hadar_study::scenario::RangeScenario;
-use hadar_study::scenario::examples::{STREET, STREET_AT_ONE_TEMPERATURE};
-use hadar_study::study::range::{
+use hadar_scenario::RangeScenario;
+use hadar_scenario::examples::{STREET, STREET_AT_ONE_TEMPERATURE};
+use hadar_simulate::draws::{Draws, generator};
+use hadar_study::range::{
     PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile,
 };
 use std::path::Path;
@@ -165,10 +165,10 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
         if (30.0..=300.0).contains(&value) { Verdict::UnderAChoice } else { Verdict::NotReproduced }
     };
     let over = |method: &str| {
-        let same = |line: &&hadar_study::study::range::Line| {
+        let same = |line: &&hadar_study::range::Line| {
             line.signal == Signal::ScatteredAsMeasured && line.method == Some(method)
         };
-        let ratio = |line: &hadar_study::study::range::Line| {
+        let ratio = |line: &hadar_study::range::Line| {
             median(
                 &line
                     .rmse_m

@@ -10,9 +10,9 @@
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::pixels::{Street, loss, rms};
-use hadar::decompose::Method;
 use hadar::error::Result;
 use hadar::material::Library;
+use hadar_estimate::decompose::Method;
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Panel, Rule, Series, Style};

@@ -11,22 +11,22 @@ use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::{EXPOSURE, Textured, median, window_sums};
 use hadar::cube::Shape;
-use hadar::decompose::{Maps, texture_information};
 use hadar::error::Result;
 use hadar::ranging::information::Window;
 use hadar::ranging::metrics::DepthMetrics;
-use hadar::simulate::matching::block::Block;
-use hadar::simulate::matching::dense::disparity_map;
-use hadar::simulate::matching::{Search, StereoPair};
 use hadar::words::significant;
+use hadar_estimate::decompose::{Maps, texture_information};
 use hadar_report::bundle::Bundle;
 use hadar_report::decompose::{Clahe, brightness};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Picture, Series};
 use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, number};
-use hadar_study::study::range;
-use hadar_study::study::render::Picture as Rendered;
+use hadar_simulate::matching::block::Block;
+use hadar_simulate::matching::dense::disparity_map;
+use hadar_simulate::matching::{Search, StereoPair};
+use hadar_study::range;
+use hadar_study::render::Picture as Rendered;
 use std::path::Path;
 
 /// Windows of the matcher: the paper's.

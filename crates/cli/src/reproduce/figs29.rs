@@ -11,15 +11,15 @@ mod shown;
 
 use super::order::{Effort, Figures, Made, Order};
 use designs::Row;
-use hadar::calibrate::coverage::filter_wheel;
-use hadar::calibrate::response::Response;
-use hadar::calibrate::twin::FilterWheelTwin;
 use hadar::calibration::determined::Determined;
 use hadar::error::Result;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_estimate::calibrate::coverage::filter_wheel;
+use hadar_estimate::calibrate::response::Response;
+use hadar_estimate::calibrate::twin::FilterWheelTwin;
 use hadar_report::bundle::Bundle;
 use hadar_report::table::{Table, number};
+use hadar_simulate::draws::{Draws, generator};
 use shown::{PIXELS, Shown, TEMPERATURE_ERROR_K};
 
 const EXPERIMENTS: usize = 600;

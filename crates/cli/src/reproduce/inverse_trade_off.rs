@@ -2,25 +2,25 @@
 //!
 //! Its own scene: one of the surroundings, S = e·B(T) + (1 − e)·V₀·B(T₀), quartz at 310 K, V₀ = 0.5, T₀ = 293.15 K; 720 to 1250 cm⁻¹ in bands
 //! of ever smaller width that leave no gap. The photons of a pixel are the same in all of them, so that those of a band go with its width.
-//! Noise by first order ([`hadar::decompose::inverse_error`]), bias from spectra without noise, both together from drawn ones.
+//! Noise by first order ([`hadar_estimate::decompose::inverse_error`]), bias from spectra without noise, both together from drawn ones.
 
 use super::ledger::{Line, Verdict};
 use super::order::Order;
 use super::pixels::{RANGE_K, rms};
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Method, Options, Setting, decompose_by, inverse_error};
 use hadar::error::Result;
 use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_estimate::decompose::{Light, Method, Options, Setting, decompose_by, inverse_error};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Series, Style};
 use hadar_report::table::Table;
+use hadar_simulate::draws::{Draws, generator};
 
 const MATERIAL: &str = "quartz";
 const TARGET_K: f64 = 310.0;

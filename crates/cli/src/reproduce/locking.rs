@@ -3,15 +3,15 @@
 use hadar::error::Result;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::NoiseVariance;
-use hadar::simulate::matching::Matcher;
-use hadar::simulate::matching::block::Block;
-use hadar::simulate::matching::likelihood::Likelihood;
-use hadar::simulate::matching::locking::Locking;
-use hadar::simulate::matching::texture::Texture;
-use hadar::simulate::matching::trials::{Noisy, Run};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Series};
 use hadar_report::table::{Table, number};
+use hadar_simulate::matching::Matcher;
+use hadar_simulate::matching::block::Block;
+use hadar_simulate::matching::likelihood::Likelihood;
+use hadar_simulate::matching::locking::Locking;
+use hadar_simulate::matching::texture::Texture;
+use hadar_simulate::matching::trials::{Noisy, Run};
 
 const STEPS: usize = 20;
 const WINDOWS: usize = 60;

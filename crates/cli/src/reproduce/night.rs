@@ -1,7 +1,6 @@
 //! A scene rendered, its heat cube taken apart, and its materials made categories: what Extended Data Figs. 7 and 8 do.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Maps, NO_MATERIAL, Options, Setting, decompose};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::detection;
@@ -9,14 +8,17 @@ use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
 use hadar::scene::{State, Surroundings};
-use hadar::segmentation::{Agreement, ByBrightness, Categories, NO_CATEGORY, Part, Rule, segment, smoothed};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_estimate::decompose::{Light, Maps, NO_MATERIAL, Options, Setting, decompose};
+use hadar_estimate::segmentation::{
+    Agreement, ByBrightness, Categories, NO_CATEGORY, Part, Rule, segment, smoothed,
+};
 use hadar_report::plot::{Axis, Painted, Picture, Rgb, categorical};
 use hadar_report::table::Table;
-use hadar_study::scenario::RenderScenario;
-use hadar_study::scenario::decompose::CategorySpec;
-use hadar_study::study::render::{RenderPlan, RenderStudy, Rendered};
+use hadar_scenario::RenderScenario;
+use hadar_scenario::decompose::CategorySpec;
+use hadar_simulate::draws::{Draws, generator};
+use hadar_study::render::{RenderPlan, RenderStudy, Rendered};
 use rayon::prelude::*;
 
 /// Temperatures that a pixel may have, K.

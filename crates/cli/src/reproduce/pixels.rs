@@ -5,7 +5,6 @@
 //! Photons of a pixel are those that a blackbody of 290 K sends in all bands.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Maps, Method, Options, Setting, decompose_by};
 use hadar::error::Result;
 use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
@@ -13,10 +12,11 @@ use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
 use hadar::scene::{EnvironmentObject, Parameter, State, Surroundings};
-use hadar::separation::{Asked, Found, library_from_cube};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_estimate::decompose::{Light, Maps, Method, Options, Setting, decompose_by};
+use hadar_estimate::separation::{Asked, Found, library_from_cube};
+use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 use rayon::prelude::*;
 

@@ -9,8 +9,8 @@ use hadar::planck;
 use hadar::spectrum::Bands;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_report::size;
-use hadar_study::scenario::examples;
-use hadar_study::study::Sizing;
+use hadar_scenario::examples;
+use hadar_study::Sizing;
 use std::path::Path;
 
 const PLACE: &str = "Methods, Guiding public policy";
@@ -114,7 +114,7 @@ fn glass() -> Result<Vec<Line>> {
     let toml = examples::HUMAN_VS_ROBOT.replace("[\"aluminium\"]", "[\"soda-lime-glass\"]");
     let study = scene::study(&toml)?;
     let result = study.identify()?;
-    let line = |pair: &hadar_study::study::PairResult| {
+    let line = |pair: &hadar_study::PairResult| {
         let ours = format!("{:.4} nearest; {:.4} local (S27)", pair.distance_nearest, pair.distance_local);
         let why = "soda-lime glass of the built-in library; the authors' own published spectrum of glass gives 0.0484 by \
                    the local distance (S27), 0.0523 by the nearest: reports/library_figures";
@@ -131,8 +131,7 @@ fn glass() -> Result<Vec<Line>> {
     let mut lines: Vec<Line> = result.pairs.iter().map(line).collect();
     let by_local = toml.replace("[requirement]", "[requirement]\nby = \"local\"");
     let local = scene::study(&by_local)?.identify()?;
-    let reached =
-        |pair: Option<&hadar_study::study::PairResult>| pair.and_then(|pair| pair.statistical_distance);
+    let reached = |pair: Option<&hadar_study::PairResult>| pair.and_then(|pair| pair.statistical_distance);
     lines.push(glass_in_one_frame([reached(result.pairs.first()), reached(local.pairs.first())]));
     Ok(lines)
 }

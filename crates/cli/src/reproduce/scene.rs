@@ -2,8 +2,8 @@
 
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::Study;
+use hadar_scenario::Scenario;
+use hadar_study::Study;
 
 /// A scenario with its materials.
 pub(super) fn study(toml: &str) -> Result<Study> {

@@ -10,7 +10,7 @@ use hadar::spectrum::Bands;
 use hadar::units::SPEED_OF_LIGHT_M_S;
 use hadar_report::bundle::Bundle;
 use hadar_report::text::significant;
-use hadar_study::scenario::examples;
+use hadar_scenario::examples;
 use std::path::Path;
 
 /// Relative difference up to which a figure counts as the same: the table has three digits.

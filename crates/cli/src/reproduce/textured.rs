@@ -4,14 +4,16 @@
 //! rendering in which everything but the sky is at 3 K and sends nothing, scatterings included.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::planck::{photon_radiance, photon_radiance_slope};
-use hadar_study::scenario::RenderScenario;
-use hadar_study::scenario::scene::{Form, SurfaceSpec};
-use hadar_study::study::range;
-use hadar_study::study::render::{Picture, RenderPlan, RenderStudy, Rendered};
+use hadar_estimate::decompose::{
+    Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil,
+};
+use hadar_scenario::RenderScenario;
+use hadar_scenario::scene::{Form, SurfaceSpec};
+use hadar_study::range;
+use hadar_study::render::{Picture, RenderPlan, RenderStudy, Rendered};
 
 /// Exposure of the yard, as it stands there.
 pub(super) const EXPOSURE: &str = "200 us";

@@ -3,8 +3,8 @@
 use crate::support::folder::Folder;
 use hadar::cube::{Cube, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 
 const ROWS: usize = 24;

@@ -1,12 +1,12 @@
 //! `hadar calibrate blackbody` and `response` as their user runs them: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
-use hadar::calibrate::twin::{FilterWheelTwin, passband};
 use hadar::cube::{Cube, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use hadar_estimate::calibrate::twin::{FilterWheelTwin, passband};
+use hadar_simulate::draws::{Draws, generator};
 use std::path::Path;
 
 const SPECTROMETER: &str = r#"title = "FTIR of today"
@@ -344,7 +344,7 @@ fn wheel(scenario: &str) -> (Folder, FilterWheelTwin) {
     let folder = Folder::with(scenario);
     let mut twin = FilterWheelTwin::prototype().unwrap();
     let fine: Vec<f64> = (0..1201).map(|i| 400.0 + f64::from(i)).collect();
-    let filters: Vec<[f64; 2]> = hadar::calibrate::twin::FILTERS.to_vec();
+    let filters: Vec<[f64; 2]> = hadar_estimate::calibrate::twin::FILTERS.to_vec();
     let curves: Vec<Vec<f64>> = filters.iter().map(|filter| passband(*filter, &fine)).collect();
     let names: Vec<String> = (0..10).map(|q| format!("f{q}")).collect();
     let mut text = format!("wavenumber_cm1,{}\n", names.join(","));

@@ -6,8 +6,8 @@ use hadar::fisher::{Nuisance, Unknowns};
 use hadar::material::Library;
 use hadar_proof::accuracy::skipping::skipping;
 use hadar_report::accuracy::skipping_text as text;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{Asked, Study, Watch};
+use hadar_scenario::Scenario;
+use hadar_study::{Asked, Study, Watch};
 use serde_json::Value;
 
 /// Four materials, a camera that tells some of them.

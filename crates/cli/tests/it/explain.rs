@@ -2,8 +2,8 @@
 
 use crate::support::documented;
 use crate::support::folder::{Folder, SCENARIO};
+use hadar_scenario::keys::{self, Silent, Value};
 use hadar_study::explain;
-use hadar_study::scenario::keys::{self, Silent, Value};
 use hadar_study::warning::Code;
 use serde_json::Value as Json;
 use std::collections::BTreeSet;

@@ -3,7 +3,7 @@
 use crate::support::folder::Folder;
 use hadar::cube::{Shape, npy_map, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::generator;
+use hadar_simulate::draws::generator;
 use rand::RngExt;
 use std::fs;
 

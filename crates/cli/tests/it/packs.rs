@@ -2,8 +2,8 @@
 
 use crate::support::folder::Folder;
 use hadar::material::Library;
-use hadar_study::scenario::Rule;
-use hadar_study::study::{Extent, RuleAsked, RuleStudy};
+use hadar_scenario::Rule;
+use hadar_study::{Extent, RuleAsked, RuleStudy};
 use std::fs;
 use std::path::PathBuf;
 

@@ -2,8 +2,8 @@
 
 use crate::support::folder::Folder;
 use hadar::material::Library;
-use hadar_study::scenario::{Rule, Scenario};
-use hadar_study::study::{ApartAnswer, Extent, Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
+use hadar_scenario::{Rule, Scenario};
+use hadar_study::{ApartAnswer, Extent, Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
 use serde_json::Value;
 use std::fs;
 use std::sync::OnceLock;
@@ -254,7 +254,7 @@ fn the_worst_case_is_at_the_corner_known_by_hand() {
 }
 
 /// The scenario of a limiting scene, with `camera` as its keys.
-fn limiting_scenario(scene: &hadar_study::study::LimitingScene, camera: &str, required: f64) -> Scenario {
+fn limiting_scenario(scene: &hadar_study::LimitingScene, camera: &str, required: f64) -> Scenario {
     let text = format!(
         "[target]\nmaterial = {:?}\ntemperature = \"{:e} K\"\ndistance = \"{:e} m\"\n\
          [[environment]]\ntemperature = \"{:e} K\"\nlighting = {:e}\n\

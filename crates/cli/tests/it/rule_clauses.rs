@@ -2,9 +2,9 @@
 
 use crate::support::folder::Folder;
 use crate::support::rules::{NIGHT, answered, close, library, measured, only};
-use hadar_study::scenario::Rule;
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
+use hadar_scenario::Rule;
+use hadar_scenario::rule::Verdict;
+use hadar_study::{CameraVerdict, RuleAnswer, RuleStudy};
 
 /// The figures of the issue: 36.1 m, 1.83 s, 110 frames of 60 Hz; in three bands one after the other a third of them.
 #[test]

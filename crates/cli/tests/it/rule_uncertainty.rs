@@ -3,9 +3,9 @@
 use crate::support::folder::Folder;
 use crate::support::rules::{NIGHT, close, library, measured, only};
 use hadar::instrument::presets;
-use hadar_study::scenario::Rule;
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{RuleAsked, RuleStudy};
+use hadar_scenario::Rule;
+use hadar_scenario::rule::Verdict;
+use hadar_study::{RuleAsked, RuleStudy};
 use std::fs;
 
 /// A rule of a camera whose noise is all electronic: d goes with 1/NETD, 1/F² and the root of the exposure.

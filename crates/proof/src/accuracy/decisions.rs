@@ -12,10 +12,10 @@ use hadar::identifiability::detection;
 use hadar::identifiability::lattice::{LatticeDetector, LatticeMesh};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, Surroundings};
-use hadar::simulate::decision::DecisionScene;
-use hadar::simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_simulate::decision::DecisionScene;
+use hadar_simulate::sequential::Plan;
 
 /// States of the mesh of temperature.
 const MESHES: [usize; 5] = [8, 16, 32, 64, 128];

@@ -7,8 +7,8 @@ use super::chart::{Chart, Measured};
 use super::timing::{Budget, seconds_of};
 use super::{Item, Order};
 use hadar::error::Result;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, generator};
 
 const DRAWS: usize = 400_000;
 const QUICK_DRAWS: usize = 50_000;

@@ -11,9 +11,9 @@ use hadar::error::Result;
 use hadar::identifiability::bracket::KnownStates;
 use hadar::identifiability::detection;
 use hadar::identifiability::ratio::{RatioLaw, Route, State};
-use hadar::simulate::draws::{Draws, generator};
-use hadar::simulate::ratio::RatioDraws;
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, generator};
+use hadar_simulate::ratio::RatioDraws;
 
 const MEANS: [f64; 2] = [150.3, 121.7];
 const OTHERS: [f64; 2] = [171.9, 108.2];

@@ -8,13 +8,13 @@ use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::ranging::information::decide::decide;
 use hadar::ranging::information::{Cell, Request, information};
-use hadar::simulate::classifier::Method;
-use hadar::simulate::experiment::Design;
-use hadar::simulate::sequential::{Interval, Plan};
-use hadar_study::scenario::examples::{FIVE_MATERIALS, HUMAN_VS_ROBOT, HUMAN_VS_ROBOT_3_BANDS, STREET};
-use hadar_study::scenario::{DistanceKind, RangeScenario, Scenario};
-use hadar_study::study::range::RangeStudy;
-use hadar_study::study::{Apart, Exact, PhotonLaw, Simulation, SimulationPlan, Study, Trial};
+use hadar_scenario::examples::{FIVE_MATERIALS, HUMAN_VS_ROBOT, HUMAN_VS_ROBOT_3_BANDS, STREET};
+use hadar_scenario::{DistanceKind, RangeScenario, Scenario};
+use hadar_simulate::classifier::Method;
+use hadar_simulate::experiment::Design;
+use hadar_simulate::sequential::{Interval, Plan};
+use hadar_study::range::RangeStudy;
+use hadar_study::{Apart, Exact, PhotonLaw, Simulation, SimulationPlan, Study, Trial};
 use std::time::Instant;
 
 /// Times that both ways are run; with `quick` fewer.
@@ -182,7 +182,7 @@ fn decision(bench: &Bench, study: &Study, half_width: f64) -> Result<Skipped> {
             // No interval is as narrow as that.
             Skipping::Off => Plan::new(SEED, 1e-9, most.ceil() as u64)?,
         };
-        study.exact(&Trial { law: Some(hadar_study::study::Law::Poisson), photons, plan }, &|_, _| ())
+        study.exact(&Trial { law: Some(hadar_study::Law::Poisson), photons, plan }, &|_, _| ())
     };
     let interval = |exact: &Exact| exact.pairs.first().map(|pair| pair.balanced_interval);
     let agree = |a: &Exact, b: &Exact| match (interval(a), interval(b)) {

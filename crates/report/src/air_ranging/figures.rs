@@ -5,7 +5,7 @@ use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
 use hadar::words::length;
-use hadar_study::study::air_ranging::{AirBand, AirPoint, AirRanging};
+use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 
 fn distance() -> Axis {
     Axis::log("distance (m)")

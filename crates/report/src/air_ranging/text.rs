@@ -2,7 +2,7 @@
 
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use hadar::words::{length, share, significant};
-use hadar_study::study::air_ranging::{AirBand, AirPoint, AirRanging};
+use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 use std::fmt::Write as _;
 
 /// Distances of a table at most; all of them are in the files.

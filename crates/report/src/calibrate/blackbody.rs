@@ -8,7 +8,7 @@ use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use hadar::error::Result;
 use hadar::words::{quantity, significant};
-use hadar_study::study::calibrate::{BlackbodyFound, ChannelRow};
+use hadar_study::calibrate::{BlackbodyFound, ChannelRow};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -5,11 +5,11 @@ use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
-use hadar::calibrate::Line;
 use hadar::error::Result;
 use hadar::units::Dimension;
 use hadar::words::{significant, whole};
-use hadar_study::study::calibrate::NoiseFound;
+use hadar_estimate::calibrate::Line;
+use hadar_study::calibrate::NoiseFound;
 use std::fmt::Write as _;
 use std::path::Path;
 

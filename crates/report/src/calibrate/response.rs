@@ -8,7 +8,7 @@ use crate::text::footing::{ASSUMPTIONS, warnings};
 use hadar::cube::{npy_map, write_npy_to};
 use hadar::error::Result;
 use hadar::words::{quantity, significant};
-use hadar_study::study::calibrate::{ResponseFound, ResponseRow};
+use hadar_study::calibrate::{ResponseFound, ResponseRow};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -167,7 +167,7 @@ fn square(result: &ResponseFound, values: &[f64]) -> Table {
 fn filters(result: &ResponseFound) -> Table {
     let mut table = Table::new(["filter", "offset", "offset_sigma", "sigma_noise", "sigma_common"]);
     for (q, name) in result.filters.iter().enumerate() {
-        let scene = |pick: &dyn Fn(&hadar_study::study::calibrate::FilterRadiances) -> f64| {
+        let scene = |pick: &dyn Fn(&hadar_study::calibrate::FilterRadiances) -> f64| {
             optional(result.scene.as_ref().map(pick))
         };
         table.push(vec![

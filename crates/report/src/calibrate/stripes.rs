@@ -6,11 +6,11 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
-use hadar::calibrate::Why;
 use hadar::cube::npy_map;
 use hadar::error::Result;
 use hadar::words::{significant, whole};
-use hadar_study::study::calibrate::{Samples, StripesFound};
+use hadar_estimate::calibrate::Why;
+use hadar_study::calibrate::{Samples, StripesFound};
 use std::fmt::Write as _;
 use std::path::Path;
 

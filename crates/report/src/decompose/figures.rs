@@ -4,7 +4,7 @@ use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use hadar_study::study::decompose::{Block, Decomposed};
+use hadar_study::decompose::{Block, Decomposed};
 
 /// The maps, of the pixels that are shown.
 #[must_use]

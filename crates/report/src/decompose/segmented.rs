@@ -4,9 +4,9 @@ use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, categorical};
 use crate::table::{Table, number};
-use hadar::segmentation::{Agreement, Rule};
 use hadar::words::{share, significant, whole};
-use hadar_study::study::decompose::{Block, Decomposed, Segmented};
+use hadar_estimate::segmentation::{Agreement, Rule};
+use hadar_study::decompose::{Block, Decomposed, Segmented};
 use std::fmt::Write as _;
 
 /// 0 degC, K.

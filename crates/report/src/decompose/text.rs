@@ -1,10 +1,10 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
 use crate::text::footing::{read_as, warnings};
-use hadar::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar::words::{quantity, share, significant, whole};
-use hadar_study::scenario::decompose::CubeUnit;
-use hadar_study::study::decompose::{CORRELATION_CM1, Decomposed, TruthFound};
+use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
+use hadar_scenario::decompose::CubeUnit;
+use hadar_study::decompose::{CORRELATION_CM1, Decomposed, TruthFound};
 use std::fmt::Write as _;
 
 /// 0 degC, K.

@@ -10,8 +10,8 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, Rgb, image_png};
 use crate::table::{Table, number};
 use hadar::error::Result;
-use hadar_study::scenario::decompose::Brightness;
-use hadar_study::study::decompose::{Block, Decomposed, ranked};
+use hadar_scenario::decompose::Brightness;
+use hadar_study::decompose::{Block, Decomposed, ranked};
 use rayon::prelude::*;
 use std::io::Write;
 

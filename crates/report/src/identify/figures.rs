@@ -13,8 +13,8 @@ use crate::plot::{
 use crate::table::{Table, number, optional};
 use crate::text::significant;
 use hadar::spectrum::Bands;
-use hadar_study::scenario::DistanceKind;
-use hadar_study::study::{Matrix, PairResult, SampleSpectra, Study, TargetVerdict};
+use hadar_scenario::DistanceKind;
+use hadar_study::{Matrix, PairResult, SampleSpectra, Study, TargetVerdict};
 
 /// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
 /// ordered by clusters.

@@ -13,8 +13,8 @@ use crate::classes;
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
-use hadar_study::study::{Answers, Check, Identification, Study};
 use hadar_study::words;
+use hadar_study::{Answers, Check, Identification, Study};
 use std::fmt::Write as _;
 
 /// Entries of the prediction vector that are shown.

@@ -3,7 +3,7 @@
 use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, Band, LineFigure, Picture, Pictures, Series};
 use crate::table::{Table, number};
-use hadar_study::study::library::LibraryFound;
+use hadar_study::library::LibraryFound;
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
 const WIDEST: usize = 320;

@@ -2,9 +2,9 @@
 
 use crate::text::footing::{read_as, warnings};
 use hadar::words::{quantity, share, significant, whole};
-use hadar_study::scenario::decompose::CubeUnit;
-use hadar_study::study::Warning;
-use hadar_study::study::library::{LibraryFound, TruthOfClusters};
+use hadar_scenario::decompose::CubeUnit;
+use hadar_study::Warning;
+use hadar_study::library::{LibraryFound, TruthOfClusters};
 use std::fmt::Write as _;
 
 /// 0 degC, K.

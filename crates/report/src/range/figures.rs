@@ -6,8 +6,8 @@ use crate::range::lines_table;
 use crate::table::{Table, number};
 use hadar::error::Result;
 use hadar::ranging::derivative::{Derivative, Differentiator};
-use hadar_study::scenario::range::Demand;
-use hadar_study::study::range::{Line, PictureKind, Ranging, Signal, quantile};
+use hadar_scenario::range::Demand;
+use hadar_study::range::{Line, PictureKind, Ranging, Signal, quantile};
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 

@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::folder::Scratch;
 use hadar::cube::{NpyRows, Shape, write_npy_to};
 use hadar::error::{Error, Result};
-use hadar_study::study::range::{MapSink, Ranging, Signal};
+use hadar_study::range::{MapSink, Ranging, Signal};
 use std::sync::OnceLock;
 
 /// Maps that are written as their rows come, until the report takes them.

@@ -4,8 +4,8 @@ use crate::text::footing::{read_as, warnings};
 use hadar::ranging::depth::DepthSolution as Solution;
 use hadar::ranging::derivative::Derivative;
 use hadar::words::{self, quantity, share as percent, significant};
-use hadar_study::scenario::range::{Diffraction, Subject};
-use hadar_study::study::range::{ObjectBounds, Ranging, Signal, SignalBounds};
+use hadar_scenario::range::{Diffraction, Subject};
+use hadar_study::range::{ObjectBounds, Ranging, Signal, SignalBounds};
 use std::fmt::Write as _;
 
 /// The whole answer.
@@ -214,7 +214,7 @@ fn witnesses(result: &Ranging) -> String {
             "row", "signal", "method", "bound", "rmse", "|bias|", "scatter/bound", "outliers"
         );
         for line in witnessed {
-            let middle = |values: &[f64]| hadar_study::study::range::median(values);
+            let middle = |values: &[f64]| hadar_study::range::median(values);
             let sizes: Vec<f64> = line.bias_m.iter().map(|bias| bias.abs()).collect();
             let _ = writeln!(
                 out,

@@ -3,7 +3,7 @@
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use hadar_study::study::render::Rendered;
+use hadar_study::render::Rendered;
 
 /// Widest picture, pixels: of larger ones every second, third… row and column is shown.
 const WIDEST: usize = 320;
@@ -18,7 +18,7 @@ pub fn scene(result: &Rendered) -> Plot {
         .step_by(stride)
         .flat_map(|row| (0..columns).step_by(stride).map(move |column| row * columns + column))
         .collect();
-    let empty = hadar_study::study::render::Picture::default();
+    let empty = hadar_study::render::Picture::default();
     let view = result.views.first().unwrap_or(&empty);
     let take = |value: &dyn Fn(usize) -> f64| -> Vec<f64> { shown.iter().map(|i| value(*i)).collect() };
     let counts =

@@ -2,7 +2,7 @@
 
 use crate::text::footing::warnings;
 use hadar::words::{share, significant, whole};
-use hadar_study::study::render::Rendered;
+use hadar_study::render::Rendered;
 use std::fmt::Write as _;
 
 const FREEZING_K: f64 = 273.15;

@@ -6,11 +6,9 @@ use super::{measured, text};
 use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
-use hadar_study::scenario::Units;
-use hadar_study::study::{
-    ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy,
-};
+use hadar_scenario::Units;
 use hadar_study::words::reliability;
+use hadar_study::{ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
 use std::fmt::Write as _;
 
 /// The page.

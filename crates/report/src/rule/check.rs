@@ -4,9 +4,9 @@ use super::measured::{guarded, measure, measured_scene, undecided};
 use super::text::{fails_by, without_placeholders};
 use super::words::in_words;
 use crate::text::significant;
-use hadar_study::scenario::Units;
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
+use hadar_scenario::Units;
+use hadar_scenario::rule::Verdict;
+use hadar_study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
 use std::fmt::Write as _;
 
 /// A line for every camera; of a rule with clauses, a line for each of them below it.

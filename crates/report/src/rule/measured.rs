@@ -4,11 +4,9 @@ use super::stop::{approach, metres};
 use super::words::{columns, in_words};
 use crate::text::numbers::{numbers, quantity, significant};
 use hadar::words::share;
-use hadar_study::scenario::Units;
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{
-    MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Shortfall,
-};
+use hadar_scenario::Units;
+use hadar_scenario::rule::Verdict;
+use hadar_study::{MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Shortfall};
 use std::fmt::Write as _;
 
 /// A clause that demands a quantity: a table, then what each camera sees until its decision.

@@ -9,8 +9,8 @@
 
 use crate::manifest::{Input, Provenance, SCHEMA, VERSION, sha256};
 use hadar::error::{Error, Result};
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
+use hadar_scenario::rule::Verdict;
+use hadar_study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
 use serde_json::{Value, json};
 
 /// Its name in a report.
@@ -25,7 +25,7 @@ const SAME: f64 = 1e-6;
 /// Data that is no JSON, which is a bug.
 pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> Result<Value> {
     let about = &answer.rule.about;
-    let day = |day: Option<hadar_study::scenario::Date>| day.map(|day| day.to_string());
+    let day = |day: Option<hadar_scenario::Date>| day.map(|day| day.to_string());
     let file = provenance.inputs.first().map(|input| input.path.clone());
     let path = study.rule().scenario.source.path.as_deref().map(|path| path.to_string_lossy().into_owned());
     let clauses = answer.clauses.iter().map(of_clause).collect::<Result<Vec<_>>>()?;

@@ -1,9 +1,9 @@
 //! Where the figures of a rule are from, and what its tests say, as text.
 
 use crate::text::significant;
-use hadar_study::scenario::Rule;
-use hadar_study::scenario::rule::{Figure, Ground};
-use hadar_study::study::{TestResult, Told};
+use hadar_scenario::Rule;
+use hadar_scenario::rule::{Figure, Ground};
+use hadar_study::{TestResult, Told};
 use std::fmt::Write as _;
 
 /// Every figure below what stands behind it.

@@ -7,9 +7,9 @@ use crate::table::{Table, number, optional};
 use crate::text::footing::warnings;
 use crate::text::significant;
 use hadar::error::Result;
-use hadar_study::study::{StandIn, StandInAnswer};
 use hadar_study::warning::Code;
 use hadar_study::words::reliability;
+use hadar_study::{StandIn, StandInAnswer};
 use std::fmt::Write as _;
 
 /// The tolerances.

@@ -1,8 +1,8 @@
 //! How a vehicle comes to a stop, and what a camera sees until then, in words.
 
 use crate::text::numbers::{quantity, significant};
-use hadar_study::scenario::Units;
-use hadar_study::study::{ApproachResult, StopResult};
+use hadar_scenario::Units;
+use hadar_study::{ApproachResult, StopResult};
 
 /// Where and when the decision must stand.
 pub(super) fn decisions(stop: &StopResult, units: Units) -> String {

@@ -10,13 +10,13 @@ use crate::text::numbers::{numbers, quantity, significant};
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
-use hadar_study::scenario::Units;
-use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{
+use hadar_scenario::Units;
+use hadar_scenario::rule::Verdict;
+use hadar_study::words::{demanded, reliability};
+use hadar_study::{
     ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy,
     Shortfall, Warning,
 };
-use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
 
 /// The answer and everything behind it.

@@ -1,6 +1,6 @@
 //! What the texts of a rule share: columns, and codes in words.
 
-use hadar_study::study::Shortfall;
+use hadar_study::Shortfall;
 
 /// Rows with their columns below each other, those of numbers to the right; the last one as it is.
 pub(super) fn columns<const N: usize>(rows: &[[String; N]], numbers: &[usize]) -> String {

@@ -5,9 +5,9 @@ use crate::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule,
 use crate::table::{Table, number, optional};
 use crate::text::significant;
 use hadar::identifiability::detection;
-use hadar::simulate::classifier::Method;
-use hadar::simulate::experiment::Performance;
-use hadar_study::study::{NoiseCurves, SimulatedPerformance, SimulatedPoint, Simulation};
+use hadar_simulate::classifier::Method;
+use hadar_simulate::experiment::Performance;
+use hadar_study::{NoiseCurves, SimulatedPerformance, SimulatedPoint, Simulation};
 
 const LIMIT_COLOUR: usize = 0;
 

@@ -3,9 +3,9 @@
 use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
 use crate::text::numbers::significant;
-use hadar_study::scenario::Units;
-use hadar_study::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
+use hadar_scenario::Units;
 use hadar_study::words::percent;
+use hadar_study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
 
 /// Classes that are named in a sentence beside the target.

@@ -11,8 +11,8 @@ pub use text::text;
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
-use hadar::simulate::efficiency::Errors;
-use hadar_study::study::{Reader, Study, Thermometry, ThermometryRow};
+use hadar_simulate::efficiency::Errors;
+use hadar_study::{Reader, Study, Thermometry, ThermometryRow};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.

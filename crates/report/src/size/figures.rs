@@ -6,7 +6,7 @@ use crate::figures::{Plot, band_axis, information_axis, over_bands, wavenumber_a
 use crate::plot::{self, Axis, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use crate::table::Table;
 use hadar::spectrum::Bands;
-use hadar_study::study::{InformationCurves, PhotonMap, Spectra, Surface};
+use hadar_study::{InformationCurves, PhotonMap, Spectra, Surface};
 
 /// Curves of a picture: as many as there are colours.
 const CURVES: usize = 7;

@@ -2,9 +2,9 @@
 
 use crate::text::numbers::{quantity, significant};
 use hadar::policy::{Quantity, Solution};
-use hadar_study::scenario::Units;
-use hadar_study::study::{PairResult, Sizing, Study, no_limit};
+use hadar_scenario::Units;
 use hadar_study::words::probability;
+use hadar_study::{PairResult, Sizing, Study, no_limit};
 
 /// A number that is shown.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]

@@ -6,9 +6,9 @@ use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::{classes, companion};
 use hadar::words::share;
-use hadar_study::scenario::Units;
-use hadar_study::study::{PairResult, Sizing, Study};
+use hadar_scenario::Units;
 use hadar_study::words::demanded_probability;
+use hadar_study::{PairResult, Sizing, Study};
 use std::fmt::Write as _;
 
 /// Share of the draws that settles a question, and how many times the distance of the entries half of them must exceed to say

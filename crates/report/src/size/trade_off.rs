@@ -9,7 +9,7 @@ use crate::table::{Table, number, optional};
 use crate::text::shortfalls::no;
 use crate::text::{quantity, significant};
 use hadar::policy::{CapCode, Quantity, TradeOff, trade_off::Point};
-use hadar_study::study::Sizing;
+use hadar_study::Sizing;
 
 /// What is drawn reaches this far beyond camera and demand.
 const MARGIN: f64 = 3.0;
@@ -258,8 +258,8 @@ mod tests {
     use super::*;
     use crate::plot::Figure;
     use hadar::material::Library;
-    use hadar_study::scenario::Scenario;
-    use hadar_study::study::Study;
+    use hadar_scenario::Scenario;
+    use hadar_study::Study;
 
     /// A camera that needs a longer exposure than it has, in a frame of 60 Hz.
     const SCENE: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\ndistance = \"30 m\"\n\

@@ -3,8 +3,8 @@
 use super::numbers::listed;
 use hadar::cube::Found;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario, Setting};
-use hadar_study::study::{Identification, Study, Warning};
+use hadar_scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario, Setting};
+use hadar_study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
 /// Headings that end an answer, in this order.

@@ -1,8 +1,8 @@
 //! The target against its alternatives, one line each.
 
 use super::numbers::{numbers, photons, shortened, significant};
-use hadar_study::scenario::DistanceKind;
-use hadar_study::study::{NearestProof, PairResult, Study};
+use hadar_scenario::DistanceKind;
+use hadar_study::{NearestProof, PairResult, Study};
 use std::fmt::Write as _;
 
 /// The pairs, that which is hardest to tell apart by the distance that decides first.

@@ -1,6 +1,6 @@
 //! What a camera falls short of, in the fewest words.
 
-use hadar_study::study::Shortfall;
+use hadar_study::Shortfall;
 
 /// That a demand is not met, and by what.
 pub(crate) fn no(shortfalls: &[Shortfall]) -> String {

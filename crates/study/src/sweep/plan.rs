@@ -3,8 +3,8 @@
 use super::axis::{Axis, MOST_VALUES, column, with_unit};
 use super::cases::Cases;
 use super::cell::Cell;
-use crate::scenario::{Setting, Written};
 use hadar::error::{Error, Result};
+use hadar_scenario::{Setting, Written};
 use std::collections::BTreeMap;
 
 /// The rows of a sweep.

@@ -1,19 +1,19 @@
 //! A row answered as the command of a name answers its file.
 
 use super::record::{Record, record};
-use crate::scenario::{
-    DecomposeScenario, DistanceKind, RangingScenario, Rule, Scenario, Written, command_for,
-};
-use crate::study::air_ranging::{AirPlan, AirRangingStudy};
-use crate::study::decompose::{DecomposeStudy, Keep};
-use crate::study::range::{RangePlan, RangeStudy};
-use crate::study::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
-use hadar::decompose::Method;
+use crate::air_ranging::{AirPlan, AirRangingStudy};
+use crate::decompose::{DecomposeStudy, Keep};
+use crate::range::{RangePlan, RangeStudy};
+use crate::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
 use hadar::demand::{Skipping, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar::simulate::classifier;
-use hadar::simulate::experiment::Design;
+use hadar_estimate::decompose::Method;
+use hadar_scenario::{
+    DecomposeScenario, DistanceKind, RangingScenario, Rule, Scenario, Written, command_for,
+};
+use hadar_simulate::classifier;
+use hadar_simulate::experiment::Design;
 use serde::Serialize;
 
 /// Spectra of a class where a classifier is judged and nobody says how many.

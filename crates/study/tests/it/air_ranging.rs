@@ -1,7 +1,7 @@
 //! Scenarios of ranging by air: what is written is read again, and what is silent.
 
-use hadar_study::scenario::AirRangingScenario;
-use hadar_study::scenario::air_ranging::{Demand, SmoothEmissivity};
+use hadar_scenario::AirRangingScenario;
+use hadar_scenario::air_ranging::{Demand, SmoothEmissivity};
 
 const LEAST: &str = "signal = \"air\"\n[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\ndistance = \"50 m\"\n\
                      [atmosphere]\nmodel = \"us-standard\"\n[camera]\npreset = \"flir-a325sc\"\n";

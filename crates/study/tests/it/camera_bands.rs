@@ -3,8 +3,8 @@
 use hadar::instrument::Readout;
 use hadar::material::Library;
 use hadar::policy::Quantity;
-use hadar_study::scenario::{BandSource, Rule, Scenario};
-use hadar_study::study::{RuleAsked, RuleStudy, Sizing, Study, Warning};
+use hadar_scenario::{BandSource, Rule, Scenario};
+use hadar_study::{RuleAsked, RuleStudy, Sizing, Study, Warning};
 use std::sync::OnceLock;
 
 /// A core of one band whose noise a data sheet states, with a lens.

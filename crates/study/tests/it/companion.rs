@@ -3,9 +3,9 @@
 use hadar::material::Library;
 use hadar::policy::practice::ObserverTask;
 use hadar::spectrum::Bands;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::companion::{Companion, CompanionRow, Given, Kind, Measure, Told, Unknown};
-use hadar_study::study::{Sizing, Study};
+use hadar_scenario::Scenario;
+use hadar_study::companion::{Companion, CompanionRow, Given, Kind, Measure, Told, Unknown};
+use hadar_study::{Sizing, Study};
 use std::sync::OnceLock;
 
 /// Half a metre at 20 m; 24 mm over 12 um: 50 pixels across it, 1 km for one.

@@ -1,10 +1,10 @@
 //! The table of keys and the readers are one: every key of the table is read as its row says, and refused otherwise.
 
 use hadar::error::Result;
-use hadar_study::scenario::calibrate::{BlackbodyScenario, NoiseScenario, ResponseScenario, StripesScenario};
-use hadar_study::scenario::cameras::StatedCameras;
-use hadar_study::scenario::keys::{FILES, Key, Silent, Table, Value};
-use hadar_study::scenario::{
+use hadar_scenario::calibrate::{BlackbodyScenario, NoiseScenario, ResponseScenario, StripesScenario};
+use hadar_scenario::cameras::StatedCameras;
+use hadar_scenario::keys::{FILES, Key, Silent, Table, Value};
+use hadar_scenario::{
     AirRangingScenario, DecomposeScenario, LibraryScenario, RangeScenario, RenderScenario, Rule, Scenario,
     Setting, Written,
 };

@@ -13,8 +13,8 @@ use hadar::material::Library;
 use hadar::policy;
 use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::spectrum::Bands;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{PairResult, Study};
+use hadar_scenario::Scenario;
+use hadar_study::{PairResult, Study};
 
 const ZERO_CELSIUS_K: f64 = 273.15;
 

@@ -6,8 +6,8 @@
 //! rises to 0.840 at 3 km; skin against PMMA is at 2.1564 at 10 m and at 2.903 at 1 km.
 
 use hadar::material::Library;
-use hadar_study::scenario::Rule;
-use hadar_study::study::{CameraVerdict, Proof, RuleAsked, RuleStudy};
+use hadar_scenario::Rule;
+use hadar_study::{CameraVerdict, Proof, RuleAsked, RuleStudy};
 
 fn rule(target: &str, others: &str, range: [&str; 2], demanded: f64, more: &str) -> String {
     let [nearest, farthest] = range;

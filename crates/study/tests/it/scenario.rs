@@ -5,7 +5,7 @@ use std::path::Path;
 
 use hadar::instrument::figures::NoiseFigures;
 use hadar::units::Spectral;
-use hadar_study::scenario::{
+use hadar_scenario::{
     Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec, ClassSpec,
     DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout,
     Reliability, Requirement, Scenario, Source, Spread, Target, Unknown,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hadar_study::scenario::Scenario;
+use hadar_scenario::Scenario;
 
 /// The message for a scenario that is right up to `rest`, which begins on line 4 of `a.toml`.
 #[track_caller]

@@ -6,11 +6,11 @@ use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::scene::{EnvironmentObject, State, Surroundings};
-use hadar::simulate::sequential::Plan;
 use hadar::spectrum::Bands;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{Law, Study, Trial};
+use hadar_scenario::Scenario;
+use hadar_simulate::sequential::Plan;
 use hadar_study::warning::Code;
+use hadar_study::{Law, Study, Trial};
 
 struct Scene {
     bands: Bands,

@@ -3,8 +3,8 @@
 use hadar::instrument::Camera;
 use hadar::material::Library;
 use hadar::planck::{occupancy, photon_radiance};
-use hadar_study::scenario::Scenario;
-use hadar_study::study::Study;
+use hadar_scenario::Scenario;
+use hadar_study::Study;
 use std::f64::consts::PI;
 use std::path::Path;
 

@@ -2,8 +2,8 @@
 
 use hadar::material::Library;
 use hadar::policy::{Quantity, Solution};
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{Sizing, Study};
+use hadar_scenario::Scenario;
+use hadar_study::{Sizing, Study};
 use hadar_testing::seeded;
 use proptest::prelude::*;
 use std::sync::OnceLock;
@@ -183,7 +183,7 @@ const PAIR: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[[
 fn same(a: &str, b: &str, relative: f64) {
     let (a, b) = (size(&format!("{PAIR}{a}")), size(&format!("{PAIR}{b}")));
     for (a, b) in a.pairs.iter().zip(&b.pairs) {
-        let numbers = |pair: &hadar_study::study::PairResult| {
+        let numbers = |pair: &hadar_study::PairResult| {
             [
                 pair.distance_nearest,
                 pair.distance_local,

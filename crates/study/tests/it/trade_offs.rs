@@ -4,9 +4,9 @@ use hadar::material::Library;
 use hadar::policy::elasticity::Lever;
 use hadar::policy::trade_off::POINTS;
 use hadar::policy::{CapCode, Quantity, Solution};
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{Shortfall, Sizing, Study};
+use hadar_scenario::Scenario;
 use hadar_study::warning::Code;
+use hadar_study::{Shortfall, Sizing, Study};
 use std::sync::OnceLock;
 
 const SCENE: &str = r#"

@@ -2,7 +2,7 @@
 
 use hadar::instrument::figures::{Kind, TABLE};
 use hadar::units::Dimension;
-use hadar_study::scenario::{RangeScenario, Rule, Scenario, Units};
+use hadar_scenario::{RangeScenario, Rule, Scenario, Units};
 
 const SCENARIO: &str = r#"
 [target]

@@ -5,8 +5,8 @@ use super::super::global::Global;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::calibrate::blackbody;
-use hadar_study::scenario::calibrate::BlackbodyScenario;
-use hadar_study::study::calibrate::BlackbodyStudy;
+use hadar_scenario::calibrate::BlackbodyScenario;
+use hadar_study::calibrate::BlackbodyStudy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

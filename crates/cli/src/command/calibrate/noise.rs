@@ -4,8 +4,8 @@ use super::super::global::Global;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_report::calibrate::noise;
-use hadar_study::scenario::calibrate::{Frames, NoiseScenario};
-use hadar_study::study::calibrate::NoiseStudy;
+use hadar_scenario::calibrate::{Frames, NoiseScenario};
+use hadar_study::calibrate::NoiseStudy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

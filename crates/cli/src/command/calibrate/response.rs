@@ -4,8 +4,8 @@ use super::super::global::Global;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::calibrate::response;
-use hadar_study::scenario::calibrate::ResponseScenario;
-use hadar_study::study::calibrate::ResponseStudy;
+use hadar_scenario::calibrate::ResponseScenario;
+use hadar_study::calibrate::ResponseStudy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

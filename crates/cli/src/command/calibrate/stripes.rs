@@ -5,8 +5,8 @@ use super::super::global::Global;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::calibrate::stripes;
-use hadar_study::scenario::calibrate::{Frames, StripesScenario};
-use hadar_study::study::calibrate::StripesStudy;
+use hadar_scenario::calibrate::{Frames, StripesScenario};
+use hadar_study::calibrate::StripesStudy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

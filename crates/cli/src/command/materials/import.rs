@@ -10,7 +10,7 @@ use hadar::error::{Error, Result};
 use hadar::material::{Material, Summary, read};
 use hadar_report::bundle::Bundle;
 use hadar_report::text::significant;
-use hadar_study::study::Warning;
+use hadar_study::Warning;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

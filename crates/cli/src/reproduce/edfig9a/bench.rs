@@ -1,7 +1,6 @@
 //! Letters on a wafer before ten filters: what is there, what the camera counts, what is read of it, and what could be.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Maps, Options, Setting, decompose};
 use hadar::error::Result;
 use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
@@ -12,9 +11,10 @@ use hadar::material::Library;
 use hadar::planck::photon_radiance;
 use hadar::root::crossing;
 use hadar::scene::{EnvironmentObject, Parameter, State, Surroundings};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::{Bands, FilterCurve};
 use hadar::statistics::Statistics;
+use hadar_estimate::decompose::{Light, Maps, Options, Setting, decompose};
+use hadar_simulate::draws::{Draws, generator};
 use rayon::prelude::*;
 
 /// Letters, and pixels of one dot of theirs.

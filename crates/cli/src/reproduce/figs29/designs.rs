@@ -1,10 +1,10 @@
 //! Other temperatures and filters, all of them in the same time.
 
-use hadar::calibrate::twin::{FILTERS, FilterWheelTwin};
 use hadar::calibration::design::Design;
 use hadar::calibration::determined::Determined;
 use hadar::calibration::filter_wheel::FilterWheel;
 use hadar::error::Result;
+use hadar_estimate::calibrate::twin::{FILTERS, FilterWheelTwin};
 use hadar_report::table::{Table, number};
 
 /// Passbands to choose from: centres every 30 cm⁻¹, three widths.

@@ -1,10 +1,10 @@
 //! All that is shown of the response's calibration.
 
 use super::designs::Choice;
-use hadar::calibrate::coverage::FilterWheelCoverage;
-use hadar::calibrate::response::Response;
-use hadar::calibrate::twin::FilterWheelTwin;
 use hadar::calibration::determined::Determined;
+use hadar_estimate::calibrate::coverage::FilterWheelCoverage;
+use hadar_estimate::calibrate::response::Response;
+use hadar_estimate::calibrate::twin::FilterWheelTwin;
 
 /// Pixels about the centre that a reading is the mean of.
 pub(super) const PIXELS: f64 = 400.0;

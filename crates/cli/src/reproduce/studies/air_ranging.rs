@@ -15,7 +15,7 @@ use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::air_ranging;
 use hadar_report::bundle::Bundle;
-use hadar_study::study::air_ranging::{AirPlan, AirPoint};
+use hadar_study::air_ranging::{AirPlan, AirPoint};
 use scenes::Scene;
 
 /// Seed of the committed report.

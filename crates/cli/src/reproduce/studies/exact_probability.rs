@@ -13,9 +13,9 @@ use crate::reproduce::order::{Effort, Order, Progress};
 use decided::{HALF_WIDTH, Line, Materials, line};
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar::simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar_report::bundle::Bundle;
+use hadar_simulate::sequential::Plan;
 use three_bands::lattice_line;
 
 /// Seed of the committed report.

@@ -9,12 +9,12 @@ mod shown;
 mod text;
 
 use crate::reproduce::order::{Effort, Order, Progress};
-use hadar::calibrate::coverage::{Experiment, spectrometer};
-use hadar::calibrate::twin::SpectrometerTwin;
 use hadar::calibration::choice::{Wanted, WantedSurface, best_blackbodies, emissivity_error, radiance_error};
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar::planck;
+use hadar_estimate::calibrate::coverage::{Experiment, spectrometer};
+use hadar_estimate::calibrate::twin::SpectrometerTwin;
 use hadar_report::bundle::Bundle;
 use shown::{
     Best, EMISSIVITY, Held, Plane, READINGS, SLOPE_PER_K, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K,

@@ -13,10 +13,10 @@ use crate::reproduce::order::{Effort, Order, Progress};
 use figures::{decision_figures, distance_figures, figures_csv};
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar::simulate::draws::generator;
-use hadar::simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar_report::bundle::Bundle;
+use hadar_simulate::draws::generator;
+use hadar_simulate::sequential::Plan;
 use pairs::{all_pairs, decide};
 
 /// Seed of the committed report, for the choice of the pairs and for the draws.

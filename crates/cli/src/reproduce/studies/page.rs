@@ -1,7 +1,7 @@
 //! Parts of a study's page: tables, intervals in plots, errors.
 
-use hadar::simulate::sequential::Interval;
 use hadar_report::plot::Series;
+use hadar_simulate::sequential::Interval;
 
 /// A table in Markdown.
 pub(super) fn markdown<S: AsRef<str>>(header: &[&str], rows: &[Vec<S>]) -> String {

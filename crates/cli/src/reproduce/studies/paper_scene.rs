@@ -6,9 +6,9 @@ use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, State, Surroundings};
-use hadar::simulate::decision::DecisionScene;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_simulate::decision::DecisionScene;
 
 /// Bands, surroundings, and what a material's state may be.
 #[derive(Clone)]

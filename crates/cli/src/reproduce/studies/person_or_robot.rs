@@ -16,8 +16,8 @@ use hadar_report::classes;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, NamedSeries, NamedValues};
 use hadar_report::table::{Table, number, optional};
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{ClassAnswer, Study};
+use hadar_scenario::Scenario;
+use hadar_study::{ClassAnswer, Study};
 
 /// The classes: patterns of names in the library.
 const CLASSES: &str = r#"

@@ -2,8 +2,8 @@
 
 use super::folder::SCENARIO;
 use hadar::material::Library;
-use hadar_study::scenario::Rule;
-use hadar_study::study::{CameraVerdict, Extent, Found, MeasuredVerdict, RuleAnswer, RuleAsked, RuleStudy};
+use hadar_scenario::Rule;
+use hadar_study::{CameraVerdict, Extent, Found, MeasuredVerdict, RuleAnswer, RuleAsked, RuleStudy};
 use std::sync::OnceLock;
 
 /// One camera of 60 Hz before a pedestrian, with the vehicle of 49 CFR 571.127.

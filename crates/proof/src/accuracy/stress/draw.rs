@@ -1,6 +1,6 @@
 //! Random numbers of one case: over many orders of magnitude, and at the last bits.
 
-use hadar::simulate::draws::generator;
+use hadar_simulate::draws::generator;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 

@@ -15,8 +15,8 @@ use hadar::policy::{hardware_required_m2_s, photons_required};
 use hadar::scene::{Jacobian, Parameter};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::Study;
+use hadar_scenario::Scenario;
+use hadar_study::Study;
 use serde_json::Value;
 
 type Answers = Vec<(String, Found)>;

@@ -3,7 +3,7 @@
 use crate::figures::{Plot, band_axis, over_bands};
 use crate::plot::{Axis, Band, LineFigure, Series, Style};
 use crate::table::Table;
-use hadar_study::study::{BandsThatMatter, Study};
+use hadar_study::{BandsThatMatter, Study};
 
 /// Share of every band in the distance, with the best bands and filters marked.
 #[must_use]

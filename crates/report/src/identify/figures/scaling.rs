@@ -4,7 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
-use hadar_study::study::{Scaling, Study};
+use hadar_study::{Scaling, Study};
 
 /// Least distance against the size of the library; nothing where there is only one size.
 #[must_use]

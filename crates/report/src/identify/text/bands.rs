@@ -1,7 +1,7 @@
 //! Bands: which of them matter, and how their number and that of the materials change the distances.
 
 use crate::text::numbers::{listed, significant};
-use hadar_study::study::{BandsThatMatter, Scaling, Study};
+use hadar_study::{BandsThatMatter, Scaling, Study};
 use std::fmt::Write as _;
 
 /// How distances scale with materials and bands.

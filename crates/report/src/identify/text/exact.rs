@@ -1,7 +1,7 @@
 //! Simulated decisions beside their limits.
 
 use crate::text::numbers::{shortened, significant};
-use hadar_study::study::{Exact, ExactPair, Study};
+use hadar_study::{Exact, ExactPair, Study};
 use std::fmt::Write as _;
 
 /// Probabilities from here on are 1 to three digits.

@@ -2,8 +2,8 @@
 
 use super::terms::{camera, no_limit};
 use crate::text::numbers::{listed, shortened, significant};
-use hadar_study::study::{Apart, Matrix, Study};
 use hadar_study::words;
+use hadar_study::{Apart, Matrix, Study};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 

@@ -1,7 +1,7 @@
 //! What the camera and the limit are called.
 
-use hadar_study::scenario::DistanceKind;
-use hadar_study::study::{self, Study};
+use hadar_scenario::DistanceKind;
+use hadar_study::Study;
 
 /// The camera by its name, where it has one.
 pub(super) fn camera(study: &Study) -> &str {
@@ -13,7 +13,7 @@ pub(super) fn camera(study: &Study) -> &str {
 
 /// What must be added to an answer that is not by the nearest distance.
 pub(super) fn no_limit(study: &Study) -> String {
-    study::no_limit(study.scenario().requirement.by)
+    hadar_study::no_limit(study.scenario().requirement.by)
         .map_or_else(String::new, |reading| format!(", by {reading}"))
 }
 

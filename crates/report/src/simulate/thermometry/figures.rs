@@ -5,8 +5,8 @@ use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::simulate::thermometry::{decisive, rising};
 use crate::table::Table;
 use crate::text::significant;
-use hadar::simulate::efficiency::Errors;
-use hadar_study::study::{Reader, Thermometry, ThermometryRow};
+use hadar_simulate::efficiency::Errors;
+use hadar_study::{Reader, Thermometry, ThermometryRow};
 
 fn true_temperature() -> Axis {
     Axis::linear("true temperature (°C)")

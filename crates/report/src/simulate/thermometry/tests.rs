@@ -1,7 +1,7 @@
 use crate::simulate::thermometry::*;
 use hadar::fisher::precision::Sight;
 use hadar::material::Library;
-use hadar_study::scenario::Scenario;
+use hadar_scenario::Scenario;
 
 fn read(target: &str, unknown: &str, camera: &str, trials: usize) -> (Study, Thermometry) {
     let text = format!(

@@ -4,10 +4,10 @@ use crate::simulate::thermometry::{decisive, rising};
 use crate::text::significant;
 use hadar::fisher::Nuisance;
 use hadar::fisher::precision::Sight;
-use hadar::simulate::efficiency::{Errors, Verdict};
-use hadar::simulate::sequential::Interval;
-use hadar_study::scenario::Units;
-use hadar_study::study::{Reader, Thermometry, ThermometryRow};
+use hadar_scenario::Units;
+use hadar_simulate::efficiency::{Errors, Verdict};
+use hadar_simulate::sequential::Interval;
+use hadar_study::{Reader, Thermometry, ThermometryRow};
 use std::fmt::Write as _;
 
 /// Without the sign of a number whose digits are all 0.

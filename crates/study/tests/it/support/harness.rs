@@ -9,10 +9,10 @@ use hadar::Error;
 use hadar::cube::{Axes, Cube, Rows, Sample, Shape, first_invalid, panchromatic};
 use hadar::material::{Library, Material, read};
 use hadar::ranging::noise::NoiseVariance;
-use hadar::simulate::classifier::{Classifier, SavedModel};
 use hadar::spectrum::Bands;
 use hadar::units::{Dimension, Spectral};
-use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
+use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
+use hadar_simulate::classifier::{Classifier, SavedModel};
 use std::path::{Path, PathBuf};
 
 /// A reader of files, by the name of its target and of its folder of seeds.

@@ -4,7 +4,7 @@ use super::found::Found;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Rule, Series, Style};
 use hadar_report::table::Table;
-use hadar_study::study::air_ranging::AirPoint;
+use hadar_study::air_ranging::AirPoint;
 
 /// Digits that an iteration gives on any machine.
 const DIGITS: usize = 5;

@@ -1,6 +1,6 @@
 //! What is found, and how much was asked for.
 
-use hadar_study::study::air_ranging::{AirPoint, AirRanging, AirWitness};
+use hadar_study::air_ranging::{AirPoint, AirRanging, AirWitness};
 
 /// Spectra at each distance.
 pub(super) const TRIALS: usize = 200;

@@ -2,8 +2,8 @@
 
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar_study::scenario::AirRangingScenario;
-use hadar_study::study::air_ranging::AirRangingStudy;
+use hadar_scenario::AirRangingScenario;
+use hadar_study::air_ranging::AirRangingStudy;
 use std::fmt::Write as _;
 
 /// A wall under a clear sky, seen in 256 bands from 8 to 13 µm.

@@ -3,7 +3,7 @@
 use super::super::page::markdown;
 use super::found::{BANDS, Found, TRIALS};
 use hadar::words::{length, significant};
-use hadar_study::study::air_ranging::{AirPoint, AirRanging};
+use hadar_study::air_ranging::{AirPoint, AirRanging};
 
 /// Pixels of the window that is compared with published figures.
 const WINDOW: f64 = 25.0;

@@ -1,8 +1,8 @@
 //! Temperatures of random pixels against their Cramér–Rao bound.
 
 use crate::reproduce::pixels::{Street, rms};
-use hadar::decompose::{Method, flag};
 use hadar::error::Result;
+use hadar_estimate::decompose::{Method, flag};
 
 const PIXELS: usize = 2000;
 /// Deviations that hold 95 %.

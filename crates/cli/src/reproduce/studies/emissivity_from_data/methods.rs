@@ -4,9 +4,9 @@ use super::spectra::{Sky, Spectra, smoothness, wavenumbers_cm1};
 use hadar::error::Result;
 use hadar::fisher::emissivity::{EmissivityPrior, Seen, Separation};
 use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_slope};
-use hadar::separation::{Mmd, Separated, Surface, gaussian, mmd, nem, smoothest};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_estimate::separation::{Mmd, Separated, Surface, gaussian, mmd, nem, smoothest};
+use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 use rayon::prelude::*;
 

@@ -4,8 +4,8 @@ use hadar::error::{Error, Result};
 use hadar::fisher::emissivity::Smoothness;
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, generator};
 
 /// 13 to 8 µm, cm⁻¹.
 pub(super) const RANGE_CM1: [f64; 2] = [770.0, 1250.0];

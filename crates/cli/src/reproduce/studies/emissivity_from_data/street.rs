@@ -1,11 +1,11 @@
 //! Pixels of a street without a library: grouped, a library made of them, and decomposed by it and by the true one.
 
 use crate::reproduce::pixels::{Pixel, Street, rms};
-use hadar::decompose::{Maps, Method, NO_MATERIAL};
 use hadar::error::Result;
 use hadar::fisher::emissivity::Smoothness;
 use hadar::material::Library;
-use hadar::separation::{Asked, Found};
+use hadar_estimate::decompose::{Maps, Method, NO_MATERIAL};
+use hadar_estimate::separation::{Asked, Found};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, Band, LineFigure, Series, Style};
 use hadar_report::table::Table;

@@ -9,8 +9,8 @@ use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::material::Library;
 use hadar::scene::State;
-use hadar::simulate::sequential::Plan;
 use hadar::statistics::Statistics;
+use hadar_simulate::sequential::Plan;
 
 /// Half of the 95 % interval of every simulated probability.
 pub(super) const HALF_WIDTH: f64 = 0.006;

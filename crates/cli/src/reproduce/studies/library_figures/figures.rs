@@ -4,8 +4,8 @@ use super::pairs::{Decided, Pair};
 use crate::reproduce::studies::page::root_mean_square;
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar::simulate::sequential::Interval;
 use hadar_report::table::Table;
+use hadar_simulate::sequential::Interval;
 
 /// Off by more than this counts.
 const OFF: f64 = 0.02;

@@ -1,6 +1,6 @@
 //! What came of one question of the study.
 
-use hadar_study::study::ClassAnswer;
+use hadar_study::ClassAnswer;
 
 /// A camera whose figures are the paper's, and one that counts every photon.
 pub(super) const CAMERAS: [&str; 2] = ["flir-a325sc", "ideal-pnrd"];

@@ -3,7 +3,7 @@
 use super::row::{CAMERAS, Row};
 use crate::reproduce::studies::page::markdown;
 use hadar::words::{share, significant};
-use hadar_study::study::ClassAnswer;
+use hadar_study::ClassAnswer;
 
 fn photons(row: &Row) -> String {
     row.photons.map_or_else(|| "no number".into(), |photons| significant(photons, 3))

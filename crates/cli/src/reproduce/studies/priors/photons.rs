@@ -7,9 +7,9 @@ use hadar::identifiability::bayes::{BayesianBound, Distances, Pair};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
-use hadar::simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_simulate::sequential::Plan;
 
 /// Deviation of the prior of the curves, K.
 pub(super) const PRIOR_K: f64 = 2.0;

@@ -2,8 +2,8 @@
 
 use super::measure::{Row, SOUGHT};
 use super::twin::{BANDS, COLUMNS, ROWS, Twin};
-use hadar::calibrate::find_stripes;
 use hadar::error::Result;
+use hadar_estimate::calibrate::find_stripes;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Picture, Pictures, Series, Style};
 use hadar_report::table::{Table, number};

@@ -1,9 +1,9 @@
 //! Bounds and errors at one share of striped lines.
 
 use super::twin::{BANDS, COLUMNS, Put, ROWS, Twin};
-use hadar::calibrate::{Axis, Destriped, Sought, Stripe, find_stripes};
 use hadar::calibration::stripes::{LineKnown, LineSample, information};
 use hadar::error::Result;
+use hadar_estimate::calibrate::{Axis, Destriped, Sought, Stripe, find_stripes};
 use std::collections::BTreeMap;
 
 pub(super) const SOUGHT: Sought = Sought { axis: Axis::Rows, gain_deviation: 0.1, in_all_bands: false };

@@ -3,8 +3,8 @@
 use hadar::cube::{MemoryCube, Shape};
 use hadar::error::Result;
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 
 pub(super) const ROWS: usize = 120;

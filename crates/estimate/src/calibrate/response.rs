@@ -1,0 +1,271 @@
+//! The response of a camera from blackbodies read through filters, by least squares with a smooth curve expected.
+//!
+//! Unknown are the z of a response r = m + A z ([`CurvePrior`]: about the typical curve, smooth), an offset K_q of each filter and the
+//! errors δ_k of the blackbodies' temperatures in units of their deviation u_k. Rows, each in units of its deviation:
+//!
+//! | rows | z | K | δ/u |
+//! |---|---|---|---|
+//! | readings | g Δν Σ_j T_qj B_j(T_k) A_j/σ | 1/σ | g Δν Σ_j r_j T_qj B′_j(T_k) u_k/σ |
+//! | prior | 1 | 0 | 0 |
+//! | prior | 0 | 0 | 1 |
+//!
+//! solved by their triangular factor; the columns of δ are taken at the response of a first pass. The covariance of r is G Gᵀ, with
+//! Gᵀ = F⁻ᵀ[A 0 0]ᵀ by a triangular solve. Units: as in [`hadar::calibration::filter_wheel`].
+//!
+//! A scene behind filter q, the reference of temperature T₀ taken off (S51), has the mean radiance
+//!
+//! S̄_q = [(C − C⁰)/η + G_q(B(T₀))]/G_q(1),   G_q(X) = g Δν Σ_j r_j T_qj X_j,
+//!
+//! whose error common to all pixels is that of r: ∂S̄_q/∂r_j = g Δν T_qj (B_j(T₀) − S̄_q)/G_q(1).
+//!
+//! Assumptions: normal readings; η = 1 where they are made; the prior is true. What the prior costs where it is not is
+//! (K − 1)(r − m), K the resolving kernels.
+
+use hadar::calibration::determined::CurvePrior;
+use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::error::{Error, Result, check};
+use hadar::planck;
+use nalgebra::{DMatrix, DVector};
+
+/// Share of a column that is left of it below which it is rounding.
+const FITTED: f64 = 1e-9;
+
+/// A response with its covariance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response {
+    /// r, in units of the typical curve's peak.
+    pub values: Vec<f64>,
+    /// G of its covariance G Gᵀ, a row for each value.
+    pub factor: DMatrix<f64>,
+    /// K_q, counts, with ξ of the place.
+    pub offsets: Vec<f64>,
+    /// Errors of the blackbodies' temperatures as found, K.
+    pub temperature_shifts_k: Vec<f64>,
+    /// Σ of the squared residuals in units of their deviations, priors included.
+    pub chi_square: f64,
+    /// Its part of the readings alone.
+    pub chi_square_readings: f64,
+    /// What that part is expected to be, n − tr H of the readings' rows; all of it is fitted where it is near 0.
+    pub freedom: f64,
+    /// Deviations of the K_q, counts.
+    pub offset_sigmas: Vec<f64>,
+    /// The blackbody by whose other temperature χ² falls most.
+    pub worst: Option<Suspect>,
+}
+
+/// A blackbody whose temperature, were it free, would explain part of χ².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Suspect {
+    /// Its place.
+    pub blackbody: usize,
+    /// By how much warmer its readings are than they should be, K.
+    pub shift_k: f64,
+    /// By how much χ² falls.
+    pub explains: f64,
+}
+
+/// A mean radiance behind a filter, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterRadiance {
+    /// S̄.
+    pub radiance: f64,
+    /// Deviation by the response, common to all pixels.
+    pub sigma_common: f64,
+    /// What a count more adds, at η = 1.
+    pub per_count: f64,
+}
+
+impl Response {
+    /// From readings and their counts. `errors_k` are deviations of the blackbodies' temperatures; none if they are exact.
+    ///
+    /// # Errors
+    /// Lists of different lengths, readings that are no numbers, a filter or blackbody that is not there.
+    pub fn found(
+        wheel: &FilterWheel,
+        prior: &CurvePrior,
+        readings: &[Reading],
+        counts: &[f64],
+        errors_k: &[f64],
+    ) -> Result<Self> {
+        if readings.len() != counts.len() {
+            let what = "counts of readings".into();
+            return Err(Error::Length { what, found: counts.len(), expected: readings.len() });
+        }
+        counts.iter().try_for_each(|count| check::finite("count of a reading", *count, "").map(drop))?;
+        for reading in readings {
+            if reading.filter >= wheel.filters()
+                || (!errors_k.is_empty() && reading.blackbody >= errors_k.len())
+            {
+                let found = format!("filter {} of blackbody {}", reading.filter, reading.blackbody);
+                return Err(Error::malformed(found, "count both from 0"));
+            }
+            check::positive("deviation of a reading", reading.sigma, "counts")?;
+        }
+        let first = Self::pass(wheel, prior, readings, counts, (errors_k, prior.mean()))?;
+        Self::pass(wheel, prior, readings, counts, (errors_k, &first.values))
+    }
+
+    fn pass(
+        wheel: &FilterWheel,
+        prior: &CurvePrior,
+        readings: &[Reading],
+        counts: &[f64],
+        (errors_k, about): (&[f64], &[f64]),
+    ) -> Result<Self> {
+        let (n, filters, modes, temperatures) =
+            (readings.len(), wheel.filters(), prior.unknowns(), errors_k.len());
+        let columns = modes + filters + temperatures;
+        let mut rows = DMatrix::zeros(n + modes + temperatures, columns);
+        let mut right = DVector::zeros(n + modes + temperatures);
+        let centres = wheel.centres_cm1();
+        let (mut radiance, mut slope) = (vec![0.0; centres.len()], vec![0.0; centres.len()]);
+        let (mut last_k, mut per_kelvin) = (f64::NAN, Vec::with_capacity(n));
+        for (i, (reading, count)) in readings.iter().zip(counts).enumerate() {
+            if reading.temperature_k != last_k {
+                last_k = check::positive("temperature of a blackbody", reading.temperature_k, "K")?;
+                planck::photon_radiance_and_slope_into(centres, last_k, &mut radiance, &mut slope);
+            }
+            for (j, b) in radiance.iter().enumerate() {
+                let weight = wheel.weight(reading.filter, j) * b / reading.sigma;
+                for z in 0..modes {
+                    rows[(i, z)] += weight * prior.factor()[(j, z)];
+                }
+            }
+            rows[(i, modes + reading.filter)] = 1.0 / reading.sigma;
+            if temperatures > 0 {
+                rows[(i, modes + filters + reading.blackbody)] =
+                    wheel.counts(reading.filter, about, &slope) * errors_k[reading.blackbody] / reading.sigma;
+            }
+            per_kelvin.push(wheel.counts(reading.filter, about, &slope) / reading.sigma);
+            right[i] = (count - wheel.counts(reading.filter, prior.mean(), &radiance)) / reading.sigma;
+        }
+        (0..modes).for_each(|z| rows[(n + z, z)] = 1.0);
+        (0..temperatures).for_each(|k| rows[(n + modes + k, modes + filters + k)] = 1.0);
+        let kept = (rows.clone(), right.clone());
+        let qr = rows.qr();
+        qr.q_tr_mul(&mut right);
+        let factor = qr.r();
+        let mut solved = right.rows(0, columns).clone_owned();
+        let unread = || {
+            Error::malformed(
+                "a filter that no blackbody was read through",
+                "leave it out, or give its readings",
+            )
+        };
+        if !factor.solve_upper_triangular_mut(&mut solved) {
+            return Err(unread());
+        }
+        let residual = kept.1 - &kept.0 * &solved;
+        // F⁻ᵀ of columns, whose lengths are their variances after the fit.
+        let within = |mut of: DMatrix<f64>| match factor.tr_solve_upper_triangular_mut(&mut of) {
+            true => Ok(of),
+            false => Err(unread()),
+        };
+        let freedom = n as f64 - within(kept.0.rows(0, n).transpose())?.norm_squared();
+        let offset_sigmas =
+            within(DMatrix::from_fn(columns, filters, |i, q| f64::from(u8::from(i == modes + q))))?;
+        let mut worst: Option<Suspect> = None;
+        for blackbody in 0..=readings.iter().map(|reading| reading.blackbody).max().unwrap_or(0) {
+            let own = |i: usize| if readings[i].blackbody == blackbody { per_kelvin[i] } else { 0.0 };
+            let column = DMatrix::from_fn(n, 1, |i, _| own(i));
+            let along = (0..n).map(|i| own(i) * residual[i]).sum::<f64>();
+            let left =
+                column.norm_squared() - within(kept.0.rows(0, n).transpose() * &column)?.norm_squared();
+            if left > FITTED * column.norm_squared()
+                && worst.is_none_or(|worst| along * along / left > worst.explains)
+            {
+                worst = Some(Suspect { blackbody, shift_k: along / left, explains: along * along / left });
+            }
+        }
+        let mut covariance = DMatrix::zeros(columns, centres.len());
+        covariance.rows_mut(0, modes).copy_from(&prior.factor().transpose());
+        if !factor.tr_solve_upper_triangular_mut(&mut covariance) {
+            return Err(unread());
+        }
+        let shifts = (0..temperatures).map(|k| solved[modes + filters + k] * errors_k[k]);
+        Ok(Self {
+            values: prior.at(&solved.as_slice()[..modes]),
+            factor: covariance.transpose(),
+            offsets: (0..filters).map(|q| solved[modes + q]).collect(),
+            temperature_shifts_k: shifts.collect(),
+            chi_square: residual.norm_squared(),
+            chi_square_readings: residual.rows(0, n).norm_squared(),
+            freedom,
+            offset_sigmas: offset_sigmas.column_iter().map(|column| column.norm()).collect(),
+            worst,
+        })
+    }
+
+    /// Deviation of value j.
+    #[must_use]
+    pub fn sigma(&self, value: usize) -> f64 {
+        self.factor.row(value).norm()
+    }
+
+    /// Mean radiance behind a filter of a scene whose counts lie `counts` above those of the reference at T₀ (K), η = 1.
+    #[must_use]
+    pub fn radiance(
+        &self,
+        wheel: &FilterWheel,
+        filter: usize,
+        counts: f64,
+        reference_k: f64,
+    ) -> FilterRadiance {
+        let centres = wheel.centres_cm1();
+        let mut reference = vec![0.0; centres.len()];
+        planck::photon_radiance_into(centres, reference_k, &mut reference);
+        let total = wheel.counts(filter, &self.values, &vec![1.0; centres.len()]);
+        let radiance = (counts + wheel.counts(filter, &self.values, &reference)) / total;
+        let sensitivity = DVector::from_fn(centres.len(), |j, _| {
+            wheel.weight(filter, j) * (reference[j] - radiance) / total
+        });
+        FilterRadiance {
+            radiance,
+            sigma_common: self.factor.tr_mul(&sensitivity).norm(),
+            per_count: 1.0 / total,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::calibrate::twin::FilterWheelTwin;
+    use hadar::calibration::determined::Determined;
+
+    /// Deviations by the triangular factor are those that the bound has by projections and singular values.
+    #[test]
+    fn deviations_of_the_estimate_are_those_of_the_bound() {
+        let twin = FilterWheelTwin::prototype().unwrap();
+        let (readings, errors) = (twin.readings(0.05), vec![0.02; 31]);
+        let counts = twin.means(&readings, &twin.response, &vec![0.0; 31]);
+        for errors in [&errors[..], &[]] {
+            let found = Response::found(&twin.wheel, &twin.prior, &readings, &counts, errors).unwrap();
+            let about = (!errors.is_empty()).then_some((errors, &found.values[..]));
+            let scores = twin.wheel.scores(&readings, about).unwrap();
+            let bound = Determined::of(&scores, &twin.prior).unwrap();
+            for j in 0..30 {
+                let ratio = found.sigma(j) / bound.sigma_smooth[j];
+                assert!((ratio - 1.0).abs() < 1e-3, "{j} {ratio}");
+            }
+        }
+    }
+
+    /// Without noise the estimate is what the resolving kernels make of the truth.
+    #[test]
+    fn the_bias_of_smoothness_is_that_of_the_kernels() {
+        let twin = FilterWheelTwin::prototype().unwrap();
+        let readings = twin.readings(0.5);
+        let counts = twin.means(&readings, &twin.response, &vec![0.0; 31]);
+        let found = Response::found(&twin.wheel, &twin.prior, &readings, &counts, &[]).unwrap();
+        let kernels =
+            Determined::of(&twin.wheel.scores(&readings, None).unwrap(), &twin.prior).unwrap().kernels;
+        let off = DVector::from_fn(30, |j, _| twin.response[j] - twin.prior.mean()[j]);
+        let seen = kernels * &off;
+        for j in 0..30 {
+            let expected = twin.prior.mean()[j] + seen[j];
+            assert!((found.values[j] - expected).abs() < 1e-5, "{j} {} {expected}", found.values[j]);
+        }
+        assert!(found.offsets.iter().zip(&twin.offsets).all(|(a, b)| (a - b).abs() < 20.0));
+    }
+}

@@ -1,0 +1,306 @@
+//! A whole cube: rows in parallel, each read, decomposed and put into the maps.
+//!
+//! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads
+//! and of rows that are worked at once, and only these are in memory.
+
+use super::library_error::{Errors, LibraryError};
+use super::model::{MOST_SURROUNDINGS, Model, Setting};
+use super::pixel::{NO_MATERIAL, Pixel, Room, Spared, Task, flag};
+use super::screen::Screen;
+use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
+use hadar::cube::{CubeRef, Rows, Sample};
+use hadar::demand::Skipping;
+use hadar::error::{Error, Result};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Rows whose mean the bounds are laid out for.
+const SAMPLED_ROWS: usize = 16;
+
+/// How a cube is decomposed, besides its [`Setting`].
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Prior probability of each material, in any scale; empty for equal ones.
+    pub prior: Vec<f64>,
+    /// How wrong the library may be; exact if silent.
+    pub library_error: Option<LibraryError>,
+    /// Whether materials that a bound excludes are left out; the answer is the same.
+    pub skipping: Skipping,
+    /// What neighbours tell about a pixel; each is for itself if silent.
+    pub spatial: Option<SpatialPrior>,
+}
+
+/// What is found of every pixel, `[row][column]`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Maps {
+    /// [`Pixel::material`].
+    pub material: Vec<u16>,
+    /// [`Pixel::temperature_k`].
+    pub temperature_k: Vec<f32>,
+    /// [`Pixel::sigma_k`].
+    pub temperature_sigma_k: Vec<f32>,
+    /// [`Pixel::lighting`], `[row][column][surroundings]`.
+    pub lighting: Vec<f32>,
+    /// [`Pixel::p_value`].
+    pub p_value: Vec<f32>,
+    /// [`Pixel::posterior`].
+    pub posterior: Vec<f32>,
+    /// [`Pixel::candidates`].
+    pub candidates: Vec<u16>,
+    /// [`Pixel::flags`].
+    pub flags: Vec<u8>,
+    /// What was spared.
+    pub spared: Spared,
+    /// What a prior over the image did, if there was one.
+    pub spatial: Option<Spatial>,
+}
+
+/// How many rows are worked at once, and who is given their maps, with the first of the rows: one block after the other.
+pub(super) type Blocks<'a> = (usize, &'a mut dyn FnMut(usize, Maps) -> Result<()>);
+
+/// By maximum likelihood.
+pub(super) fn likeliest(
+    setting: &Setting<'_>,
+    options: &Options,
+    cube: CubeRef<'_>,
+    blocks: Blocks<'_>,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<()> {
+    check_bands(setting, cube)?;
+    match cube {
+        CubeRef::F32(rows) => whole(setting, options, rows, blocks, done),
+        CubeRef::F64(rows) => whole(setting, options, rows, blocks, done),
+    }
+}
+
+pub(super) fn check_bands(setting: &Setting<'_>, cube: CubeRef<'_>) -> Result<()> {
+    let (found, expected) = (cube.shape().bands(), setting.bands.len());
+    if found != expected {
+        return Err(Error::Length { what: "bands of the cube".into(), found, expected });
+    }
+    Ok(())
+}
+
+fn whole<S: Sample>(
+    setting: &Setting<'_>,
+    options: &Options,
+    cube: &dyn Rows<S>,
+    blocks: Blocks<'_>,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<()> {
+    options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
+    let model = Model::new(setting)?;
+    let per_unit = 1.0 / setting.units_per_count;
+    let mean = mean_counts(&model, cube, per_unit)?;
+    let signed = is_signed(&model);
+    let task = Task::new(model, setting, options, &mean)?;
+    let by_rows = ByRows { cube, signed, done };
+    let pixel =
+        |room: &mut Room, sample: &[S], same: Option<Pixel>, spared: &mut Spared, kept: &mut KeptRow| {
+            if let Some(same) = same.filter(|_| task.skip && options.spatial.is_none()) {
+                spared.equal += setting.library.len() as u64;
+                return same;
+            }
+            task.load(sample, per_unit, room);
+            let pixel = task.pixel(room, spared);
+            if options.spatial.is_some() {
+                task.keep(&pixel, room, kept);
+            }
+            pixel
+        };
+    let surroundings = setting.surroundings.len();
+    let Some(prior) = &options.spatial else {
+        return by_rows.in_blocks(blocks, || task.room(), pixel, surroundings);
+    };
+    let rows = by_rows.rows(0..cube.shape().rows(), &|| task.room(), &pixel, &|pixels| pixels)?;
+    let spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
+    let (pixels, kept): (Vec<Vec<Pixel>>, Vec<KeptRow>) =
+        rows.into_iter().map(|(pixels, _, kept)| (pixels, kept)).unzip();
+    let (mut pixels, kept) = (pixels.concat(), Kept::of_rows(kept));
+    let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
+    blocks.1(0, Maps { spared: spared + more, spatial: Some(about), ..Maps::of(&pixels, surroundings) })
+}
+
+/// Whether all bands have noise added, so that samples may come out below 0.
+pub(super) fn is_signed(model: &Model) -> bool {
+    model.var_added[..model.used.len()].iter().all(|var| *var > 0.0)
+}
+
+/// A cube of which every pixel is for itself.
+pub(super) struct ByRows<'a, S> {
+    pub(super) cube: &'a dyn Rows<S>,
+    /// Whether samples may be below 0.
+    pub(super) signed: bool,
+    /// Is told how many rows are finished.
+    pub(super) done: &'a (dyn Fn(usize) + Sync),
+}
+
+/// What is kept of the pixels of a row, what was spared in it, and what is kept of it besides.
+type Row<P> = (P, Spared, KeptRow);
+
+impl<S: Sample> ByRows<'_, S> {
+    /// The maps of what `pixel` makes of every pixel ([`Self::rows`]), some rows at a time.
+    pub(super) fn in_blocks<R>(
+        &self,
+        (height, take): Blocks<'_>,
+        room: impl Fn() -> R + Sync,
+        pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut KeptRow) -> Pixel + Sync,
+        surroundings: usize,
+    ) -> Result<()> {
+        let rows = self.cube.shape().rows();
+        let height = height.clamp(1, rows);
+        for first in (0..rows).step_by(height) {
+            let block = first..rows.min(first + height);
+            let block = self.rows(block, &room, &pixel, &|pixels| Maps::of(&pixels, surroundings))?;
+            take(first, Maps::joined(block))?;
+        }
+        Ok(())
+    }
+
+    /// What `pixel` makes of the samples of every pixel of some rows, with room of its own for each thread. It is given the pixel before in the
+    /// row where that has the same samples: dead, dark and saturated regions do. Of a row that is done, only what `keep` makes of
+    /// it is kept.
+    fn rows<R, P: Send>(
+        &self,
+        rows: Range<usize>,
+        room: &(impl Fn() -> R + Sync),
+        pixel: &(impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut KeptRow) -> Pixel + Sync),
+        keep: &(impl Fn(Vec<Pixel>) -> P + Sync),
+    ) -> Result<Vec<Row<P>>> {
+        let shape = self.cube.shape();
+        let is_count = |n: f64| n >= 0.0 || n.is_nan();
+        let of_row = |(room, buffer): &mut (R, Vec<S>), row: usize| {
+            let samples = self.cube.read(row..row + 1, buffer)?;
+            let negative_at = || samples.iter().position(|sample| !is_count((*sample).into()));
+            if !self.signed
+                && let Some(at) = negative_at()
+            {
+                let place = (row, at / shape.bands(), at % shape.bands());
+                return Err(negative(samples[at].into(), place));
+            }
+            let (mut spared, mut kept) = (Spared::default(), KeptRow::default());
+            let mut pixels: Vec<Pixel> = Vec::with_capacity(shape.columns());
+            let mut before = None;
+            for sample in samples.chunks(shape.bands()) {
+                let same = pixels.last().copied().filter(|_| before == Some(sample));
+                pixels.push(pixel(room, sample, same, &mut spared, &mut kept));
+                before = Some(sample);
+            }
+            (self.done)(1);
+            Ok((keep(pixels), spared, kept))
+        };
+        rows.into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
+    }
+}
+
+fn negative(value: f64, (row, column, band): (usize, usize, usize)) -> Error {
+    Error::malformed(
+        format!("row {row}, column {column}, band {band} holds {value}, which is no number of counts"),
+        "give counts from 0, NaN for those that are missing, or the noise that makes them negative",
+    )
+}
+
+impl Task {
+    fn new(model: Model, setting: &Setting<'_>, options: &Options, mean: &[f64]) -> Result<Self> {
+        let materials = setting.library.len();
+        let prior = match options.prior.len() {
+            0 => vec![1.0; materials],
+            found if found == materials => options.prior.clone(),
+            found => {
+                return Err(Error::Length { what: "prior probabilities".into(), found, expected: materials });
+            }
+        };
+        if let Some(wrong) = prior.iter().find(|p| !(**p > 0.0 && p.is_finite())) {
+            return Err(Error::out_of_range("prior probability", *wrong, "", "above 0"));
+        }
+        let (mut kinds, mut alike): (Vec<usize>, Vec<usize>) = Default::default();
+        for m in 0..materials {
+            let same =
+                |&first: &usize| setting.library[first] == setting.library[m] && prior[first] == prior[m];
+            match kinds.iter().position(same) {
+                Some(kind) => alike[kind] += 1,
+                None => {
+                    kinds.push(m);
+                    alike.push(1);
+                }
+            }
+        }
+        let most = prior.iter().copied().fold(0.0, f64::max);
+        let handicap = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
+        let screen = (!model.gain).then(|| Screen::new(&model, &kinds, mean));
+        let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
+        Ok(Self { errors, model, screen, kinds, alike, handicap, skip: options.skipping.skips() })
+    }
+}
+
+/// Mean counts of some rows of the cube, padded.
+fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> Result<Vec<f64>> {
+    let shape = cube.shape();
+    let (mut sum, mut count, mut buffer) = (vec![0.0; model.width], 0.0, Vec::new());
+    for row in (0..shape.rows()).step_by(shape.rows().div_ceil(SAMPLED_ROWS)) {
+        for sample in cube.read(row..row + 1, &mut buffer)?.chunks(shape.bands()) {
+            let counts = || model.used.iter().map(|&band| sample[band].into());
+            if counts().all(f64::is_finite) {
+                counts().zip(&mut sum).for_each(|(n, sum)| *sum += n);
+                count += 1.0;
+            }
+        }
+    }
+    sum.iter_mut().for_each(|sum| *sum *= per_unit / f64::max(count, 1.0));
+    Ok(sum)
+}
+
+impl Maps {
+    /// Whether pixel i, counted row after row, has one material left that fits.
+    #[must_use]
+    pub fn is_decided(&self, i: usize) -> bool {
+        let flags = self.flags.get(i).copied().unwrap_or(flag::SKIPPED);
+        self.candidates.get(i) == Some(&1)
+            && self.material.get(i).is_some_and(|material| *material != NO_MATERIAL)
+            && flags & flag::NO_FIT == 0
+    }
+
+    /// The materials, [`NO_MATERIAL`] also where none of the library fits.
+    #[must_use]
+    pub fn fitting_material(&self) -> Vec<u16> {
+        let one =
+            |(material, flags): (&u16, &u8)| if flags & flag::NO_FIT == 0 { *material } else { NO_MATERIAL };
+        self.material.iter().zip(&self.flags).map(one).collect()
+    }
+
+    /// The maps of rows, one below the other.
+    fn joined(rows: Vec<Row<Self>>) -> Self {
+        let mut all = Self::default();
+        for (row, spared, _) in rows {
+            all.material.extend(row.material);
+            all.temperature_k.extend(row.temperature_k);
+            all.temperature_sigma_k.extend(row.temperature_sigma_k);
+            all.lighting.extend(row.lighting);
+            all.p_value.extend(row.p_value);
+            all.posterior.extend(row.posterior);
+            all.candidates.extend(row.candidates);
+            all.flags.extend(row.flags);
+            all.spared = all.spared + spared;
+        }
+        all
+    }
+
+    fn of(pixels: &[Pixel], surroundings: usize) -> Self {
+        let all = || pixels.iter();
+        let mut lighting = Vec::with_capacity(pixels.len() * surroundings);
+        all().for_each(|p| {
+            lighting.extend(p.lighting[..surroundings.min(MOST_SURROUNDINGS)].iter().map(|v| *v as f32))
+        });
+        Self {
+            material: all().map(|p| p.material).collect(),
+            temperature_k: all().map(|p| p.temperature_k as f32).collect(),
+            temperature_sigma_k: all().map(|p| p.sigma_k as f32).collect(),
+            lighting,
+            p_value: all().map(|p| p.p_value as f32).collect(),
+            posterior: all().map(|p| p.posterior as f32).collect(),
+            candidates: all().map(|p| p.candidates).collect(),
+            flags: all().map(|p| p.flags).collect(),
+            ..Self::default()
+        }
+    }
+}

@@ -1,0 +1,441 @@
+//! All materials of the library for one pixel: the best, what the others are worth beside it, and whether anything is known at all.
+//!
+//! With Dₘ the least deviance of material m and πₘ its prior, the posterior is πₘ exp(−Dₘ/2)/Σ (profile likelihoods). The candidates are
+//! the fewest materials that hold 95 % of it. Materials are looked at in the order of their bounds ([`super::screen`]); those whose
+//! bound alone makes them e^([`CUT`]/2) times less likely than the best do not count, fitted or not.
+//!
+//! The residual is Pearson's χ² of the best, with one degree of freedom for each band less the unknowns that no limit holds.
+
+use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
+use super::kernel::{Asked, Sums, contrast, sums};
+use super::library_error::{Errors, Workplace};
+use super::model::{MOST_SURROUNDINGS, Model};
+use super::screen::{MOST_STARTS, Screen, Screened};
+use super::step::State;
+use hadar::cube::Sample;
+use hadar::demand::{Reason, Thing, Work};
+use hadar::simd::Aligned;
+use statrs::function::gamma::gamma_ur;
+
+/// Deviance beyond the best one at which a material no longer counts: its posterior is e⁻¹² of the best one's.
+pub(super) const CUT: f64 = 24.0;
+/// Share of the posterior that the candidates hold.
+pub const CANDIDATE_SHARE: f64 = 0.95;
+/// Below this p-value no material of the library fits.
+pub const NO_FIT: f64 = 1e-4;
+/// Squared deviations by which what a pixel sends must differ from what its surroundings send.
+const CONTRAST: f64 = 16.0;
+/// Deviation of a lighting factor from which on it could be anything.
+const ANY_LIGHTING: f64 = 1.0;
+/// Posteriors that are the same.
+const TIE: f64 = 1e-9;
+
+/// What is said of a pixel besides its numbers: bits of `flags`.
+pub mod flag {
+    /// The temperature is at an end of its range.
+    pub const TEMPERATURE_AT_LIMIT: u8 = 1;
+    /// A lighting factor is at an end of its range.
+    pub const LIGHTING_AT_LIMIT: u8 = 2;
+    /// What the pixel sends is what its surroundings send: nothing tells its material.
+    pub const NO_INFORMATION: u8 = 4;
+    /// The lighting could be anything: the target scatters nothing.
+    pub const LIGHTING_UNKNOWN: u8 = 8;
+    /// No material of the library fits (p below 1e-4).
+    pub const NO_FIT: u8 = 16;
+    /// Several materials are left.
+    pub const UNDECIDED: u8 = 32;
+    /// A count is missing: the pixel was left out.
+    pub const SKIPPED: u8 = 64;
+    /// The temperature could be anything: the target emits nothing.
+    pub const TEMPERATURE_UNKNOWN: u8 = 128;
+    /// All of them with their names in results.
+    pub const NAMES: [(u8, &str); 8] = [
+        (TEMPERATURE_AT_LIMIT, "temperature-at-limit"),
+        (LIGHTING_AT_LIMIT, "lighting-at-limit"),
+        (NO_INFORMATION, "no-information"),
+        (LIGHTING_UNKNOWN, "lighting-unknown"),
+        (NO_FIT, "no-fit"),
+        (UNDECIDED, "undecided"),
+        (SKIPPED, "skipped"),
+        (TEMPERATURE_UNKNOWN, "temperature-unknown"),
+    ];
+}
+
+/// The material of a pixel that has none.
+pub const NO_MATERIAL: u16 = u16::MAX;
+
+/// What is found of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pixel {
+    /// The most probable material of the library, [`NO_MATERIAL`] where nothing tells.
+    pub material: u16,
+    /// Its temperature, K; NaN where the pixel was left out or emits nothing.
+    pub temperature_k: f64,
+    /// Deviation of the temperature, K, were the material certain and right: where none fits ([`flag::NO_FIT`]) it says nothing.
+    pub sigma_k: f64,
+    /// Thermal lighting factors; NaN where the target scatters nothing.
+    pub lighting: [f64; MOST_SURROUNDINGS],
+    /// Probability of a larger residual, were the material right; NaN where there are as many unknowns as bands.
+    pub p_value: f64,
+    /// Posterior probability of the material.
+    pub posterior: f64,
+    /// Materials that 95 % of the posterior leave.
+    pub candidates: u16,
+    /// Bits of [`flag`].
+    pub flags: u8,
+}
+
+impl Pixel {
+    /// A pixel that was left out.
+    pub(super) const SKIPPED: Self = Self {
+        material: NO_MATERIAL,
+        temperature_k: f64::NAN,
+        sigma_k: f64::NAN,
+        lighting: [f64::NAN; MOST_SURROUNDINGS],
+        p_value: f64::NAN,
+        posterior: 0.0,
+        candidates: 0,
+        flags: flag::SKIPPED,
+    };
+}
+
+/// What was done and what was spared.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Spared {
+    /// Pairs of pixel and material that were fitted.
+    pub fitted: u64,
+    /// Pairs that a bound excluded without a fit.
+    pub excluded: u64,
+    /// Pairs that share the fit of an equal material, or of the pixel beside them with the same counts.
+    pub equal: u64,
+    /// Looks at all bands of a pixel for one material.
+    pub looks: u64,
+    /// Fits that did not come to an end.
+    pub unfinished: u64,
+}
+
+impl Spared {
+    /// As lines of a ledger.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        let mut work = Work::default();
+        work.compute(Thing::MaterialFits, self.fitted);
+        work.spare(Thing::MaterialFits, Reason::Bounded, self.excluded);
+        work.spare(Thing::MaterialFits, Reason::Shared, self.equal);
+        work
+    }
+}
+
+impl std::ops::Add for Spared {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            fitted: self.fitted + other.fitted,
+            excluded: self.excluded + other.excluded,
+            equal: self.equal + other.equal,
+            looks: self.looks + other.looks,
+            unfinished: self.unfinished + other.unfinished,
+        }
+    }
+}
+
+/// What is the same for all pixels.
+#[derive(Debug)]
+pub(super) struct Task {
+    pub(super) model: Model,
+    pub(super) screen: Option<Screen>,
+    /// The first of each set of equal materials.
+    pub(super) kinds: Vec<usize>,
+    /// How many materials are equal to it, itself included.
+    pub(super) alike: Vec<usize>,
+    /// −2 ln π of each kind, from the most probable of its materials.
+    pub(super) handicap: Vec<f64>,
+    /// Errors of the library.
+    pub(super) errors: Option<Errors>,
+    /// Whether bounds exclude materials.
+    pub(super) skip: bool,
+}
+
+/// Room for one pixel's work.
+#[derive(Debug)]
+pub(super) struct Room {
+    pub(super) sums: Sums,
+    pub(super) workplace: Workplace,
+    screened: Option<Screened>,
+    counts: Aligned,
+    pub(super) shifted: Aligned,
+    mean: Vec<f64>,
+    bounds: Vec<(f64, usize)>,
+    /// Kinds that count of the pixel at hand, the best first.
+    pub(super) fits: Vec<(usize, Fit)>,
+}
+
+impl Task {
+    pub(super) fn room(&self) -> Room {
+        let width = self.model.width;
+        Room {
+            sums: Sums::default(),
+            workplace: Workplace::default(),
+            screened: self.screen.as_ref().map(|screen| screen.room(width)),
+            counts: Aligned::zeros(width),
+            shifted: Aligned::zeros(width),
+            mean: vec![0.0; width],
+            bounds: Vec::with_capacity(self.kinds.len()),
+            fits: Vec::with_capacity(self.kinds.len()),
+        }
+    }
+
+    /// Takes the samples of a pixel as counts into `room`.
+    pub(super) fn load<S: Sample>(&self, sample: &[S], per_unit: f64, room: &mut Room) {
+        for (to, &band) in room.counts.iter_mut().zip(&self.model.used) {
+            let value: f64 = sample[band].into();
+            *to = per_unit * value;
+        }
+    }
+
+    /// Decomposes the counts in `room`.
+    pub(super) fn pixel(&self, room: &mut Room, spared: &mut Spared) -> Pixel {
+        self.pixel_of(None, room, spared)
+    }
+
+    /// The same as if `kind` were the material, if the counts leave it; else as the best.
+    pub(super) fn pixel_of(&self, kind: Option<usize>, room: &mut Room, spared: &mut Spared) -> Pixel {
+        let model = &self.model;
+        if !room.counts[..model.used.len()].iter().all(|n| n.is_finite()) {
+            return Pixel::SKIPPED;
+        }
+        for (to, (n, var)) in room.shifted.iter_mut().zip(room.counts.iter().zip(&*model.var_added)) {
+            *to = (n + var).max(0.0);
+        }
+        self.fit_all(room, spared);
+        if self.errors.is_some() {
+            self.doubt_misfits(&mut room.fits);
+        }
+        let best = room.fits.iter().map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
+        room.fits.retain(|(_, fit)| fit.deviance <= best + CUT);
+        let order = |a: &(usize, Fit), b: &(usize, Fit)| {
+            a.1.deviance
+                .total_cmp(&b.1.deviance)
+                .then(a.1.chi_square.total_cmp(&b.1.chi_square))
+                .then(a.0.cmp(&b.0))
+        };
+        room.fits.sort_by(order);
+        let asked = room.fits.iter().find(|(one, _)| Some(*one) == kind);
+        let Some(&(kind, fit)) = asked.or(room.fits.first()) else { return Pixel::SKIPPED };
+        self.described(kind, fit, room, spared)
+    }
+
+    /// Fits what no bound excludes; deviances with the handicap of the prior.
+    fn fit_all(&self, room: &mut Room, spared: &mut Spared) {
+        let Room { sums, workplace, screened, counts, shifted, bounds, fits, .. } = room;
+        fits.clear();
+        bounds.clear();
+        let mut best = f64::INFINITY;
+        let mut starts = [State::at(self.model.range_k[0]); MOST_STARTS];
+        let beside = |best: f64| if self.skip { best } else { f64::INFINITY };
+        if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
+            screen.look(counts, shifted, seen);
+            bounds.extend((0..self.kinds.len()).map(|kind| (screen.outside(kind, seen), kind)));
+            screen.nearest_first(bounds, seen);
+            let skips = self.skip && self.errors.is_none();
+            // Without what the prior takes off: farther than need be.
+            let mut reach = f64::INFINITY;
+            let mut place = 0;
+            while let Some(&(_, kind)) = bounds.get(place) {
+                place += 1;
+                if screen.is_beyond(kind, reach, seen) || screen.is_beyond_within(kind, reach, seen) {
+                    spared.excluded += 1;
+                    continue;
+                }
+                let mut count = screen.starts(&self.model, kind, seen, &mut starts);
+                if count == 0 {
+                    // Too few bands for chords to be near or far.
+                    starts[0] = self.scan(kind, shifted, sums, spared);
+                    count = 1;
+                }
+                let found = self.least(
+                    kind,
+                    &starts[..count],
+                    shifted,
+                    (&mut *sums, &mut *workplace, beside(best)),
+                    spared,
+                );
+                fits.push((kind, found));
+                if skips && found.deviance < best {
+                    reach = screen.reach(found.deviance.max(0.0) + CUT, seen);
+                }
+                best = best.min(found.deviance);
+                if place == 1 {
+                    // The first fit excludes most; what it leaves goes in order.
+                    let all = bounds.len();
+                    let mut rest = 1;
+                    for at in 1..all {
+                        if !screen.is_beyond(bounds[at].1, reach, seen) {
+                            bounds.swap(rest, at);
+                            rest += 1;
+                        }
+                    }
+                    bounds.truncate(rest);
+                    spared.excluded += (all - rest) as u64;
+                    bounds[1..].sort_by(|a, b| a.0.total_cmp(&b.0));
+                }
+            }
+        } else {
+            for kind in 0..self.kinds.len() {
+                let start = self.scan(kind, shifted, sums, spared);
+                let found =
+                    self.least(kind, &[start], shifted, (&mut *sums, &mut *workplace, f64::INFINITY), spared);
+                fits.push((kind, found));
+            }
+        }
+        spared.equal += (0..self.kinds.len()).map(|kind| self.alike[kind] as u64 - 1).sum::<u64>();
+    }
+
+    /// The best fit of a kind from some starts.
+    fn least(
+        &self,
+        kind: usize,
+        starts: &[State],
+        shifted: &[f64],
+        (sums, workplace, beside): (&mut Sums, &mut Workplace, f64),
+        spared: &mut Spared,
+    ) -> Fit {
+        spared.fitted += 1;
+        let mut best: Option<Fit> = None;
+        for start in starts {
+            let (model, m) = (&self.model, self.kinds[kind]);
+            let (mut found, mut looks) = fit(model, m, shifted, *start, COMPARED, sums);
+            if let Some(errors) = &self.errors {
+                let more;
+                (found, more) = workplace.compared(model, errors, m, shifted, (found.state, beside), sums);
+                looks += more;
+            }
+            spared.looks += looks as u64;
+            spared.unfinished += u64::from(looks >= MOST_LOOKS);
+            if best.is_none_or(|best| found.deviance < best.deviance) {
+                best = Some(found);
+            }
+        }
+        let mut best = best.unwrap_or_else(|| Fit {
+            state: State::at(self.model.range_k[0]),
+            deviance: f64::INFINITY,
+            chi_square: f64::INFINITY,
+        });
+        best.deviance += self.handicap[kind];
+        best
+    }
+
+    /// A start where no space of few dimensions holds the material: the best of some temperatures, each with its best mixture.
+    fn scan(&self, kind: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
+        let model = &self.model;
+        let [low, high] = model.range_k;
+        let mut best = (f64::INFINITY, State::at(low));
+        let count = 8;
+        for i in 0..=count {
+            let mut state = State::at(low + (high - low) * f64::from(i) / f64::from(count));
+            state.mixture[..model.vertices].fill(1.0 / model.vertices as f64);
+            for _ in 0..2 {
+                let (temperature_k, mixture) = (state.temperature_k, &state.mixture[..model.vertices]);
+                sums(model, Asked { m: self.kinds[kind], shifted, temperature_k, mixture }, at);
+                spared.looks += 1;
+                if at.deviance < best.0 {
+                    best = (at.deviance, state);
+                }
+                if !state.step(at, &model.limits()).square.is_finite() {
+                    break;
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Probability of a larger residual; NaN where as many unknowns as bands fit everything, which says nothing.
+    fn p_value(&self, state: &State, chi_square: f64) -> f64 {
+        let model = &self.model;
+        let free = (0..model.vertices).filter(|&j| state.free[j]).count();
+        let unknowns = usize::from(!state.held) + free - usize::from(!model.gain).min(free);
+        let freedom = model.used.len() as f64 - unknowns as f64;
+        if freedom > 0.0 { gamma_ur(0.5 * freedom, 0.5 * chi_square.clamp(0.0, 1e6)) } else { f64::NAN }
+    }
+
+    /// With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is scattered is
+    /// smaller: it never counts for more.
+    fn doubt_misfits(&self, fits: &mut [(usize, Fit)]) {
+        let is_misfit = |fit: &Fit| self.p_value(&fit.state, fit.chi_square) < NO_FIT;
+        let fitting = |(_, fit): &&(usize, Fit)| fit.deviance.is_finite() && !is_misfit(fit);
+        let least = fits.iter().filter(fitting).map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            for (_, fit) in fits.iter_mut().filter(|(_, fit)| fit.deviance <= least) {
+                fit.deviance = least;
+            }
+        }
+    }
+
+    fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
+        let model = &self.model;
+        let weight = |one: &Fit, best: &Fit| libm::exp(-0.5 * (one.deviance - best.deviance));
+        let total: f64 =
+            room.fits.iter().map(|(kind, one)| self.alike[*kind] as f64 * weight(one, &fit)).sum();
+        // The fewest that hold the share, and all that are as probable as the last of them.
+        let (mut held, mut candidates, mut last) = (0.0, 0, 0.0);
+        for (kind, one) in &room.fits {
+            let each = weight(one, &fit) / total;
+            if held >= CANDIDATE_SHARE && each < last * (1.0 - TIE) {
+                break;
+            }
+            held += each * self.alike[*kind] as f64;
+            candidates += self.alike[*kind];
+            last = each;
+        }
+        let m = self.kinds[kind];
+        let (fit, looks) = match &self.errors {
+            None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
+            Some(errors) => room.workplace.fit(
+                model,
+                &errors.stated,
+                m,
+                &room.shifted,
+                (fit.state, f64::INFINITY),
+                &mut room.sums,
+            ),
+        };
+        spared.looks += looks as u64;
+        let sums = &room.sums;
+        let mixture = &fit.state.mixture[..model.vertices];
+        let deviations = fit.state.deviations(sums, &model.limits());
+        let mut flags = 0;
+        let mut raise = |condition: bool, flag: u8| flags |= if condition { flag } else { 0 };
+        let at_limit = fit.state.held;
+        let free = (0..model.vertices).filter(|&j| fit.state.free[j]).count();
+        let calibrated = usize::from(!model.gain);
+        // One vertex alone is no choice; a mixture that lacks one is at a limit.
+        let lit_at_limit = model.vertices > calibrated && free < model.vertices;
+        let no_temperature = !deviations.temperature_k.is_finite();
+        let any_lighting = ANY_LIGHTING * model.scale(mixture);
+        let no_lighting = model.vertices > calibrated
+            && (deviations.blind
+                || deviations.weights[..model.vertices].iter().any(|s| s.is_nan() || *s >= any_lighting));
+        let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
+        let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
+        let p_value = self.p_value(&fit.state, sums.chi_square);
+        raise(at_limit, flag::TEMPERATURE_AT_LIMIT);
+        raise(lit_at_limit && !no_lighting, flag::LIGHTING_AT_LIMIT);
+        raise(no_information, flag::NO_INFORMATION);
+        raise(no_lighting, flag::LIGHTING_UNKNOWN);
+        raise(p_value < NO_FIT, flag::NO_FIT);
+        raise(candidates > 1, flag::UNDECIDED);
+        raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
+        let nothing = f64::NAN;
+        Pixel {
+            material: if no_information { NO_MATERIAL } else { m as u16 },
+            temperature_k: if no_temperature { nothing } else { fit.state.temperature_k },
+            sigma_k: deviations.temperature_k,
+            lighting: if no_lighting { [nothing; MOST_SURROUNDINGS] } else { model.lighting(mixture) },
+            p_value,
+            posterior: 1.0 / total,
+            candidates: candidates as u16,
+            flags,
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! A map of materials as a map of categories: what a pixel is a part of, and the objects that are there.
+//!
+//! A category is made of materials: a car of paint, glass, rubber and some aluminium. A material that is in one category alone says
+//! what its pixel is; for one that is in several (aluminium: a robot, or the emblem of a car) the neighbours have to say it, and
+//! whether it is *enclosed* where it is a part of a category.
+//!
+//! * [`Categories`]: which material is where; [`Rule`], [`segment`]: a map of materials to a map of categories;
+//! * [`Agreement`]: a map against the truth, category by category; [`ByBrightness`]: what brightness alone could say;
+//! * [`objects`]: the connected parts of each category.
+//!
+//! Nothing here knows temperatures or photons: what a pixel's material is worth is said by [`crate::decompose`].
+//!
+//! Source: paper, supplement SIII E, Algorithm 4; what that leaves open is said at [`Rule`].
+
+mod agreement;
+mod brightness;
+mod categories;
+mod components;
+mod object;
+mod raster;
+mod rectangle;
+mod regions;
+mod smoothing;
+
+pub use agreement::Agreement;
+pub use brightness::ByBrightness;
+pub use categories::{Categories, MOST_CATEGORIES, NO_CATEGORY, Part};
+pub use object::{Object, Objects, objects};
+pub use smoothing::smoothed;
+
+use hadar::error::Result;
+use rectangle::rectangle;
+use serde::Serialize;
+
+/// How the pixels of a material that is in several categories get one of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// Algorithm 4 of the paper, pixel by pixel: the category of the neighbour to the left or above where the material can be in it,
+    /// else the category where the material is not enclosed.
+    ///
+    /// What the paper leaves open: where both neighbours can be meant and differ, the one of the same material counts, or the left one;
+    /// of several categories where the material is not enclosed, the one listed first; where there is none, the neighbours to the right
+    /// and below are asked in a pass from the end; what then has no category, and what has no material, is [`NO_CATEGORY`].
+    Raster,
+    /// Connected pixels of one material as one region: it belongs to the category that encloses it (three quarters of its border or more)
+    /// if the material is enclosed there, else to one where it is not, of several to that along which it has the longest border.
+    #[default]
+    Regions,
+}
+
+/// Categories of a map of materials `[row][column]`, not yet smoothed ([`smoothed`]).
+///
+/// # Errors
+/// A map that is no rectangle of so many columns.
+///
+/// ```
+/// use hadar_estimate::segmentation::{Categories, NO_CATEGORY, Part, Rule, segment};
+/// // 0 paint, 1 aluminium: a car of both, a robot of the latter, which is enclosed in the car.
+/// let (paint, metal) = (Part::open(0), Part::open(1));
+/// let categories = Categories::new(2, &[vec![paint, Part::enclosed(1)], vec![metal]])?;
+/// let material = [
+///     0, 0, 0, 9, 1, //
+///     0, 1, 0, 9, 1, //
+///     0, 0, 0, 9, 1,
+/// ];
+/// let found = segment(&material, 5, &categories, Rule::Regions)?;
+/// assert_eq!(found[6], 0);
+/// assert_eq!((found[3], found[4]), (NO_CATEGORY, 1));
+/// # Ok::<(), hadar::Error>(())
+/// ```
+pub fn segment(material: &[u16], columns: usize, categories: &Categories, rule: Rule) -> Result<Vec<u8>> {
+    rectangle(material.len(), columns)?;
+    Ok(match rule {
+        Rule::Raster => raster::segment(material, columns, categories),
+        Rule::Regions => regions::segment(material, columns, categories),
+    })
+}

@@ -1,0 +1,191 @@
+//! The `[bands]` of a scenario: an even grid, ranges, or a file of rows or filters.
+
+use std::path::PathBuf;
+
+use super::entries::Entries;
+use super::paths::{Paths, file};
+use super::section::{Entry, Section};
+use hadar::error::{Error, Result};
+use hadar::units::{Dimension, Spectral};
+
+/// Start, stop and step of the paper's bands, cm⁻¹.
+const PAPERS_GRID: [f64; 3] = [715.0, 1250.0, 1.0];
+/// The most bands a grid may have.
+const MOST_BANDS: f64 = 1e6;
+
+/// The spectral bands and how a band is evaluated (`[bands]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct BandsSpec {
+    /// Where the bands come from.
+    pub source: BandSource,
+    /// Whether the spectrum is integrated over each band; else its value at the centre counts.
+    pub integrate: bool,
+    /// Relative tolerance of that integral.
+    pub tolerance: f64,
+}
+
+/// Where the bands come from. File paths are absolute.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BandSource {
+    /// Nothing is said: the one band of a camera that has one, else 715 to 1250 cm⁻¹ in steps of 1 cm⁻¹.
+    Unsaid,
+    /// Band centres `start`, `start + step`, … up to and including `stop`; a band is one `step` wide.
+    /// All three in wavenumber or all three in wavelength; `0 < start < stop`, `0 < step ≤ stop − start`.
+    Grid {
+        /// First band centre.
+        start: Spectral,
+        /// End of the grid, itself a centre if a whole number of steps away.
+        stop: Spectral,
+        /// Distance of the centres.
+        step: Spectral,
+    },
+    /// CSV with one column of transmission per filter.
+    Filters(PathBuf),
+    /// CSV with a row per band: its centre and optionally its width.
+    Rows(PathBuf),
+    /// Bands from edge to edge, both of one kind, lower first.
+    Ranges(Vec<[Spectral; 2]>),
+}
+
+impl Default for BandsSpec {
+    fn default() -> Self {
+        Self { source: BandSource::Unsaid, integrate: false, tolerance: 1e-9 }
+    }
+}
+
+impl BandSource {
+    /// The grid of the paper: 715 to 1250 cm⁻¹ in steps of 1 cm⁻¹.
+    pub fn papers_grid() -> Self {
+        let [start, stop, step] = PAPERS_GRID.map(Spectral::Wavenumber);
+        Self::Grid { start, stop, step }
+    }
+}
+
+impl BandSource {
+    /// Whether bands are written by their wavelengths, of which the first may be meant as that of the cube.
+    pub fn is_in_wavelength(&self) -> bool {
+        let wavelength = |value: &Spectral| matches!(value, Spectral::Wavelength(_));
+        match self {
+            Self::Grid { start, .. } => wavelength(start),
+            Self::Ranges(ranges) => ranges.first().is_some_and(|[low, _]| wavelength(low)),
+            Self::Unsaid | Self::Filters(_) | Self::Rows(_) => false,
+        }
+    }
+}
+
+impl BandsSpec {
+    pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
+        let section = entry.section()?;
+        for grid in ["start", "stop", "step"] {
+            section.at_most_one(&[grid, "filters", "rows", "ranges"])?;
+        }
+        let default = Self::default();
+        let source = match section.at_most_one(&["filters", "rows", "ranges"])? {
+            Some("filters") => section.read("filters", file)?.map(BandSource::Filters),
+            Some("rows") => section.read("rows", file)?.map(BandSource::Rows),
+            Some(_) => section.read("ranges", ranges)?.map(BandSource::Ranges),
+            None => Some(grid(&section)?),
+        };
+        Ok(Self {
+            source: source.unwrap_or(default.source),
+            integrate: section.read("integrate", Entry::boolean)?.unwrap_or(default.integrate),
+            tolerance: section.number("tolerance")?.unwrap_or(default.tolerance),
+        })
+    }
+
+    pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
+        let entries = Entries::default();
+        let entries = match &self.source {
+            BandSource::Unsaid => entries,
+            BandSource::Grid { start, stop, step } => {
+                let put = |entries: Entries, key, end: &Spectral| {
+                    entries.put_written(key, end.dimension(), end.format())
+                };
+                put(put(put(entries, "start", start), "stop", stop), "step", step)
+            }
+            BandSource::Filters(path) => entries.put("filters", paths.file(path)),
+            BandSource::Rows(path) => entries.put("rows", paths.file(path)),
+            BandSource::Ranges(ranges) => {
+                let pairs: Vec<Vec<String>> =
+                    ranges.iter().map(|range| range.map(|end| end.format()).to_vec()).collect();
+                let dimension = ranges.first().map_or(Dimension::Wavenumber, |[low, _]| low.dimension());
+                entries.put_written("ranges", dimension, pairs)
+            }
+        };
+        entries.put("integrate", self.integrate).put("tolerance", self.tolerance)
+    }
+}
+
+/// An even grid, what is silent of it taken from the paper's.
+fn grid(section: &Section<'_>) -> Result<BandSource> {
+    if ["start", "stop", "step"].iter().all(|key| section.get(key).is_none()) {
+        return Ok(BandSource::Unsaid);
+    }
+    let read = |key: &'static str, silent: f64| {
+        let written = section.read(key, spectral)?;
+        Ok((key, written.is_some(), written.unwrap_or(Spectral::Wavenumber(silent))))
+    };
+    let [start, stop, step] = PAPERS_GRID;
+    let keys = [read("start", start)?, read("stop", stop)?, read("step", step)?];
+    let is_wavenumber = |value: Spectral| matches!(value, Spectral::Wavenumber(_));
+    if keys.iter().any(|(_, _, value)| !is_wavenumber(*value))
+        && let Some((key, written, value)) = keys.iter().find(|(_, _, value)| is_wavenumber(*value))
+    {
+        let silent = if *written { "" } else { "silent, which means " };
+        let found = format!("{key} is {silent}{}, but another of the three is a wavelength", value.format());
+        let instead = "write start, stop and step all in cm^-1, or all in um or nm";
+        return Err(section.fail(key, Error::malformed(found, instead)));
+    }
+    let [start, stop, step] = keys.map(|(_, _, value)| value);
+    let (low, high, width) = (start.number(), stop.number(), step.number());
+    let refuse =
+        |key: &str, found: String, instead: &str| Err(section.fail(key, Error::malformed(found, instead)));
+    if high <= low {
+        let found = format!("stop ({}) is not above start ({})", stop.format(), start.format());
+        return refuse("stop", found, "write the lower end as start");
+    }
+    if width > high - low {
+        let found = format!("the step ({}) is larger than the range from start to stop", step.format());
+        return refuse("step", found, "lower it, or write a single band as ranges = [[\"8 um\", \"14 um\"]]");
+    }
+    if (high - low) / width + 1.0 > MOST_BANDS {
+        let found = format!("a step of {} makes more than a million bands", step.format());
+        return refuse("step", found, "raise it");
+    }
+    Ok(BandSource::Grid { start, stop, step })
+}
+
+fn ranges(entry: &Entry<'_>) -> Result<Vec<[Spectral; 2]>> {
+    let example = "ranges = [[\"715 cm^-1\", \"800 cm^-1\"]]";
+    let items = entry.items(example)?;
+    if items.is_empty() {
+        return Err(entry.fail(Error::malformed("the list is empty", format!("write {example}"))));
+    }
+    items.iter().map(range).collect()
+}
+
+fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
+    let example = "[\"715 cm^-1\", \"800 cm^-1\"]";
+    let [low, high] = entry.pair(example)?;
+    let (low, high) = (spectral(&low)?, spectral(&high)?);
+    if !same_axis(low, high) {
+        let found = format!("the range goes from {} to {}", low.format(), high.format());
+        let instead = "write both ends in cm^-1, or both in um or nm";
+        return Err(entry.fail(Error::malformed(found, instead)));
+    }
+    entry.wide_range(example, spectral, Spectral::number)
+}
+
+/// A position or step above 0.
+fn spectral(entry: &Entry<'_>) -> Result<Spectral> {
+    let text = entry.quantity_text()?;
+    let value = Spectral::parse(&text).map_err(|error| entry.fail(error))?;
+    if value.number().is_finite() && value.number() > 0.0 {
+        return Ok(value);
+    }
+    Err(entry.fail(Error::malformed(format!("`{}` is out of range", text.trim()), "it must be above 0")))
+}
+
+fn same_axis(a: Spectral, b: Spectral) -> bool {
+    matches!(a, Spectral::Wavenumber(_)) == matches!(b, Spectral::Wavenumber(_))
+}

@@ -1,0 +1,64 @@
+//! Cubes as they were measured (`[cube]` of a calibration): one, or several frames of the same scene.
+
+use super::super::entries::Entries;
+use super::super::paths::{Paths, axes, file, is_cube, variable};
+use super::super::section::Entry;
+use hadar::cube::Axes;
+use hadar::error::Result;
+use std::path::{Path, PathBuf};
+use toml::Value;
+
+/// Cubes in files. Paths are absolute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frames {
+    /// Samples `[row][column][band]` of each.
+    pub data: Vec<PathBuf>,
+    /// Name of the array in files of several.
+    pub variable: Option<String>,
+    /// Which of their dimensions is which.
+    pub axes: Option<Axes>,
+}
+
+impl Frames {
+    /// Whether a path names a cube and no scenario.
+    #[must_use]
+    pub fn is_bare(path: &Path) -> bool {
+        is_cube(path)
+    }
+
+    /// Bare cubes.
+    #[must_use]
+    pub fn bare(paths: &[PathBuf]) -> Self {
+        let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        Self { data: paths.iter().map(absolute).collect(), variable: None, axes: None }
+    }
+
+    /// `data`, one or a list, and `variable`.
+    pub(crate) fn read(entry: &Entry<'_>) -> Result<Self> {
+        let section = entry.section()?;
+        let data = section.require("data")?;
+        Ok(Self {
+            data: match data.is_list() {
+                true => data
+                    .items("data = [\"frame_1.npy\", \"frame_2.npy\"]")?
+                    .iter()
+                    .map(file)
+                    .collect::<Result<_>>()?,
+                false => vec![file(&data)?],
+            },
+            variable: variable(&section)?,
+            axes: axes(&section)?,
+        })
+    }
+
+    pub(crate) fn written(&self, paths: Paths<'_>) -> Entries {
+        let data = match self.data.as_slice() {
+            [one] => Value::from(paths.file(one)),
+            several => Value::from(several.iter().map(|path| paths.file(path)).collect::<Vec<_>>()),
+        };
+        Entries::default()
+            .put("data", data)
+            .put_if("variable", self.variable.clone())
+            .put_if("axes", self.axes.map(|axes| axes.to_string()))
+    }
+}

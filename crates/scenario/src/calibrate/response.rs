@@ -1,0 +1,197 @@
+//! A camera behind a filter wheel before blackbodies (`hadar calibrate response`): filters, the response that is sought, the blackbodies,
+//! the noise, and a scene with its reference.
+
+use super::super::Source;
+use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::keys::files;
+use super::super::kind::Kind;
+use super::super::paths::{Paths, file};
+use super::super::read::document;
+use super::super::section::{Entry, Section};
+use super::super::written::Written;
+use super::blackbodies::{BlackbodySpec, CubeFile, blackbodies, noise};
+use hadar::calibration::determined::CurveSmoothness;
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+use serde::{Serialize, Serializer};
+use std::path::{Path, PathBuf};
+
+const MINIMUM: &str = "write [response] with filters = \"filters.csv\", [[blackbody]] twice with temperature = \"35 degC\" and data = \"35.npy\", and \
+                       [noise] with sample = 1.5";
+/// The paper's values.
+const START_CM1: f64 = 595.0;
+const STOP_CM1: f64 = 1340.0;
+const VALUES: u32 = 30;
+/// A scale that is free, a shape that is not.
+const KNOWN: CurveSmoothness = CurveSmoothness { scale: 0.5, shape: 0.15, correlation_cm1: 100.0 };
+/// Rows and columns about the centre on each side of it.
+const HALF: u32 = 10;
+
+/// Everything that the file says.
+#[derive(Debug, Clone)]
+pub struct ResponseScenario {
+    /// What it is about, for headings.
+    pub title: Option<String>,
+    /// What is sought (`[response]`).
+    pub response: ResponseSpec,
+    /// The blackbodies (`[[blackbody]]`).
+    pub blackbodies: Vec<BlackbodySpec>,
+    /// Deviation of one sample, in the unit of the cubes (`[noise] sample`).
+    pub noise: f64,
+    /// The cube to be calibrated (`[scene]`).
+    pub scene: Option<SceneSpec>,
+    /// Where it was read from.
+    pub source: Source,
+}
+
+/// The response that is sought (`[response]`). Paths are absolute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponseSpec {
+    /// Transmittances, a column a filter, in the order of the cubes' bands.
+    pub filters: PathBuf,
+    /// First and last wavenumber of its values, cm⁻¹.
+    pub range_cm1: [f64; 2],
+    /// How many values.
+    pub values: usize,
+    /// The typical curve, in any unit; level where none is given.
+    pub typical: Option<PathBuf>,
+    /// What is known beforehand.
+    pub known: CurveSmoothness,
+    /// Rows and columns about the centre, on each side, whose mean is a reading.
+    pub centre_half: usize,
+}
+
+/// A scene, and the reference that is taken off (`[scene]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneSpec {
+    /// The cube.
+    pub data: CubeFile,
+    /// The cube of the reference.
+    pub reference: PathBuf,
+    /// Temperature of the reference, K.
+    pub reference_k: f64,
+    /// Deviation of that temperature, K.
+    pub reference_error_k: f64,
+}
+
+impl ResponseScenario {
+    /// Reads the file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_written(&Written::from_file(path)?)
+    }
+
+    /// Reads it from text; `path` as in [`crate::Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`ResponseScenario::from_file`], except those of the file itself.
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, &files::RESPONSE)?;
+        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
+        let scenario = Self {
+            title: root.read("title", |entry| Ok(entry.text("\"Response of the camera\"")?.to_owned()))?,
+            response: root.read("response", response)?.ok_or_else(|| missing("response"))?,
+            blackbodies: blackbodies(&root)?,
+            noise: noise(&root)?,
+            scene: root.read("scene", scene)?,
+            source: Source::default(),
+        };
+        Ok(Self { source, ..scenario })
+    }
+
+    /// The file again, with paths below `directory` written relative to it.
+    #[must_use]
+    pub fn to_toml_beside(&self, directory: &Path) -> String {
+        let absolute = std::path::absolute(directory).ok();
+        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
+    }
+
+    fn document(&self, paths: Paths<'_>) -> Document {
+        let mut document = Vec::new();
+        if let Some(title) = &self.title {
+            document.push(("title", Part::Value(title.as_str().into())));
+        }
+        let (spec, nu) = (&self.response, Dimension::Wavenumber);
+        let written = Entries::default()
+            .put("filters", paths.file(&spec.filters))
+            .put_quantity("start", nu, Some(spec.range_cm1[0]))
+            .put_quantity("stop", nu, Some(spec.range_cm1[1]))
+            .put("values", spec.values as i64)
+            .put_if("typical", spec.typical.as_ref().map(|path| paths.file(path)))
+            .put("scale_error", spec.known.scale)
+            .put("shape_error", spec.known.shape)
+            .put_quantity("correlation", nu, Some(spec.known.correlation_cm1))
+            .put("centre_half", spec.centre_half as i64);
+        document.push(("response", Part::Table(written)));
+        document.push((
+            "blackbody",
+            Part::Tables(self.blackbodies.iter().map(|spec| spec.written(paths)).collect()),
+        ));
+        document.push(("noise", Part::Table(Entries::default().put("sample", self.noise))));
+        if let Some(scene) = &self.scene {
+            let written = scene.data.written(paths).put("reference", paths.file(&scene.reference));
+            let kelvin = Some(scene.reference_k);
+            let written = written.put_quantity("reference_temperature", Dimension::Temperature, kelvin);
+            let error = Some(scene.reference_error_k);
+            let written =
+                written.put_quantity("reference_uncertainty", Dimension::TemperatureDifference, error);
+            document.push(("scene", Part::Table(written)));
+        }
+        document
+    }
+}
+
+fn response(entry: &Entry<'_>) -> Result<ResponseSpec> {
+    let section = entry.section()?;
+    let nu = |key: &str| section.quantity(key);
+    let range_cm1 = [nu("start")?.unwrap_or(START_CM1), nu("stop")?.unwrap_or(STOP_CM1)];
+    if range_cm1[0] >= range_cm1[1] {
+        let found = format!("values from {} to {} cm^-1", range_cm1[0], range_cm1[1]);
+        let error = Error::malformed(found, "write start = \"595 cm^-1\" and stop = \"1340 cm^-1\"");
+        return Err(section.fail("stop", error));
+    }
+    let values = section.read("values", |entry| entry.count("30"))?.unwrap_or(VALUES);
+    let number = |key: &str, silent: f64| -> Result<f64> { Ok(section.number(key)?.unwrap_or(silent)) };
+    Ok(ResponseSpec {
+        filters: file(&section.require("filters")?)?,
+        range_cm1,
+        values: values as usize,
+        typical: section.read("typical", file)?,
+        known: CurveSmoothness {
+            scale: number("scale_error", KNOWN.scale)?,
+            shape: number("shape_error", KNOWN.shape)?,
+            correlation_cm1: nu("correlation")?.unwrap_or(KNOWN.correlation_cm1),
+        },
+        centre_half: section.read("centre_half", |entry| entry.count("10"))?.unwrap_or(HALF) as usize,
+    })
+}
+
+fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
+    let section = entry.section()?;
+    let reference_k = section.require("reference_temperature")?;
+    Ok(SceneSpec {
+        data: CubeFile::read(&section)?,
+        reference: file(&section.require("reference")?)?,
+        reference_k: reference_k.quantity()?,
+        reference_error_k: section.quantity("reference_uncertainty")?.unwrap_or(0.0),
+    })
+}
+
+/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
+impl Serialize for ResponseScenario {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        entries(self.document(Paths { beside: None }), serializer)
+    }
+}

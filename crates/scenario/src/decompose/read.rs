@@ -1,0 +1,270 @@
+//! Reads a decomposition scenario: every key checked, every error one line with file, line and key.
+
+use super::super::keys::files;
+use super::super::kind::Kind;
+use super::super::paths::{axes, file, is_path, material, variable};
+use super::super::read::document;
+use super::super::scene_folder::{self, LEFT, cube_file};
+use super::super::section::{Entry, Section};
+use super::super::written::Written;
+use super::super::{BandsSpec, Source, camera, class};
+use super::category::{Told, categories, segmentation};
+use super::image::{spatial, vision};
+use super::{
+    CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+};
+use hadar::error::{Error, Result};
+use std::path::Path;
+
+/// Maps of the truth in files of their own.
+const MAPS: [&str; 5] = ["material", "material_list", "temperature", "temperature_unit", "lighting"];
+const MINIMUM: &str =
+    "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
+/// Temperatures of a scene where nothing is said, K.
+const TEMPERATURES_K: [f64; 2] = [200.0, 400.0];
+const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
+
+impl DecomposeScenario {
+    /// Reads a decomposition scenario. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key, as [`crate::Scenario::from_file`].
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_written(&Written::from_file(path)?)
+    }
+
+    /// Reads a decomposition scenario from text; `path` as in [`crate::Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`DecomposeScenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_scenario::DecomposeScenario;
+    /// let text = r#"
+    ///     [cube]
+    ///     data = "counts.npy"
+    ///     counts_per_photon_radiance = 2e-14
+    ///     [bands]
+    ///     start = "720 cm^-1"
+    ///     stop = "1250 cm^-1"
+    ///     step = "10 cm^-1"
+    ///     [[environment]]
+    ///     temperature = "-10 degC"
+    ///     [library]
+    ///     materials = ["skin", "aluminium"]
+    /// "#;
+    /// let scenario = DecomposeScenario::from_toml(text, None)?;
+    /// assert_eq!(scenario.unknown.temperature_k, [200.0, 400.0]);
+    /// let error = DecomposeScenario::from_toml(&text.replace("2e-14", "-1"), None).unwrap_err();
+    /// assert!(error.to_string().starts_with("line 4: cube.counts_per_photon_radiance: "));
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Decompose, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, &files::DECOMPOSE)?;
+        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
+        let camera = root.read("camera", camera::read)?;
+        let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
+        let unknown = root.read("unknown", unknown)?.unwrap_or_default();
+        let cube = heat_cube(&cube, camera.is_some())?;
+        let data = cube.data.clone();
+        let scenario = Self {
+            title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
+            cube,
+            bands: root.read("bands", BandsSpec::read)?,
+            camera,
+            environment: root
+                .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
+                .unwrap_or_default(),
+            classes: class::read(&root)?,
+            library: root.read("library", library)?.ok_or_else(|| missing("library"))?,
+            unknown,
+            spatial: root.read("spatial", spatial)?,
+            vision: root.read("vision", vision)?.unwrap_or_default(),
+            categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
+            segmentation: root.read("segmentation", segmentation)?.unwrap_or_default(),
+            truth: root.read("truth", |entry| truth(entry, &data))?,
+            source: Source::default(),
+        };
+        if scenario.categories.is_empty()
+            && let Some(key) = match &scenario.truth {
+                _ if root.get("segmentation").is_some() => Some("segmentation"),
+                Some(truth) if truth.category.is_some() => Some("truth.category"),
+                _ => None,
+            }
+        {
+            let found = "no category to find";
+            let instead =
+                "write [[category]] with name = \"car\" and materials = [\"pmma\"], or leave it out";
+            return Err(root.fail(key, Error::malformed(found, instead)));
+        }
+        Ok(Self { source, ..scenario })
+    }
+}
+
+impl Default for PixelUnknown {
+    fn default() -> Self {
+        Self { temperature_k: TEMPERATURES_K, lighting_total: None, gain: false }
+    }
+}
+
+pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
+    let section = entry.section()?;
+    section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
+    let counts = section.number("counts_per_photon_radiance")?;
+    let radiance = section.choice("unit", &[(RADIANCE, ())])?.is_some();
+    let noise = section.read("noise", |entry| match entry.text("\"noise.csv\"") {
+        Ok(text) if is_path(text) => file(entry).map(CubeNoise::File),
+        _ => entry.number("1e-4").map(CubeNoise::Uniform),
+    })?;
+    let unit = match (counts, radiance, camera) {
+        (Some(_), _, true) | (_, true, true) => {
+            let found = "a [camera] and a unit say twice what a sample is";
+            return Err(entry.fail(Error::malformed(found, "leave one of them out")));
+        }
+        (Some(counts), ..) => CubeUnit::CountsPerPhotonRadiance(counts),
+        (None, true, _) if noise.is_none() => {
+            let found = "radiances alone do not say how they scatter";
+            let instead = "write noise = 1e-4, the deviation of a sample in that unit";
+            return Err(section.fail("unit", Error::malformed(found, instead)));
+        }
+        (None, true, _) => CubeUnit::Radiance,
+        (None, false, true) => CubeUnit::Camera,
+        (None, false, false) => {
+            let found = "nothing says what a sample is";
+            let instead = format!(
+                "write counts_per_photon_radiance = 2.2e-14, unit = \"{RADIANCE}\" with a noise, or a [camera]"
+            );
+            return Err(entry.fail(Error::malformed(found, instead)));
+        }
+    };
+    Ok(HeatCube {
+        data: cube_file(&section.require("data")?, LEFT)?,
+        variable: variable(&section)?,
+        axes: axes(&section)?,
+        unit,
+        noise,
+        bad_bands: section
+            .read("bad_bands", |entry| {
+                let items = entry.items("bad_bands = [0, 53]")?;
+                items.iter().map(|item| place(item, "53")).collect()
+            })?
+            .unwrap_or_default(),
+    })
+}
+
+/// A place in a list that is counted from 0.
+pub(crate) fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
+    entry.number(example).map(|place| place as usize)
+}
+
+pub(crate) fn light(entry: &Entry<'_>) -> Result<LightSource> {
+    let section = entry.section()?;
+    let kinds = ["spectrum", "rows", "temperature"];
+    let instead = "write temperature = \"-10 degC\", spectrum = \"light.csv\" with column = \"sky\", or rows = [0, 540]";
+    match section.at_most_one(&kinds)? {
+        Some("spectrum") => Ok(LightSource::Spectrum {
+            path: file(&section.require("spectrum")?)?,
+            column: section.require("column")?.text("\"sky\"")?.trim().to_owned(),
+        }),
+        Some("rows") => {
+            let [first, last] = section.require("rows")?.pair("[0, 540]")?;
+            let [first, last] = [place(&first, "0")?, place(&last, "540")?];
+            if first < last {
+                return Ok(LightSource::Rows([first, last]));
+            }
+            let found = format!("no row from {first} up to {last}");
+            Err(section
+                .fail("rows", Error::malformed(found, "write the first row, and the one after the last")))
+        }
+        Some(_) => Ok(LightSource::Surface {
+            material: section.read("material", material)?,
+            temperature_k: section.require("temperature")?.quantity()?,
+        }),
+        None => Err(entry.fail(Error::malformed("nothing says what these surroundings send", instead))),
+    }
+}
+
+fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
+    let section = entry.section()?;
+    let spec = LibrarySpec {
+        path: section.read("path", file)?,
+        materials: section.read("materials", |entry| {
+            entry.items("materials = [\"skin\", \"aluminium\"]")?.iter().map(material).collect()
+        })?,
+        prior: section.read("prior", |entry| {
+            entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0")).collect()
+        })?,
+        emissivity_error: section.number("emissivity_error")?,
+        emissivity_correlation_cm1: section.quantity("emissivity_correlation")?,
+    };
+    if spec.path.is_none() && spec.materials.is_none() {
+        let instead = "write path = \"library.csv\" or materials = [\"skin\", \"aluminium\"]";
+        return Err(entry.fail(Error::malformed("no materials", instead)));
+    }
+    if spec.emissivity_correlation_cm1.is_some() && spec.emissivity_error.is_none() {
+        let found = Error::malformed("a correlation of no error", "write emissivity_error = 0.01 too");
+        return Err(section.fail("emissivity_correlation", found));
+    }
+    Ok(spec)
+}
+
+pub(crate) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
+    let section = entry.section()?;
+    let temperature = |end: &Entry<'_>| end.quantity();
+    let default = PixelUnknown::default();
+    Ok(PixelUnknown {
+        temperature_k: section
+            .read("temperature", |entry| {
+                let ends = entry.range("[\"250 K\", \"340 K\"]", temperature, |k| k)?;
+                if ends[0] < ends[1] {
+                    return Ok(ends);
+                }
+                Err(entry.fail(Error::malformed("a range of one temperature", "write two that differ")))
+            })?
+            .unwrap_or(default.temperature_k),
+        lighting_total: section.number("lighting_total")?,
+        gain: section.read("gain", Entry::boolean)?.unwrap_or(default.gain),
+    })
+}
+
+/// The truth of a cube.
+pub(crate) fn truth(entry: &Entry<'_>, cube: &Path) -> Result<TruthSpec> {
+    let section = entry.section()?;
+    if let Some(scene) = section.get("scene") {
+        for key in MAPS {
+            section.at_most_one(&["scene", key])?;
+        }
+        let category = section.read("category", file)?;
+        return Ok(TruthSpec { category, ..scene_folder::truth(&scene, cube)? });
+    }
+    for (key, of) in [("material_list", "material"), ("temperature_unit", "temperature")] {
+        if section.get(key).is_some() && section.get(of).is_none() {
+            let found =
+                Error::malformed(format!("there is no {of} that it is said of"), format!("write {of} too"));
+            return Err(section.fail(key, found));
+        }
+    }
+    Ok(TruthSpec {
+        material: section.read("material", file)?,
+        material_list: section.read("material_list", file)?,
+        temperature: section.read("temperature", file)?,
+        celsius: section.choice("temperature_unit", &[("K", false), ("degC", true)])?.unwrap_or(false),
+        category: section.read("category", file)?,
+        lighting: section
+            .read("lighting", |entry| match entry.is_list() {
+                true => entry.items("[\"v1.npy\"]")?.iter().map(file).collect(),
+                false => Ok(vec![file(entry)?]),
+            })?
+            .unwrap_or_default(),
+    })
+}

@@ -1,0 +1,459 @@
+//! Tables of a heat cube that is taken apart: `[cube]`, its surroundings, library, truth, picture, categories.
+
+use super::key::Silent::{Is, Means, Refused};
+use super::key::{
+    A_SHARE, KELVIN, KELVIN_APART, Key, MATERIALS, More, POSITIVE, POSITIVE_SHARE, Table, Value, WAVENUMBER,
+    WHOLE,
+};
+use super::task::LIGHTING_TOTAL;
+use hadar::allowed::Allowed;
+
+pub(super) const VARIABLE: Key = Key::row(
+    "variable",
+    Value::Text,
+    Means("the only array that could be it"),
+    "\"S\"",
+    "Name of the array in a file of several.",
+    "which samples are read",
+);
+pub(super) const AXES: Key = Key::row(
+    "axes",
+    Value::Text,
+    Means("rows,columns,bands, or what the file says"),
+    "\"bands,rows,columns\"",
+    "Which dimension of the array is which.",
+    "which samples are read",
+);
+
+const CUBE_KEYS: &[Key] = &[
+    Key::row(
+        "data",
+        Value::File,
+        Refused,
+        "\"counts.npy\"",
+        "Samples [row][column][band]; NPY, NPZ, ENVI, MATLAB, HDF5 or NetCDF; or the folder of a scene of the HADAR database.",
+        "S of every pixel (S44)",
+    ),
+    VARIABLE,
+    AXES,
+    Key::row(
+        "counts_per_photon_radiance",
+        POSITIVE,
+        Means("unit or [camera] says what a sample is"),
+        "2.2e-14",
+        "Counts for each photon s^-1 m^-2 sr^-1 per cm^-1 of a band's mean radiance.",
+        "scale of the counts, and so their shot noise",
+    ),
+    Key::row(
+        "unit",
+        Value::Choice(&["W m^-2 sr^-1 per cm^-1"]),
+        Means("counts"),
+        "\"W m^-2 sr^-1 per cm^-1\"",
+        "That samples are radiances; a noise must stand beside it.",
+        "scale of the samples",
+    ),
+    Key::row(
+        "noise",
+        Value::Either(&[POSITIVE, Value::File]),
+        Means("shot noise, and the camera's"),
+        "1e-4",
+        "Deviation of the electronic noise of a sample, of radiances that of all noise, in the unit of the cube; or a file with a row for each band.",
+        "weights of the samples",
+    ),
+    Key::row(
+        "bad_bands",
+        Value::List(&WHOLE),
+        Is("[]"),
+        "[0, 53]",
+        "Bands that are left out, counted from 0.",
+        "which samples are used",
+    ),
+];
+/// `[cube]`.
+pub(crate) static CUBE: Table = Table::of("A heat cube in a file.", &[CUBE_KEYS]);
+
+const LIGHT_KEYS: &[Key] = &[
+    Key::row(
+        "spectrum",
+        Value::File,
+        Means("temperature or rows"),
+        "\"light.csv\"",
+        "A table of photon radiances, photons s^-1 m^-2 sr^-1 per cm^-1.",
+        "S_k in X = sum of V_k S_k (S2)",
+    ),
+    Key::row(
+        "column",
+        Value::Text,
+        Means("must be there beside spectrum"),
+        "\"sky\"",
+        "The column of that table.",
+        "S_k in X = sum of V_k S_k (S2)",
+    ),
+    Key::row(
+        "material",
+        Value::Material,
+        Means("a blackbody"),
+        "\"sky-us-standard\"",
+        "What it is made of.",
+        "S_k in X = sum of V_k S_k (S2)",
+    ),
+    Key::row(
+        "temperature",
+        KELVIN,
+        Means("spectrum or rows"),
+        "\"-10 degC\"",
+        "Temperature of a surface.",
+        "S_k in X = sum of V_k S_k (S2)",
+    ),
+    Key::row(
+        "rows",
+        Value::Pair(&WHOLE),
+        Means("spectrum or temperature"),
+        "[0, 540]",
+        "The mean of rows of the cube itself, from the first up to the second, counted from 0.",
+        "S_k in X = sum of V_k S_k (S2)",
+    ),
+];
+/// `[[environment]]` of a cube.
+pub(crate) static LIGHT: Table =
+    Table::of("Spectrum of one of the surroundings that light the pixels.", &[LIGHT_KEYS]);
+
+const LIBRARY_KEYS: &[Key] = &[
+    Key::row(
+        "path",
+        Value::File,
+        Means("the program's library"),
+        "\"library.csv\"",
+        "A table of emissivities, a column a material.",
+        "emissivities that a pixel may have (S44)",
+    ),
+    Key::row(
+        "materials",
+        MATERIALS,
+        Means("all of the table"),
+        "[\"skin\", \"aluminium\"]",
+        "Materials or classes by name.",
+        "emissivities that a pixel may have (S44)",
+    ),
+    Key::row(
+        "prior",
+        Value::List(&POSITIVE),
+        Means("equal"),
+        "[1.0, 0.2]",
+        "Prior probability of each of them, in any scale.",
+        "posterior of the materials",
+    ),
+    Key::row(
+        "emissivity_error",
+        A_SHARE,
+        Means("exact"),
+        "0.01",
+        "Root mean square error of the emissivities.",
+        "covariance of the residuals",
+    ),
+    Key::row(
+        "emissivity_correlation",
+        WAVENUMBER,
+        Means("no correlation"),
+        "\"50 cm^-1\"",
+        "Difference of wavenumbers over which these errors lose their correlation.",
+        "covariance of the residuals",
+    ),
+];
+/// `[library]`.
+pub(crate) static LIBRARY: Table = Table::of("The materials that a pixel may be.", &[LIBRARY_KEYS]);
+
+const UNKNOWN_KEYS: &[Key] = &[
+    Key::row(
+        "temperature",
+        Value::Pair(&KELVIN),
+        Is("[\"200 K\", \"400 K\"]"),
+        "[\"250 K\", \"340 K\"]",
+        "Temperatures that a pixel may have.",
+        "range of the fit (S44)",
+    ),
+    LIGHTING_TOTAL,
+    Key::row(
+        "gain",
+        Value::Flag,
+        Is("false"),
+        "true",
+        "Whether the scale of the counts is unknown.",
+        "one more unknown of the fit",
+    ),
+];
+/// `[unknown]` of a cube.
+pub(crate) static UNKNOWN: Table =
+    Table::of("What is unknown of every pixel, besides its material and lighting.", &[UNKNOWN_KEYS]);
+
+const WEIGHT: Allowed =
+    Allowed { holds: |value| value > 0.0 && value <= 10.0, expected: "above 0, at most 10" };
+const SPATIAL_KEYS: &[Key] = &[
+    Key::row(
+        "prior",
+        Value::Choice(&["potts", "tex-sgd"]),
+        Refused,
+        "\"potts\"",
+        "The prior: neighbours are of one material, or the paper's.",
+        "posterior of the map of materials",
+    ),
+    Key::row(
+        "weight",
+        Value::Number(WEIGHT),
+        Means("1.0 of potts, 0.1 of tex-sgd"),
+        "1.0",
+        "Its weight: log-odds of a neighbour of the same material, or the paper's p.",
+        "posterior of the map of materials",
+    ),
+    Key::row(
+        "temperature_step",
+        KELVIN_APART,
+        Means("temperatures of neighbours say nothing"),
+        "\"2 K\"",
+        "Difference of temperatures at which neighbours need not be of one material, of potts.",
+        "posterior of the map of materials",
+    ),
+];
+/// `[spatial]`.
+pub(crate) static SPATIAL: Table =
+    Table::of("What neighbours tell about a pixel; each is for itself where it is silent.", &[SPATIAL_KEYS]);
+
+const HUE: Allowed =
+    Allowed { holds: |value| (0.0..360.0).contains(&value), expected: "from 0, below 360 degrees" };
+const PLACE: Allowed = Allowed {
+    holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= 1e6,
+    expected: "a whole number from 0",
+};
+static HUES: Table = Table {
+    meaning: "Hues of materials by name, degrees.",
+    keys: &[],
+    more: More::Names(&Value::Number(HUE)),
+};
+const VISION_KEYS: &[Key] = &[
+    Key::row(
+        "hues",
+        Value::Table(&HUES),
+        Means("the program's"),
+        "{ skin = 210 }",
+        "Hues of materials by name, degrees.",
+        "colour of the picture",
+    ),
+    Key::row(
+        "temperature",
+        Value::Pair(&KELVIN),
+        Means("those of the picture"),
+        "[\"0 degC\", \"40 degC\"]",
+        "Temperatures of the palest and the fullest colour.",
+        "colour of the picture",
+    ),
+    Key::row(
+        "sky",
+        Value::Number(PLACE),
+        Means("no texture is distilled"),
+        "0",
+        "Which of the [[environment]] is the sky, counted from 0; its texture is distilled then.",
+        "texture of the sky's light alone (S45)",
+    ),
+    Key::row(
+        "brightness",
+        Value::Choice(&["texture", "distilled"]),
+        Is("\"texture\""),
+        "\"distilled\"",
+        "What is bright in the picture: all light that a surface sees, or that of the sky.",
+        "brightness of the picture",
+    ),
+];
+/// `[vision]`.
+pub(crate) static VISION: Table =
+    Table::of("How the picture of material, temperature and texture is coloured.", &[VISION_KEYS]);
+
+const CATEGORY_KEYS: &[Key] = &[
+    Key::row("name", Value::Text, Refused, "\"car\"", "Its name.", "names of the objects that are found"),
+    Key::row(
+        "materials",
+        Value::List(&Value::Text),
+        Refused,
+        "[\"pmma\"]",
+        "Materials or classes of the library that it is made of.",
+        "segmentation by materials (SIII E, Algorithm 4)",
+    ),
+    Key::row(
+        "enclosed",
+        Value::List(&Value::Text),
+        Means("none"),
+        "[\"soda-lime-glass\"]",
+        "Those of them that have other parts of it around them.",
+        "segmentation by materials (SIII E, Algorithm 4)",
+    ),
+];
+const LABELS: Key = Key::row(
+    "labels",
+    Value::List(&WHOLE),
+    Means("its own place among the categories"),
+    "[4, 5]",
+    "Numbers that stand for it in the map of the truth.",
+    "comparison with the truth",
+);
+const SURFACES: Key = Key::row(
+    "surfaces",
+    Value::List(&Value::Text),
+    Means("none"),
+    "[\"car\", \"tyres of car\"]",
+    "Surfaces of a scene to be rendered that it is.",
+    "map of the truth beside the rendered cube",
+);
+/// `[[category]]` of a cube.
+pub(crate) static CATEGORY: Table =
+    Table::of("A kind of thing, and what it is made of.", &[CATEGORY_KEYS, &[LABELS]]);
+/// `[[category]]` of a scene to be rendered.
+pub(crate) static CATEGORY_OF_SCENE: Table =
+    Table::of("A kind of thing, and what it is made of.", &[CATEGORY_KEYS, &[SURFACES]]);
+
+const PIXELS: Allowed = Allowed {
+    holds: |value| value >= 1.0 && value.fract() == 0.0 && value <= 1e9,
+    expected: "a whole number from 1",
+};
+const SEGMENTATION_KEYS: &[Key] = &[
+    Key::row(
+        "rule",
+        Value::Choice(&["regions", "raster"]),
+        Is("\"regions\""),
+        "\"raster\"",
+        "How pixels of a material of several categories are given to one.",
+        "segmentation by materials (SIII E, Algorithm 4)",
+    ),
+    Key::row(
+        "smoothing",
+        Value::Flag,
+        Is("true"),
+        "false",
+        "Whether each pixel takes the commonest category of 5 x 5 in the end.",
+        "segmentation by materials (SIII E, Algorithm 4)",
+    ),
+    Key::row(
+        "smallest_object",
+        Value::Number(PIXELS),
+        Is("25"),
+        "25",
+        "Pixels of the smallest object that is listed.",
+        "objects of the answer",
+    ),
+];
+/// `[segmentation]`.
+pub(crate) static SEGMENTATION: Table = Table::of("How pixels get a category.", &[SEGMENTATION_KEYS]);
+
+const TRUTH_KEYS: &[Key] = &[
+    Key::row(
+        "scene",
+        Value::File,
+        Means("the maps are named one by one"),
+        "\"Scene1\"",
+        "Folder of the scene of the HADAR database that the cube is of, with its maps in GroundTruth.",
+        "comparison with the truth",
+    ),
+    Key::row(
+        "material",
+        Value::File,
+        Means("not known"),
+        "\"material.npy\"",
+        "Place in the library of each pixel's material.",
+        "comparison with the truth",
+    ),
+    Key::row(
+        "material_list",
+        Value::File,
+        Means("numbers are places in the library, from 0"),
+        "\"materials.txt\"",
+        "What its numbers stand for, as in the HADAR database: the place, from 1, in this list of places in the library, from 1.",
+        "comparison with the truth",
+    ),
+    Key::row(
+        "temperature",
+        Value::File,
+        Means("not known"),
+        "\"temperature.npy\"",
+        "Temperature of each pixel.",
+        "comparison with the truth",
+    ),
+    Key::row(
+        "temperature_unit",
+        Value::Choice(&["K", "degC"]),
+        Is("\"K\""),
+        "\"degC\"",
+        "Unit of these temperatures.",
+        "comparison with the truth",
+    ),
+    Key::row(
+        "lighting",
+        Value::Either(&[Value::File, Value::List(&Value::File)]),
+        Means("not known"),
+        "[\"v1.npy\"]",
+        "Lighting factors [row][column][surroundings], or a map for each of the first surroundings.",
+        "comparison with the truth",
+    ),
+];
+const TRUTH_CATEGORY: Key = Key::row(
+    "category",
+    Value::File,
+    Means("not known"),
+    "\"category.npy\"",
+    "A number for each pixel's category.",
+    "comparison with the truth",
+);
+/// `[truth]` of a decomposition.
+pub(crate) static TRUTH: Table =
+    Table::of("What is there, where that is known.", &[TRUTH_KEYS, &[TRUTH_CATEGORY]]);
+/// `[truth]` of a library out of a cube.
+pub(crate) static TRUTH_OF_LIBRARY: Table = Table::of("What is there, where that is known.", &[TRUTH_KEYS]);
+
+const CLUSTERS_KEYS: &[Key] = &[
+    Key::row(
+        "count",
+        Value::Either(&[Value::Count([1, 200]), Value::Pair(&Value::Count([1, 200]))]),
+        Refused,
+        "6",
+        "How many groups of pixels of one material there are, or the fewest and the most.",
+        "grouping by relative emissivities (SV C)",
+    ),
+    Key::row(
+        "max_emissivity",
+        POSITIVE_SHARE,
+        Is("0.99"),
+        "0.99",
+        "The largest emissivity of a pixel, by which pixels are first compared (NEM).",
+        "first temperature of a pixel",
+    ),
+];
+/// `[clusters]`.
+pub(crate) static CLUSTERS: Table = Table::of("How pixels are grouped.", &[CLUSTERS_KEYS]);
+
+const EMISSIVITY_KEYS: &[Key] = &[
+    Key::row("mean", A_SHARE, Is("0.9"), "0.9", "Mean emissivity.", "prior of the emissivities"),
+    Key::row(
+        "magnitude_error",
+        POSITIVE_SHARE,
+        Is("0.3"),
+        "0.3",
+        "Deviation of an emissivity's mean over the bands.",
+        "prior of the emissivities",
+    ),
+    Key::row(
+        "shape_error",
+        POSITIVE_SHARE,
+        Is("0.1"),
+        "0.1",
+        "Deviation of an emissivity about its mean over the bands.",
+        "prior of the emissivities",
+    ),
+    Key::row(
+        "correlation",
+        WAVENUMBER,
+        Is("\"50 cm^-1\""),
+        "\"50 cm^-1\"",
+        "Difference of wavenumbers over which the shape loses its correlation.",
+        "prior of the emissivities, s^2 exp(-|dnu|/l)",
+    ),
+];
+/// `[emissivity]`.
+pub(crate) static EMISSIVITY: Table =
+    Table::of("What is known of emissivities beforehand.", &[EMISSIVITY_KEYS]);

@@ -1,0 +1,268 @@
+//! The scenario: what is there, what it must be told apart from, the surroundings, the camera.
+//!
+//! A scenario is a TOML file whose quantities are strings with their unit (`"37 degC"`). Here it is plain
+//! data in one unit per dimension, which the field's name carries (`temperature_k`, `pixel_m`); every value
+//! was checked when it was read, and nothing is looked up: materials, filters and presets are names or
+//! paths that other parts resolve, who get file and line of a key from [`Scenario::place`].
+//!
+//! Symbols: T temperature in K; V thermal lighting factor (share of the hemisphere above the target that an
+//! environment object fills; V ≥ 0, ΣV ≤ 1); d statistical distance, P = Φ(d) detection probability.
+
+use std::collections::BTreeMap;
+
+use hadar::error::Place;
+pub use hadar::fisher::Nuisance;
+pub use hadar::instrument::{CameraSpec, Efficiency, Readout};
+pub use hadar::material::{ClassSpec, Extrapolation, MaterialRef, Spread};
+
+pub mod air_ranging;
+pub mod atmosphere;
+pub mod bands;
+pub mod calibrate;
+mod camera;
+pub mod cameras;
+mod class;
+pub mod decompose;
+mod entries;
+pub mod envelope;
+pub mod examples;
+pub mod keys;
+mod kind;
+pub mod library;
+mod paths;
+pub mod range;
+mod read;
+pub mod render;
+pub mod rule;
+pub mod scene;
+mod scene_folder;
+mod section;
+pub mod sensitivity;
+mod setting;
+pub mod source;
+mod stated_camera;
+mod units;
+mod write;
+mod written;
+
+pub use air_ranging::{AirRangingScenario, RangingScenario};
+pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
+pub use bands::{BandSource, BandsSpec};
+pub use decompose::DecomposeScenario;
+pub use envelope::Envelope;
+pub use library::LibraryScenario;
+pub use range::RangeScenario;
+pub use read::command_for;
+pub use render::RenderScenario;
+pub use rule::Rule;
+pub use scene::SceneSpec;
+pub use section::{Date, day};
+pub use sensitivity::SensitivitySpec;
+pub use setting::Setting;
+pub use source::Source;
+pub use stated_camera::StatedCamera;
+pub use units::{Units, interval};
+pub use written::{STDIN, Written};
+
+/// Everything a scenario file says, defaults filled in.
+///
+/// Two scenarios are equal when they ask the same question: where they were read from does not count.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// What the scenario is about, for headings.
+    pub title: Option<String>,
+    /// Kinds of surfaces of several spectra each, by name.
+    pub classes: BTreeMap<String, ClassSpec>,
+    /// What is there.
+    pub target: Target,
+    /// What is behind the target.
+    pub background: Option<Background>,
+    /// The surroundings that light the target; may be empty (cold space).
+    pub environment: Vec<EnvironmentObject>,
+    /// What the target must be told apart from.
+    pub alternatives: Alternatives,
+    /// The air between target and camera; none, if it is not given.
+    pub atmosphere: Option<AtmosphereSpec>,
+    /// The spectral bands.
+    pub bands: BandsSpec,
+    /// What is not known beforehand.
+    pub unknown: Unknown,
+    /// The camera, if there is one.
+    pub camera: Option<CameraSpec>,
+    /// How reliably, and at which speed.
+    pub requirement: Requirement,
+    /// Scenes that the requirement must hold in, if not this one alone.
+    pub envelope: Option<Envelope>,
+    /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
+    pub sensitivity: Option<SensitivitySpec>,
+    /// Where it was read from.
+    pub source: Source,
+}
+
+impl Scenario {
+    /// Where `key` stands (`target.material`, `environment[0].material`, `alternatives.materials[1]`), to be
+    /// put on an error with [`hadar::Error::at`]. A key that was not written has the line of its table.
+    #[must_use]
+    pub fn place(&self, key: &str) -> Place {
+        self.source.place(key)
+    }
+
+    /// The units in which it was written.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        Units::of(&self.source)
+    }
+}
+
+impl PartialEq for Scenario {
+    fn eq(&self, other: &Self) -> bool {
+        self.title == other.title
+            && self.classes == other.classes
+            && self.target == other.target
+            && self.background == other.background
+            && self.environment == other.environment
+            && self.alternatives == other.alternatives
+            && self.atmosphere == other.atmosphere
+            && self.bands == other.bands
+            && self.unknown == other.unknown
+            && self.camera == other.camera
+            && self.requirement == other.requirement
+            && self.envelope == other.envelope
+            && self.sensitivity == other.sensitivity
+    }
+}
+
+/// The object that is there (`[target]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Its material.
+    pub material: MaterialRef,
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its distance from the camera, m; above 0.
+    pub distance_m: Option<f64>,
+    /// Side of the target as the camera sees it, m; above 0. One that fills the pixel if none.
+    pub size_m: Option<f64>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// What is behind a target that does not fill a pixel (`[background]`); lit as the target is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Background {
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its material; a blackbody if none.
+    pub material: Option<MaterialRef>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// One object of the surroundings (`[[environment]]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvironmentObject {
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its thermal lighting factor V, in [0, 1]; the sum over all objects is at most 1.
+    pub lighting: f64,
+    /// Its material; a blackbody if none.
+    pub material: Option<MaterialRef>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// What the target must be told apart from (`[alternatives]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Alternatives {
+    /// The materials; `None` means every other material of the library.
+    pub materials: Option<Vec<MaterialRef>>,
+    /// Range of the alternative's temperature, K, lower end first.
+    pub temperature_range_k: Option<[f64; 2]>,
+    /// Range of each lighting factor at the alternative, within [0, 1], lower end first.
+    pub lighting_range: Option<[f64; 2]>,
+    /// How the spectra of the alternatives are continued beyond their data.
+    pub extrapolate: Option<Extrapolation>,
+    /// Whether materials that do not cover the bands are left out, with a warning, instead of refused.
+    pub skip_uncovered: bool,
+}
+
+/// What is not known beforehand (`[unknown]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unknown {
+    /// The unknowns, each at most once, in the order they were written; may be empty.
+    pub nuisances: Vec<Nuisance>,
+    /// Standard deviation of the prior of an unknown (K, or dimensionless: see [`Nuisance`]); above 0.
+    pub priors: BTreeMap<Nuisance, f64>,
+    /// The known sum of all lighting factors, which makes one of them no unknown of its own (S48).
+    pub lighting_total: Option<f64>,
+}
+
+impl Default for Unknown {
+    fn default() -> Self {
+        Self {
+            nuisances: vec![Nuisance::Temperature, Nuisance::Lighting],
+            priors: BTreeMap::new(),
+            lighting_total: None,
+        }
+    }
+}
+
+/// How reliable the decision must be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reliability {
+    /// Detection probability P = Φ(d), between 0.5 (a coin) and 1, both excluded.
+    DetectionProbability(f64),
+    /// Statistical distance d; above 0. d = 1 is P = 0.8413.
+    Distance(f64),
+    /// Detection probability as above, and the probability that an alternative is taken for the target, between 0 and 0.5.
+    Rates {
+        /// Of finding what is there.
+        detection: f64,
+        /// Of finding what is not there.
+        false_alarm: f64,
+    },
+}
+
+/// Which distance a requirement is about; what they are is said with the distances themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DistanceKind {
+    /// To the nearest state of the alternative: the limit that no test exceeds.
+    #[default]
+    Nearest,
+    /// Its tangent at the target, with the unknowns of the scenario.
+    Local,
+    /// The same with the gain unknown too: the paper's S29.
+    LocalUnknownGain,
+}
+
+impl DistanceKind {
+    /// All of them, the default first.
+    pub const ALL: [Self; 3] = [Self::Nearest, Self::Local, Self::LocalUnknownGain];
+
+    /// The name in a scenario, e.g. `local-unknown-gain`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Local => "local",
+            Self::LocalUnknownGain => "local-unknown-gain",
+        }
+    }
+}
+
+/// What is demanded (`[requirement]`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Requirement {
+    /// How reliable the decision must be, in the terms it was written in.
+    pub reliability: Reliability,
+    /// The distance that must reach it.
+    pub by: DistanceKind,
+    /// Speed of the vehicle, m s⁻¹; above 0.
+    pub speed_m_s: Option<f64>,
+}
+
+impl Default for Requirement {
+    fn default() -> Self {
+        Self { reliability: Reliability::Distance(1.0), by: DistanceKind::Nearest, speed_m_s: None }
+    }
+}

@@ -1,0 +1,330 @@
+//! Reads a scenario: every key checked, every error one line with file, line and key.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use toml::de::DeTable;
+
+use super::envelope::LIGHTING_ROUNDING;
+use super::keys::files;
+use super::kind::Kind;
+use super::paths::material;
+use super::section::{Entry, Section, without_repetition};
+use super::source::LineStarts;
+use super::{
+    Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
+    Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
+    Written,
+};
+use super::{camera, class};
+use hadar::error::{Error, Result};
+use hadar::instrument::figures::BLANK;
+use hadar::units::decimal_comma;
+
+pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
+
+impl Scenario {
+    /// Reads a scenario file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key: the file itself (missing, a
+    /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
+    /// unit or outside its range, or values that contradict each other.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_written(&Written::from_file(path)?)
+    }
+
+    /// Reads a scenario from text. `path` is the file it is from, which messages name and relative paths
+    /// start from; without it they start from the current directory.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_scenario::{MaterialRef, Scenario};
+    /// let text = r#"
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    /// "#;
+    /// let scenario = Scenario::from_toml(text, None).unwrap();
+    /// assert_eq!(scenario.target.material, MaterialRef::Name("skin".to_owned()));
+    /// assert_eq!(scenario.target.temperature_k, 310.15);
+    ///
+    /// let error = Scenario::from_toml(&text.replace(" degC", ""), None).unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "line 4: target.temperature: `37` is a number without a unit; write \"37 degC\" or \"310.15 K\""
+    /// );
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads a scenario with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`], except those of the file itself.
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Scenario, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, &files::SCENARIO)?;
+        let mut scenario = of_root(&root, requirement)?;
+        scenario.camera = root.read("camera", camera::read)?;
+        scenario.source = source;
+        Ok(scenario)
+    }
+}
+
+/// The command that answers a file, if there is one for its kind.
+///
+/// # Errors
+/// What is no TOML.
+pub fn command_for(written: &Written) -> Result<Option<&'static str>> {
+    Ok(Kind::command_for(&parse(&written.text, &written.source())?))
+}
+
+/// The tables of a file that is of a kind and has its least in it, whose lines `source` then knows.
+pub(super) fn document<'t>(
+    written: &'t Written,
+    (kind, minimum): (Kind, &str),
+    source: &mut Source,
+) -> Result<DeTable<'t>> {
+    let text = written.text.as_str();
+    if text.trim().is_empty() {
+        return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
+    }
+    let mut document = parse(text, source)?;
+    source.note_lines(text, &document);
+    kind.check(&document, source)?;
+    for setting in &written.settings {
+        setting.put(&mut document)?;
+        source.note_setting(setting);
+    }
+    Ok(document)
+}
+
+/// All of a scenario but its camera and its source, what is demanded as `requirement` reads it.
+pub(super) fn of_root(
+    root: &Section<'_>,
+    requirement: impl FnOnce(&Entry<'_>) -> Result<Requirement>,
+) -> Result<Scenario> {
+    let target = match root.get("target") {
+        Some(entry) => target(&entry)?,
+        None => return Err(root.fail("target", Error::malformed("the table is missing", MINIMUM))),
+    };
+    let unknown = root.read("unknown", unknown)?.unwrap_or_default();
+    let environment = environment(root, unknown.lighting_total)?;
+    Ok(Scenario {
+        title: root.read("title", |entry| Ok(entry.text("\"Person or robot?\"")?.to_owned()))?,
+        classes: class::read(root)?,
+        target,
+        envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
+        environment,
+        background: root.read("background", background)?,
+        alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
+        bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
+        unknown,
+        camera: None,
+        requirement: root.read("requirement", requirement)?.unwrap_or_default(),
+        sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
+        source: Source::default(),
+    })
+}
+
+/// The table behind the text, or the first thing that is not TOML.
+fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+    let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
+        return Ok(document.into_inner());
+    };
+    let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
+    let line = LineStarts::of(text).line(offset(first));
+    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
+        let error =
+            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    // `f_number = 1,3`: a list of nothing, and a number.
+    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
+    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    let error = Error::malformed(
+        format!("this is not TOML: {message}"),
+        match message.as_str() {
+            "duplicate key" => "write each key and each [table] once",
+            _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
+        },
+    );
+    Err(error.on_line(line).at(source.place("")))
+}
+
+pub(super) fn target(entry: &Entry<'_>) -> Result<Target> {
+    let section = entry.section()?;
+    Ok(Target {
+        material: material(&section.require("material")?)?,
+        temperature_k: section.require("temperature")?.quantity()?,
+        distance_m: section.quantity("distance")?,
+        size_m: section.quantity("size")?,
+        extrapolate: extrapolation(&section)?,
+    })
+}
+
+fn background(entry: &Entry<'_>) -> Result<Background> {
+    let section = entry.section()?;
+    Ok(Background {
+        temperature_k: section.require("temperature")?.quantity()?,
+        material: section.read("material", material)?,
+        extrapolate: extrapolation(&section)?,
+    })
+}
+
+pub(super) fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<EnvironmentObject>> {
+    let example = "[[environment]], in double brackets, once for each object";
+    let items = root.read("environment", |entry| entry.items(example))?.unwrap_or_default();
+    if items.is_empty() && total.is_some() {
+        let found = "there is no [[environment]] whose lighting this could be";
+        return Err(root.fail("unknown.lighting_total", Error::malformed(found, "add one")));
+    }
+    let mut objects = Vec::with_capacity(items.len());
+    let mut sum = 0.0;
+    for (index, item) in items.iter().enumerate() {
+        let section = item.section()?;
+        let written = section.number("lighting")?;
+        let lighting = match total {
+            Some(total) if index + 1 == items.len() => {
+                rest_of_lighting(total, sum, written).map_err(|error| section.fail("lighting", error))?
+            }
+            _ => match written {
+                Some(lighting) => lighting,
+                None => section.require("lighting")?.number("0.5")?,
+            },
+        };
+        sum += lighting;
+        if sum > 1.0 + LIGHTING_ROUNDING {
+            let found = format!("the lighting factors add up to {}", rounded(sum));
+            let instead = "lower them to a sum of at most 1, as they share one hemisphere";
+            return Err(section.fail("lighting", Error::malformed(found, instead)));
+        }
+        objects.push(EnvironmentObject {
+            temperature_k: section.require("temperature")?.quantity()?,
+            lighting,
+            material: section.read("material", material)?,
+            extrapolate: extrapolation(&section)?,
+        });
+    }
+    Ok(objects)
+}
+
+/// The last object's lighting factor where the total is known: what the others leave.
+fn rest_of_lighting(total: f64, others: f64, written: Option<f64>) -> Result<f64> {
+    if others > total + LIGHTING_ROUNDING {
+        return Err(Error::malformed(
+            format!("the other lighting factors add up to {}, lighting_total is {total}", rounded(others)),
+            "lower them, or raise unknown.lighting_total",
+        ));
+    }
+    let rest = (total - others).max(0.0);
+    match written {
+        Some(written) if (written - rest).abs() > LIGHTING_ROUNDING => Err(Error::malformed(
+            format!("the others and lighting_total = {total} leave {}, not {written}", rounded(rest)),
+            "leave this one out",
+        )),
+        _ => Ok(rest),
+    }
+}
+
+/// A sum as one would write it, without the last bits of its rounding.
+fn rounded(sum: f64) -> f64 {
+    (sum * 1e12).round() / 1e12
+}
+
+fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
+    let section = entry.section()?;
+    let materials = section.read("materials", |entry| {
+        let items = entry.items("materials = [\"aluminium\"]")?;
+        if items.is_empty() {
+            let instead = "name some, or leave the key out to take every other material of the library";
+            return Err(entry.fail(Error::malformed("the list is empty", instead)));
+        }
+        without_repetition(&items, material)
+    })?;
+    Ok(Alternatives {
+        materials,
+        temperature_range_k: section.read("temperature", |entry| {
+            let kelvin = |end: &Entry<'_>| end.quantity();
+            entry.wide_range("[\"0 degC\", \"120 degC\"]", kelvin, |kelvin| kelvin)
+        })?,
+        lighting_range: section.read("lighting", |entry| {
+            entry.wide_range("[0.0, 1.0]", |end| end.number("0.5"), |share| share)
+        })?,
+        extrapolate: extrapolation(&section)?,
+        skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
+    })
+}
+
+fn unknown(entry: &Entry<'_>) -> Result<Unknown> {
+    let section = entry.section()?;
+    let choices = Nuisance::ALL.map(|nuisance| (nuisance.name(), nuisance));
+    let nuisances = section
+        .read("nuisances", |entry| {
+            let items = entry.items("nuisances = [\"temperature\", \"lighting\"]")?;
+            without_repetition(&items, |item| item.choice(&choices))
+        })?
+        .unwrap_or_else(|| Unknown::default().nuisances);
+    let priors = section.read("priors", |entry| priors(entry, &nuisances))?.unwrap_or_default();
+    Ok(Unknown { priors, lighting_total: section.number("lighting_total")?, nuisances })
+}
+
+fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance, f64>> {
+    let section = entry.section()?;
+    let mut priors = BTreeMap::new();
+    for nuisance in Nuisance::ALL {
+        let Some(sigma) = section.get(nuisance.name()) else { continue };
+        if !nuisances.contains(&nuisance) {
+            let found = format!("`{}` is not among unknown.nuisances", nuisance.name());
+            return Err(sigma.fail(Error::malformed(found, "add it there, or remove its prior")));
+        }
+        priors.insert(nuisance, prior(&sigma, nuisance)?);
+    }
+    Ok(priors)
+}
+
+/// Deviation of the prior on an unknown.
+pub(super) fn prior(entry: &Entry<'_>, nuisance: Nuisance) -> Result<f64> {
+    match nuisance {
+        Nuisance::Temperature | Nuisance::EnvironmentTemperature => entry.quantity(),
+        Nuisance::Lighting | Nuisance::Gain => entry.number("0.1"),
+    }
+}
+
+pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
+    let section = entry.section()?;
+    section.at_most_one(&["detection_probability", "distance"])?;
+    let detection = section.number("detection_probability")?;
+    let false_alarm = section.number("false_alarm_probability")?;
+    let distance = section.number("distance")?;
+    let default = Requirement::default();
+    Ok(Requirement {
+        reliability: match (detection, false_alarm, distance) {
+            (Some(detection), Some(false_alarm), _) => Reliability::Rates { detection, false_alarm },
+            (Some(probability), None, _) => Reliability::DetectionProbability(probability),
+            (None, Some(_), _) => {
+                let found = "false alarms without a detection_probability: whoever finds nothing has none";
+                let instead = "write detection_probability = 0.9 beside it";
+                return Err(section.fail("false_alarm_probability", Error::malformed(found, instead)));
+            }
+            (None, None, Some(distance)) => Reliability::Distance(distance),
+            (None, None, None) => default.reliability,
+        },
+        by: section.choice("by", &DistanceKind::ALL.map(|kind| (kind.name(), kind)))?.unwrap_or(default.by),
+        speed_m_s: section.quantity("speed")?,
+    })
+}
+
+fn extrapolation(section: &Section<'_>) -> Result<Option<Extrapolation>> {
+    section.choice("extrapolate", &Extrapolation::ALL.map(|kind| (kind.name(), kind)))
+}

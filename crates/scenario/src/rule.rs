@@ -1,0 +1,307 @@
+//! A rule: a requirement over an envelope of scenes, and the cameras that are held against it.
+//!
+//! A rule file is a scenario without `[camera]`, with `cameras = ["flir-a325sc"]` for known cameras as they are,
+//! `[[camera]]` tables with the keys of `[camera]` and an optional `name` for others, and `[rule]` for what a reader of
+//! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`, `status`, and `from` and
+//! `until` which dates it holds. `[stop]` says how fast the vehicle is and how it brakes, so that distances follow; `[[clause]]`
+//! are demands with scenes of their own; a figure of a `[[camera]]` may have a standard uncertainty,
+//! `netd = { value = "50 mK", u = "5 mK" }`, of which `[uncertainty]` guards so many; `[[source]]` say where the figures are from; `[[test]]` what known cameras do.
+
+mod camera;
+mod citation;
+mod clause;
+mod demand;
+mod stand_in;
+mod stop;
+mod test;
+
+pub use camera::RuleCamera;
+pub use citation::{Citation, Figure, Ground, Mark};
+pub use clause::Clause;
+pub use demand::{Demand, DepthDemand, DepthObject};
+pub use stand_in::StandInSpec;
+pub use stop::StopSpec;
+pub use test::{RuleTest, Verdict};
+
+use super::Scenario;
+use super::camera::written;
+use super::entries::{self, Document, Entries, Part};
+use super::keys::files;
+use super::kind::Kind;
+use super::paths::Paths;
+use super::read::{MINIMUM, document};
+use super::section::{Entry, Section};
+use super::written::Written;
+use hadar::error::{Error, Place, Result};
+use serde::{Serialize, Serializer};
+use std::path::Path;
+use toml::value::Date;
+
+/// 95 % of a Gaussian.
+const COVERAGE_FACTOR: f64 = 2.0;
+const NO_CAMERA: &str = "write cameras = [\"flir-a325sc\"] above the first [table], or a [[camera]] table";
+
+/// What a rule says of itself (`[rule]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct About {
+    /// Its name.
+    pub name: Option<String>,
+    /// Its wording.
+    pub text: Option<String>,
+    /// Who sets it.
+    pub authority: Option<String>,
+    /// Its version.
+    pub version: Option<String>,
+    /// Whether it is law, a draft, postponed.
+    pub status: Option<String>,
+    /// The first day on which it holds.
+    pub from: Option<Date>,
+    /// The last one.
+    pub until: Option<Date>,
+}
+
+impl About {
+    /// Whether it holds on a day.
+    #[must_use]
+    pub fn holds_on(&self, day: Date) -> bool {
+        self.from.is_none_or(|from| from <= day) && self.until.is_none_or(|until| day <= until)
+    }
+}
+
+/// Everything a rule file says, defaults filled in.
+#[derive(Debug, Clone)]
+pub struct Rule {
+    /// What it says of itself.
+    pub about: About,
+    /// Deviations to both sides of a margin that must be above or below 1; see `[uncertainty]`.
+    pub coverage_factor: f64,
+    /// Task, surroundings, bands, unknowns, requirement and envelope that clauses share; without a camera.
+    pub scenario: Scenario,
+    /// What it demands, at least one thing.
+    pub clauses: Vec<Clause>,
+    /// The cameras, those of `cameras` first.
+    pub cameras: Vec<RuleCamera>,
+    /// What is to pass for a person in tests, if the rule says so.
+    pub stand_in: Option<StandInSpec>,
+    /// Where its figures are from; nothing of a rule that does not say.
+    pub sources: Vec<Citation>,
+    /// What is expected of its cameras.
+    pub tests: Vec<RuleTest>,
+    /// The file as it was read.
+    pub text: String,
+}
+
+impl Rule {
+    /// Reads a rule file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`]; no camera at all.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_written(&Written::from_file(path)?)
+    }
+
+    /// Reads a rule from text, of the file `path` if it is from one.
+    ///
+    /// # Errors
+    /// As [`Rule::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_scenario::Rule;
+    /// let text = r#"
+    ///     cameras = ["flir-a325sc", "ideal-pnrd"]
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    ///     [envelope]
+    ///     temperature = ["30 degC", "37 degC"]
+    /// "#;
+    /// let rule = Rule::from_toml(text, None)?;
+    /// assert_eq!(rule.cameras.len(), 2);
+    /// let error = Rule::from_toml(&text.replace("[\"30", "[\"40"), None).unwrap_err().to_string();
+    /// assert!(error.starts_with("line 7: envelope.temperature: the range goes from 40 degC to 37 degC"), "{error}");
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Rule, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, &files::RULE)?;
+        let about = root.read("rule", about)?.unwrap_or_default();
+        let coverage_factor = root.read("uncertainty", |entry| entry.section()?.number("coverage_factor"))?;
+        let coverage_factor = coverage_factor.flatten().unwrap_or(COVERAGE_FACTOR);
+        let mut cameras = root.read("cameras", camera::presets)?.unwrap_or_default();
+        cameras.extend(root.read("camera", camera::tables)?.unwrap_or_default());
+        if cameras.is_empty() {
+            let key = if root.get("cameras").is_some() { "cameras" } else { "" };
+            return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
+        }
+        let (scenario, clauses) = clause::read(&root, &source)?;
+        let tests = test::read(&root, &cameras, &clauses)?;
+        let sources = citation::read(&root, &document, &source)?;
+        let stand_in = root.read("stand_in", StandInSpec::read)?;
+        Ok(Self {
+            about,
+            coverage_factor,
+            scenario,
+            stand_in,
+            clauses,
+            cameras,
+            sources,
+            tests,
+            text: written.text.clone(),
+        })
+    }
+
+    /// Leaves out, in all clauses, alternatives whose spectra do not cover the bands, if that is asked for.
+    pub fn skip_uncovered(&mut self, skip: bool) {
+        self.scenario.alternatives.skip_uncovered |= skip;
+        self.clauses.iter_mut().for_each(|clause| clause.scenario.alternatives.skip_uncovered |= skip);
+    }
+
+    /// Its figures as its file has them.
+    #[must_use]
+    pub fn figures(&self) -> Vec<Figure> {
+        citation::of_text(&self.text, &self.scenario.source)
+    }
+
+    /// Whether its demands are those of `[[clause]]` tables.
+    #[must_use]
+    pub fn has_clauses(&self) -> bool {
+        self.clauses.iter().any(|clause| clause.name.is_some())
+    }
+
+    /// Where `key` of the camera at an index stands.
+    #[must_use]
+    pub fn camera_place(&self, index: usize, key: &str) -> Place {
+        let key = match self.cameras.get(index) {
+            Some(camera) if camera.is_listed() => camera.key.clone(),
+            Some(camera) => format!("{}.{key}", camera.key),
+            None => "camera".to_owned(),
+        };
+        self.scenario.place(&key)
+    }
+
+    /// The scenario of a clause with the camera at an index as its `[camera]`, which then stands where the rule has it.
+    #[must_use]
+    pub fn with_camera(&self, clause: &Clause, index: usize) -> Scenario {
+        let mut scenario = clause.scenario.clone();
+        let Some(camera) = self.cameras.get(index) else { return scenario };
+        scenario.camera = Some(camera.spec.clone());
+        let lines = &mut scenario.source.lines;
+        let own: Vec<(String, usize)> = lines
+            .iter()
+            .filter_map(|(key, line)| {
+                key.strip_prefix(&camera.key).map(|rest| (format!("camera{rest}"), *line))
+            })
+            .collect();
+        lines.extend(own);
+        scenario
+    }
+
+    /// The rule as TOML for a file in `directory`, every default filled in; see [`Scenario::to_toml_beside`].
+    #[must_use]
+    pub fn to_toml_beside(&self, directory: &Path) -> String {
+        let absolute = std::path::absolute(directory).ok();
+        entries::text(self.document(Paths { beside: absolute.as_deref() }), &self.scenario.source)
+    }
+
+    /// The rule as TOML, every default filled in, with absolute paths.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        entries::text(self.document(Paths { beside: None }), &self.scenario.source)
+    }
+
+    fn document(&self, paths: Paths<'_>) -> Document {
+        let mut document = Scenario { camera: None, ..self.scenario.clone() }.document(paths);
+        let camera = |camera: &RuleCamera| {
+            Entries::default()
+                .put_if("name", camera.name.as_deref())
+                .and(written(&camera.spec, paths).with_uncertainty(&camera.uncertainty))
+                .read_from(&camera.key)
+        };
+        let about = Entries::default()
+            .put_if("name", self.about.name.as_deref())
+            .put_if("text", self.about.text.as_deref())
+            .put_if("authority", self.about.authority.as_deref())
+            .put_if("version", self.about.version.as_deref())
+            .put_if("status", self.about.status.as_deref())
+            .put_if("from", self.about.from.map(|day| day.to_string()))
+            .put_if("until", self.about.until.map(|day| day.to_string()));
+        document.push(("rule", Part::Table(about)));
+        if self.cameras.iter().any(|camera| !camera.uncertainty.is_empty()) {
+            let entries = Entries::default().put("coverage_factor", self.coverage_factor);
+            document.push(("uncertainty", Part::Table(entries)));
+        }
+        if self.has_clauses() {
+            let clause = |clause: &Clause| clause.document(&self.scenario, paths);
+            document.push(("clause", Part::Documents(self.clauses.iter().map(clause).collect())));
+        } else if let Some(stop) = self.clauses.iter().find_map(|clause| clause.stop) {
+            document.push(("stop", Part::Table(stop.entries())));
+        }
+        if let Some(spec) = &self.stand_in {
+            document.push(("stand_in", Part::Table(spec.written(paths))));
+        }
+        document.push(("camera", Part::Tables(self.cameras.iter().map(camera).collect())));
+        let tests: Vec<_> =
+            self.tests.iter().map(|test| test.entries(&self.cameras, &self.clauses)).collect();
+        if !tests.is_empty() {
+            document.push(("test", Part::Tables(tests)));
+        }
+        document
+    }
+}
+
+/// Two rules are equal when they ask the same question of the same cameras: where they stand does not count.
+impl PartialEq for Rule {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |(a, b): (&RuleCamera, &RuleCamera)| {
+            a.name == b.name && a.spec == b.spec && a.uncertainty == b.uncertainty
+        };
+        let same_clause = |(a, b): (&Clause, &Clause)| {
+            (&a.name, &a.text, &a.demand, &a.stop) == (&b.name, &b.text, &b.demand, &b.stop)
+                && a.scenario == b.scenario
+        };
+        self.about == other.about
+            && self.scenario == other.scenario
+            && self.clauses.len() == other.clauses.len()
+            && self.clauses.iter().zip(&other.clauses).all(same_clause)
+            && self.tests == other.tests
+            && self.stand_in == other.stand_in
+            && self.cameras.len() == other.cameras.len()
+            && self.cameras.iter().zip(&other.cameras).all(same)
+    }
+}
+
+/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
+impl Serialize for Rule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        entries::entries(self.document(Paths { beside: None }), serializer)
+    }
+}
+
+fn about(entry: &Entry<'_>) -> Result<About> {
+    let section = entry.section()?;
+    let text = |key, example: &str| section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
+    let from = section.read("from", Entry::date)?;
+    let until = section.read("until", Entry::date)?;
+    if let Some((from, until)) = from.zip(until).filter(|(from, until)| until < from) {
+        let found = format!("the rule ends on {until}, before it begins on {from}");
+        return Err(section.fail("until", Error::malformed(found, "correct one of the two dates")));
+    }
+    Ok(About {
+        name: text("name", "\"Robots that see people at night\"")?,
+        text: text("text", "\"A camera must tell a person from a robot.\"")?,
+        authority: text("authority", "\"City of Lafayette\"")?,
+        version: text("version", "\"1\"")?,
+        status: text("status", "\"in force\"")?,
+        from,
+        until,
+    })
+}

@@ -1,0 +1,222 @@
+//! Where the numbers of a rule are from: a clause of a document in its own words, or a choice with its reason.
+//!
+//! A rule that names any source (`[[source]]`) names one for each of its figures: a number that is nobody's is refused when the
+//! rule is read. Figures are all values in the tables of the scenes, the demands, `[stop]` and the clauses; names, wording,
+//! cameras (whose figures have documents of their own) and tests are none.
+
+use crate::Source;
+use crate::entries::Entries;
+use crate::section::{Entry, Section};
+use crate::source::dotted;
+use hadar::error::{Error, Result};
+use serde::{Serialize, Serializer};
+use toml::de::{DeTable, DeValue};
+use toml::value::Date;
+
+/// Tables and keys at the top of a rule that hold no figures of its own.
+const NO_FIGURES: &[&str] = &["title", "cameras", "rule", "camera", "source", "test"];
+/// The same of a clause.
+const NO_FIGURES_OF_CLAUSE: &[&str] = &["name", "kind", "text"];
+
+/// What stands behind some figures of a rule (`[[source]]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Citation {
+    /// Keys of the figures, or of tables with all their figures, e.g. `stop.latency` or `clause[1].envelope`.
+    pub keys: Vec<String>,
+    /// What says so.
+    pub ground: Ground,
+}
+
+/// A document, or a choice.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ground {
+    /// A document says so.
+    Document {
+        /// Which.
+        document: String,
+        /// Where in it.
+        clause: String,
+        /// In its own words.
+        quote: String,
+        /// Its date.
+        date: Date,
+        /// How it was read.
+        mark: Mark,
+    },
+    /// Nobody says so but the author of the rule, for this reason.
+    Choice(String),
+}
+
+/// How a document was read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// In the text itself.
+    Seen,
+    /// In an excerpt or abstract.
+    Excerpt,
+    /// In somebody's copy or summary, not the issuer's; a summary's words are quoted then.
+    Copy,
+    /// From memory.
+    Recalled,
+    /// Computed from numbers that were seen.
+    Computed,
+}
+
+impl Mark {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Seen, Self::Excerpt, Self::Copy, Self::Recalled, Self::Computed];
+
+    /// The name in a rule, e.g. `seen`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Seen => "seen",
+            Self::Excerpt => "excerpt",
+            Self::Copy => "copy",
+            Self::Recalled => "recalled",
+            Self::Computed => "computed",
+        }
+    }
+}
+
+impl Citation {
+    /// Whether it stands behind the figure at `key`.
+    #[must_use]
+    pub fn covers(&self, key: &str) -> bool {
+        self.keys.iter().any(|own| within(key, own))
+    }
+
+    fn entries(&self) -> Entries {
+        let keys = Entries::default().put("keys", self.keys.clone());
+        match &self.ground {
+            Ground::Document { document, clause, quote, date, mark } => keys
+                .put("document", document.as_str())
+                .put("clause", clause.as_str())
+                .put("quote", quote.as_str())
+                .put("date", date.to_string())
+                .put("mark", mark.name()),
+            Ground::Choice(reason) => keys.put("choice", reason.as_str()),
+        }
+    }
+}
+
+/// The keys that it has in a rule.
+impl Serialize for Citation {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        self.entries().serialize(serializer)
+    }
+}
+
+/// Whether `key` is `own`, or stands in it.
+fn within(key: &str, own: &str) -> bool {
+    key.strip_prefix(own).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// The sources of a rule, every key in them checked against the file.
+pub(super) fn read(root: &Section<'_>, document: &DeTable<'_>, source: &Source) -> Result<Vec<Citation>> {
+    let Some(entry) = root.get("source") else { return Ok(Vec::new()) };
+    let items = entry.items("each source as [[source]], in double brackets")?;
+    let citations: Vec<Citation> = items.iter().map(|item| one(item, source)).collect::<Result<_>>()?;
+    let keys = figures(document).into_iter().map(|(_, key)| key);
+    let untagged = keys.into_iter().find(|key| !citations.iter().any(|one| one.covers(key)));
+    if let Some(key) = untagged {
+        let instead = format!(
+            "name `{key}` in the keys of a [[source]], with document, clause, quote, date and mark, or with choice = \"why\""
+        );
+        return Err(Error::malformed("the figure has no source", instead).at(source.place(&key)));
+    }
+    Ok(citations)
+}
+
+fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
+    let section = item.section()?;
+    let example = "[\"stop.latency\"]";
+    let keys = section.require("keys")?;
+    let items = keys.items(&format!("keys = {example}"))?;
+    if items.is_empty() {
+        return Err(keys.fail(Error::malformed("the list is empty", format!("write keys = {example}"))));
+    }
+    let keys = items
+        .iter()
+        .map(|item| {
+            let key = item.text("\"stop.latency\"")?.trim();
+            if source.lines.contains_key(key) {
+                return Ok(key.to_owned());
+            }
+            let known = source.lines.keys().map(String::as_str);
+            Err(item.fail(Error::unknown_name("key of this file", key, known)))
+        })
+        .collect::<Result<_>>()?;
+    for key in ["document", "clause", "quote", "date", "mark"] {
+        section.at_most_one(&["choice", key])?;
+    }
+    if let Some(reason) = section.read("choice", |entry| said(entry, "\"why\""))? {
+        return Ok(Citation { keys, ground: Ground::Choice(reason) });
+    }
+    let text = |key, example| said(&section.require(key)?, example);
+    let marks = Mark::ALL.map(|mark| (mark.name(), mark));
+    let ground = Ground::Document {
+        document: text("document", "\"49 CFR 571.127\"")?,
+        clause: text("clause", "\"S8.2\"")?,
+        quote: text("quote", "\"its own words\"")?,
+        date: section.require("date")?.date()?,
+        mark: section.require("mark")?.choice(&marks)?,
+    };
+    Ok(Citation { keys, ground })
+}
+
+fn said(entry: &Entry<'_>, example: &str) -> Result<String> {
+    Ok(entry.text(example)?.trim().to_owned())
+}
+
+/// A figure of a rule as its file has it.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Figure {
+    /// Its key.
+    pub key: String,
+    /// Its value as it is written.
+    pub value: String,
+    /// Its line.
+    pub line: usize,
+}
+
+/// All figures in the text of a rule.
+pub(super) fn of_text(text: &str, source: &Source) -> Vec<Figure> {
+    let (document, _) = DeTable::parse_recoverable(text);
+    let figure = |(span, key): (Span, String)| {
+        let value = text.get(span).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+        Figure { value, line: source.place(&key).line.unwrap_or_default(), key }
+    };
+    figures(document.get_ref()).into_iter().map(figure).collect()
+}
+
+/// Where the value of a figure stands in the text.
+type Span = std::ops::Range<usize>;
+
+/// All figures of a rule with their values, in the order of its file.
+fn figures(document: &DeTable<'_>) -> Vec<(Span, String)> {
+    let mut found = Vec::new();
+    table(document, "", NO_FIGURES, &mut found);
+    found.sort_by_key(|(span, _)| span.start);
+    found
+}
+
+fn table(entries: &DeTable<'_>, name: &str, other: &[&str], found: &mut Vec<(Span, String)>) {
+    let own = entries.iter().filter(|(key, _)| !other.contains(&key.get_ref().as_ref()));
+    for (key, value) in own {
+        let full = dotted(name, key.get_ref());
+        match value.get_ref() {
+            DeValue::Table(inner) => table(inner, &full, &[], found),
+            DeValue::Array(items) if items.iter().any(|item| matches!(item.get_ref(), DeValue::Table(_))) => {
+                let other = if full == "clause" { NO_FIGURES_OF_CLAUSE } else { &[] };
+                for (index, item) in items.iter().enumerate() {
+                    if let DeValue::Table(inner) = item.get_ref() {
+                        table(inner, &format!("{full}[{index}]"), other, found);
+                    }
+                }
+            }
+            _ => found.push((value.span(), full)),
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The `[stand_in]` of a rule: what is to pass for a person where cameras are tested, and how exactly its emissivity is known.
+//!
+//! `clause` names the one whose limit is turned round, where several tell people apart; `materials` it may be made of (silent: those of the rule's target), its `temperature` (silent: that of the target), and
+//! `emissivity`: tolerances, the same at all wavenumbers, for each of which the tolerance of its temperature is found.
+
+use crate::MaterialRef;
+use crate::entries::Entries;
+use crate::paths::{Paths, material};
+use crate::section::{Entry, without_repetition};
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+
+/// Tolerances of an emissivity where nothing is said.
+const EMISSIVITY: [f64; 6] = [0.0, 0.005, 0.01, 0.02, 0.03, 0.05];
+/// Most tolerances.
+const MOST: usize = 64;
+
+/// A stand-in (`[stand_in]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct StandInSpec {
+    /// The clause whose limit is turned round, by its name; the only one that tells people apart where `None`.
+    pub clause: Option<String>,
+    /// What it may be made of; the materials of the target where `None`.
+    pub materials: Option<Vec<MaterialRef>>,
+    /// Its temperature, K; that of the target where `None`.
+    pub temperature_k: Option<f64>,
+    /// Tolerances of its emissivity, in ascending order.
+    pub emissivity: Vec<f64>,
+}
+
+impl Default for StandInSpec {
+    fn default() -> Self {
+        Self { clause: None, materials: None, temperature_k: None, emissivity: EMISSIVITY.to_vec() }
+    }
+}
+
+impl StandInSpec {
+    pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
+        let section = entry.section()?;
+        let clause = section.read("clause", |entry| Ok(entry.text("\"crossing\"")?.trim().to_owned()))?;
+        let materials = section.read("materials", |entry| {
+            let items = entry.items("materials = [\"skin\"]")?;
+            if items.is_empty() {
+                let instead = "name some, or leave the key out to take those of the target";
+                return Err(entry.fail(Error::malformed("the list is empty", instead)));
+            }
+            without_repetition(&items, material)
+        })?;
+        let emissivity = section.read("emissivity", |entry| {
+            let example = "emissivity = [0.0, 0.01, 0.02]";
+            let items = entry.items(example)?;
+            if !(1..=MOST).contains(&items.len()) {
+                let found = format!("a list of {} tolerances", items.len());
+                return Err(
+                    entry.fail(Error::malformed(found, format!("write 1 to {MOST}, as in {example}")))
+                );
+            }
+            let mut values = items.iter().map(|item| item.number("0.01")).collect::<Result<Vec<f64>>>()?;
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+            Ok(values)
+        })?;
+        Ok(Self {
+            clause,
+            materials,
+            temperature_k: section.quantity("temperature")?,
+            emissivity: emissivity.unwrap_or_else(|| EMISSIVITY.to_vec()),
+        })
+    }
+
+    pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
+        let names = |materials: &Vec<MaterialRef>| -> Vec<String> {
+            materials.iter().map(|material| paths.material(material)).collect()
+        };
+        Entries::default()
+            .put_if("clause", self.clause.as_deref())
+            .put_if("materials", self.materials.as_ref().map(names))
+            .put_quantity("temperature", Dimension::Temperature, self.temperature_k)
+            .put("emissivity", self.emissivity.clone())
+    }
+}

@@ -1,0 +1,61 @@
+//! The air between target and camera, and what is behind the target.
+
+use super::surface::Surface;
+use hadar::atmosphere::Atmosphere;
+use hadar::error::{Error, Result};
+use hadar::grid::text_of_file;
+use hadar_scenario::{AtmosphereSource, Scenario};
+
+/// What is behind the target, on the nodes of the bands.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Behind {
+    pub(super) surface: Surface,
+    pub(super) temperature_k: f64,
+}
+
+/// The air on the path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Air {
+    pub(super) table: Atmosphere,
+    pub(super) temperature_k: f64,
+}
+
+impl Air {
+    /// The air of a scenario.
+    ///
+    /// # Errors
+    /// An unknown model, a table that cannot be read, a target without a distance, bands that the table does not cover.
+    pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>> {
+        let Some(spec) = &scenario.atmosphere else { return Ok(None) };
+        let table = match &spec.source {
+            AtmosphereSource::Model(name) => {
+                let known = Atmosphere::embedded(name).map_err(|error| match error {
+                    Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
+                        format!("there is no model atmosphere `{name}`"),
+                        format!("choose among {}", Atmosphere::names().join(", ")),
+                    ),
+                    error => error,
+                });
+                known.map_err(|error| error.at(scenario.place("atmosphere.model")))?
+            }
+            AtmosphereSource::Table(path) => {
+                Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
+            }
+        };
+        let Some(temperature_k) = spec.temperature_k.or(table.temperature_k()) else {
+            let error = Error::malformed(
+                "the temperature of the air is not given",
+                "write temperature = \"15 degC\"",
+            );
+            return Err(error.at(scenario.place("atmosphere.temperature")));
+        };
+        if scenario.target.distance_m.is_none() {
+            let error = Error::malformed(
+                "air on the path, but the target has no distance",
+                "write distance = \"30 m\"",
+            );
+            return Err(error.at(scenario.place("target.distance")));
+        }
+        Ok(Some(Self { table, temperature_k }))
+    }
+}

@@ -1,0 +1,163 @@
+//! The noise of a camera out of its cubes.
+
+use super::opened::Measured;
+use crate::Warning;
+use hadar::cube::{Cube, Found, Rows, Shape};
+use hadar::demand::{Thing, Work};
+use hadar::error::{Error, Result};
+use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_scenario::calibrate::NoiseScenario;
+use serde::Serialize;
+
+/// Share of texture in what neighbours differ by from which on its removal matters.
+const TEXTURE: f64 = 0.2;
+/// Key of the sample without light.
+const DARK_LEVEL: &str = "noise.dark_level";
+/// Share of outliers from which on they are said.
+const OUTLIERS: f64 = 1e-3;
+
+/// Cubes that are open.
+#[derive(Debug)]
+pub struct NoiseStudy {
+    scenario: NoiseScenario,
+    frames: Measured,
+}
+
+/// The noise that was found.
+#[derive(Debug, Clone, Serialize)]
+pub struct NoiseFound {
+    /// The question.
+    pub scenario: NoiseScenario,
+    /// What the files were read as.
+    pub read: Vec<Found>,
+    /// Rows, columns and bands.
+    pub shape: Shape,
+    /// How many frames there are.
+    pub frames: usize,
+    /// Photons for one unit of the cube, 1/b, with the ends of its 95 % interval.
+    pub photons_per_unit: [f64; 3],
+    /// Deviation of the electronic noise of a reading, electrons, with the ends of its 95 % interval.
+    pub noise_electrons: [f64; 3],
+    /// Root of c, the relative deviation of gains, where it was asked for.
+    pub gain_deviation: Option<f64>,
+    /// Whether the figures hold for all bands and are told well enough to be used.
+    pub usable: bool,
+    /// What was fitted.
+    #[serde(flatten)]
+    pub transfer: Transfer,
+    /// Time that it took, s.
+    pub seconds: f64,
+    /// What was done and what was spared.
+    pub stats: Work,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+}
+
+impl NoiseStudy {
+    /// Opens the cubes.
+    ///
+    /// # Errors
+    /// Files that cannot be used, with file, line and key.
+    pub fn new(scenario: &NoiseScenario) -> Result<Self> {
+        Ok(Self { frames: Measured::open(&scenario.cube, &scenario.source)?, scenario: scenario.clone() })
+    }
+
+    /// The noise.
+    ///
+    /// # Errors
+    /// Cubes out of which no noise can be told, each with what to give instead.
+    pub fn noise(&self) -> Result<NoiseFound> {
+        let start = std::time::Instant::now();
+        let spec = self.scenario.noise;
+        let asked = Asked { dark_level: spec.dark_level, gain_spread: spec.gain_spread };
+        let singles: Vec<&dyn Rows<f32>> = self.frames.cubes.iter().filter_map(of_32).collect();
+        let doubles: Vec<&dyn Rows<f64>> = self.frames.cubes.iter().filter_map(of_64).collect();
+        let place = |error: Error| match (&error, &self.scenario.source.path, self.scenario.cube.data.first())
+        {
+            (Error::At { place, .. }, ..) if place.path.is_some() => error,
+            (Error::At { place, .. }, Some(_), _) if place.key.as_deref() == Some(DARK_LEVEL) => {
+                error.at(self.scenario.source.place(DARK_LEVEL))
+            }
+            (_, Some(_), _) => error.at(self.scenario.source.place("cube.data")),
+            (_, None, Some(path)) => error.in_file(path),
+            _ => error,
+        };
+        let transfer = match (singles.is_empty(), doubles.is_empty()) {
+            (false, true) => photon_transfer(&singles, &asked),
+            (true, false) => photon_transfer(&doubles, &asked),
+            _ => Err(Error::malformed(
+                "frames of 32 bits and of 64 bits",
+                "write all frames as one type, np.float32 or np.float64",
+            )),
+        }
+        .map_err(place)?;
+        let common = transfer.common;
+        let mut warnings = self.frames.warnings();
+        if transfer.outliers > OUTLIERS {
+            warnings.push(Warning::NoiseOutliers { share: transfer.outliers });
+        }
+        let texture = transfer.bands.iter().map(|band| band.texture).fold(0.0, f64::max);
+        if texture > TEXTURE {
+            warnings.push(Warning::TextureInNoise { share: texture });
+        }
+        let alike = transfer.is_common();
+        if !alike {
+            warnings.push(Warning::BandsDifferInNoise {
+                chi_square: transfer.chi_square_reduced,
+                limit: transfer.chi_square_limit,
+            });
+        }
+        let [low, high] = Line::interval(common.per_photon, common.sigma_per_photon);
+        let [least, most] = common.noise_electrons_interval();
+        let told = low > 0.0;
+        // No camera has a variance below 0, without light or at the least that was seen.
+        let possible = !told || (most > 0.0 && transfer.least_variance() > 0.0);
+        if !possible {
+            warnings.push(Warning::NoiseBelowZero {
+                electronic: common.electronic,
+                sigma: common.sigma_electronic,
+                dark_level: spec.dark_level,
+            });
+        }
+        if !told {
+            warnings.push(Warning::PhotonsNotTold {
+                per_photon: common.per_photon,
+                sigma: common.sigma_per_photon,
+            });
+        }
+        let shape = self.frames.cubes.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
+        let inverse = |b: f64| if b > 0.0 { 1.0 / b } else { f64::INFINITY };
+        Ok(NoiseFound {
+            scenario: self.scenario.clone(),
+            read: self.frames.read.clone(),
+            shape,
+            frames: self.frames.cubes.len(),
+            photons_per_unit: [inverse(common.per_photon), inverse(high), inverse(low)],
+            noise_electrons: [common.noise_electrons(), least, most],
+            gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
+            usable: told && alike && possible,
+            transfer,
+            stats: {
+                let mut work = Work::default();
+                work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
+                work
+            },
+            seconds: start.elapsed().as_secs_f64(),
+            warnings,
+        })
+    }
+}
+
+fn of_32(cube: &Cube) -> Option<&dyn Rows<f32>> {
+    match cube {
+        Cube::F32(rows) => Some(rows.as_ref()),
+        Cube::F64(_) => None,
+    }
+}
+
+fn of_64(cube: &Cube) -> Option<&dyn Rows<f64>> {
+    match cube {
+        Cube::F64(rows) => Some(rows.as_ref()),
+        Cube::F32(_) => None,
+    }
+}

@@ -1,0 +1,183 @@
+//! A heat cube decomposed: names and files looked up, the maps, and what they are worth where the truth is known.
+
+mod categories;
+mod kept;
+mod looked_up;
+mod ranks;
+mod results;
+mod segmented;
+mod truth;
+mod vision;
+mod worth;
+
+pub use kept::{Block, Keep, Kept, MapFiles};
+pub use looked_up::DecomposeStudy;
+pub use ranks::{Count, ranked};
+pub(super) use results::flags;
+pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
+pub use segmented::{CategoryRow, ObjectRow, Segmented};
+pub(super) use truth::{There, Truth};
+pub use vision::{DistilledTexture, Vision, hues_deg};
+
+use self::results::{Counted, rows, summary};
+use self::worth::Held;
+use super::{Warning, memory};
+use hadar::cube::Shape;
+use hadar::demand::Skipping;
+use hadar::error::{Error, Result};
+use hadar_estimate::decompose::{LibraryError, Maps, Method, Options, Setting, decompose_by_rows, widen};
+use std::sync::Arc;
+
+/// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
+pub const CORRELATION_CM1: f64 = 50.0;
+
+/// Pixels of a cube whose maps are kept in memory where they need not be.
+const KEPT_PIXELS: usize = 1 << 20;
+
+/// Bytes of a pixel that are kept in memory, and for each of the surroundings, measured with a report (200 with four; without one, half
+/// as many); with a prior over the image, at least.
+const KEPT: u64 = 150;
+const KEPT_LIGHT: u64 = 14;
+const KEPT_BESIDE_OTHERS: u64 = 400;
+
+impl DecomposeStudy {
+    /// Whether the maps are better kept in files: they are many, and nothing needs all pixels together.
+    #[must_use]
+    pub fn wants_files(&self) -> bool {
+        let shape = self.cube.shape();
+        !self.needs_all() && shape.rows() * shape.columns() > KEPT_PIXELS
+    }
+
+    fn needs_all(&self) -> bool {
+        let scenario = &self.scenario;
+        scenario.spatial.is_some() || scenario.vision.sky.is_some() || !scenario.categories.is_empty()
+    }
+
+    /// Rows, columns and bands of the cube.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        self.cube.shape()
+    }
+
+    /// Decomposes the cube by a method; `done` is told how many rows are finished, of how many. The answer is the same wherever the
+    /// maps are kept.
+    ///
+    /// # Errors
+    /// Counts that are negative, a cube that cannot be read, an unknown gain with a method that takes none, no room for the maps.
+    pub fn decompose(
+        &self,
+        method: Method,
+        skipping: Skipping,
+        keep: Keep<'_>,
+        done: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Decomposed> {
+        if !method.has_likelihood() && self.scenario.unknown.gain {
+            let found = format!("the method {} does not know an unknown gain", method.name());
+            let error = Error::malformed(found, "write gain = false, or take --method ml or te");
+            return Err(error.at(self.scenario.place("unknown.gain")));
+        }
+        if !method.names_materials() && !self.scenario.categories.is_empty() {
+            let found = format!("the method {} names no materials", method.name());
+            let error = Error::malformed(found, "leave [[category]] out, or take --method ml");
+            return Err(error.at(self.scenario.place("category")));
+        }
+        if !method.has_likelihood() && self.scenario.spatial.is_some() {
+            let found = format!("the method {} knows no prior over the image", method.name());
+            let error = Error::malformed(found, "leave [spatial] out, or take --method ml or te");
+            return Err(error.at(self.scenario.place("spatial")));
+        }
+        if !method.has_likelihood() && self.scenario.vision.sky.is_some() {
+            let found = format!("the method {} has no residue to distil a texture of", method.name());
+            let error = Error::malformed(found, "leave vision.sky out, or take --method ml");
+            return Err(error.at(self.scenario.place("vision.sky")));
+        }
+        let shape = self.cube.shape();
+        let lights = self.lights.len();
+        let (files, height) = match keep {
+            Keep::InFiles { folder, rows } if !self.needs_all() => {
+                (Some(MapFiles::create(folder, rows, shape, lights)?), rows)
+            }
+            _ => (None, shape.rows()),
+        };
+        let _memory = match &files {
+            Some(_) => None,
+            None => {
+                let per_pixel = match &self.scenario.spatial {
+                    None => KEPT + KEPT_LIGHT * lights as u64,
+                    Some(_) => KEPT_BESIDE_OTHERS,
+                };
+                let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
+                let instead = "cut the cube into parts of fewer rows";
+                let promised = memory::promise(bytes, "the maps of all pixels", instead);
+                Some(promised.map_err(|error| error.at(self.scenario.place("cube.data")))?)
+            }
+        };
+        let start = std::time::Instant::now();
+        let unknown = self.scenario.unknown;
+        let setting = Setting {
+            bands: &self.bands,
+            library: &self.library,
+            surroundings: &self.lights,
+            counts_per_radiance: &self.counts_per_radiance,
+            var_added: &self.var_added,
+            units_per_count: self.units_per_count,
+            temperature_k: unknown.temperature_k,
+            lighting_total: unknown.lighting_total,
+            gain: unknown.gain,
+            bad_bands: &self.bad_bands,
+        };
+        let spec = &self.scenario.library;
+        let library_error = spec.emissivity_error.filter(|error| *error > 0.0).map(|relative| LibraryError {
+            relative,
+            correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
+        });
+        let options =
+            Options { prior: self.prior.clone(), library_error, skipping, spatial: self.scenario.spatial };
+        let finished = std::sync::atomic::AtomicUsize::new(0);
+        let progress = |more: usize| {
+            let so_far = finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more;
+            done(so_far, shape.rows());
+        };
+        let (mut counted, mut whole) = (Counted::default(), Block::default());
+        let mut held = self.truth.as_ref().map(|truth| (truth, Held::new(self, method)));
+        let mut take = |first: usize, mut maps: Maps| {
+            if let Some(together) = self.together.as_ref().filter(|_| method.has_likelihood()) {
+                widen(&setting, &mut maps, together)
+                    .map_err(|error| error.at(self.scenario.place("cube.noise")))?;
+            }
+            counted.take(&maps);
+            let block = Block::of(self, first, maps)?;
+            if let Some((truth, held)) = &mut held {
+                let rows = first..first + block.maps.material.len() / shape.columns();
+                held.take(self, method, &block.maps, &truth.rows(rows)?);
+            }
+            match &files {
+                Some(files) => files.put(&block)?,
+                None => whole = block,
+            }
+            Ok(())
+        };
+        decompose_by_rows(method, &setting, &options, &self.cube, (height, &mut take), &progress)
+            .map_err(|error| self.at_cube(error))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let mut warnings = self.warnings.clone();
+        if library_error.is_none() && method.names_materials() {
+            warnings.push(Warning::LibraryTakenAsExact);
+        }
+        let truth = held.map(|(_, held)| held.found(self)).transpose()?;
+        let kept = match files {
+            Some(files) => Kept::InFiles(Arc::new(files)),
+            None => Kept::InMemory(Box::new(whole)),
+        };
+        let (found, drawn_k) = rows(self, &counted, &kept)?;
+        let all = match &kept {
+            Kept::InMemory(block) => Some(&**block),
+            Kept::InFiles(_) => None,
+        };
+        let vision = Vision::of(self, &setting, drawn_k, all.map(|block| &block.maps))
+            .map_err(|error| self.at_cube(error))?;
+        let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
+        let answer = (truth, vision, segmented);
+        Ok(summary(self, (method, seconds), (&counted, found), answer, warnings, kept))
+    }
+}

@@ -1,0 +1,202 @@
+//! What is kept of every pixel: in memory, or in files where that would be too much.
+
+use hadar::cube::{NpyRows, Shape};
+use hadar::error::Result;
+use hadar_estimate::decompose::Maps;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Pixels that are worked, or read again, at once by each thread, and by all of them.
+const WORKED: usize = 1 << 17;
+const MOST_WORKED: usize = 1 << 20;
+
+/// Where the maps of all pixels are kept.
+#[derive(Debug, Clone, Copy)]
+pub enum Keep<'a> {
+    /// In memory.
+    InMemory,
+    /// In files in a folder, so many rows worked at once. What needs all pixels together (a prior over the image, categories, a
+    /// distilled texture) is kept in memory all the same.
+    InFiles {
+        /// The folder; the files have the names of those of the report.
+        folder: &'a Path,
+        /// Rows.
+        rows: usize,
+    },
+}
+
+impl<'a> Keep<'a> {
+    /// In files in `folder`, with as many rows at once as are well shared among the threads.
+    #[must_use]
+    pub fn in_files(folder: &'a Path, shape: Shape) -> Self {
+        let pixels = (WORKED * rayon::current_num_threads()).clamp(2 * WORKED, MOST_WORKED);
+        Self::InFiles { folder, rows: (pixels / shape.columns()).max(1) }
+    }
+}
+
+/// What is kept of whole rows of pixels.
+#[derive(Debug, Clone, Default)]
+pub struct Block {
+    /// The first row.
+    pub first: usize,
+    /// What was found.
+    pub maps: Maps,
+    /// Texture X, photons s⁻¹ m⁻² sr⁻¹; NaN where the lighting is unknown.
+    pub texture: Vec<f32>,
+    /// Thermal image, photons s⁻¹ m⁻² sr⁻¹; NaN where a sample is missing.
+    pub thermal: Vec<f32>,
+}
+
+impl Block {
+    /// Adds every `stride`th row and column of another one.
+    fn add(&mut self, from: &Self, columns: usize, stride: usize) {
+        fn each<T: Copy>(to: &mut Vec<T>, from: &[T], columns: usize, stride: usize) {
+            to.extend(from.chunks(columns).step_by(stride).flat_map(|row| row.iter().step_by(stride)));
+        }
+        each(&mut self.maps.material, &from.maps.material, columns, stride);
+        each(&mut self.maps.temperature_k, &from.maps.temperature_k, columns, stride);
+        each(&mut self.maps.temperature_sigma_k, &from.maps.temperature_sigma_k, columns, stride);
+        each(&mut self.maps.candidates, &from.maps.candidates, columns, stride);
+        each(&mut self.maps.flags, &from.maps.flags, columns, stride);
+        each(&mut self.texture, &from.texture, columns, stride);
+        each(&mut self.thermal, &from.thermal, columns, stride);
+    }
+}
+
+/// The maps of all pixels.
+#[derive(Debug, Clone)]
+pub enum Kept {
+    /// All of them.
+    InMemory(Box<Block>),
+    /// In files, in blocks.
+    InFiles(Arc<MapFiles>),
+}
+
+impl Kept {
+    /// Hands on all rows in their order, a block at a time. In blocks from files lighting, p-values and posteriors are empty.
+    ///
+    /// # Errors
+    /// Files that cannot be read; what `take` refuses.
+    pub fn each(&self, take: &mut dyn FnMut(&Block) -> Result<()>) -> Result<()> {
+        match self {
+            Self::InMemory(block) => take(block),
+            Self::InFiles(files) => {
+                let rows = files.shape.rows();
+                (0..rows)
+                    .step_by(files.height)
+                    .try_for_each(|first| take(&files.read(first..rows.min(first + files.height))?))
+            }
+        }
+    }
+
+    /// Every `stride`th row and column of a cube of so many rows and columns, without lighting, p-values and posteriors.
+    ///
+    /// # Errors
+    /// Files that cannot be read.
+    pub fn every(&self, stride: usize, shape: Shape) -> Result<Block> {
+        let mut shown = Block::default();
+        match self {
+            Self::InMemory(block) => shown.add(block, shape.columns(), stride),
+            Self::InFiles(files) => {
+                for row in (0..shape.rows()).step_by(stride) {
+                    shown.add(&files.read(row..row + 1)?, shape.columns(), stride);
+                }
+            }
+        }
+        Ok(shown)
+    }
+}
+
+/// Maps in files, with the names that they have in a report.
+#[derive(Debug)]
+pub struct MapFiles {
+    shape: Shape,
+    /// Rows of a block.
+    height: usize,
+    material: NpyRows<u16>,
+    candidates: NpyRows<u16>,
+    flags: NpyRows<u8>,
+    temperature_k: NpyRows<f32>,
+    temperature_sigma_k: NpyRows<f32>,
+    lighting: NpyRows<f32>,
+    p_value: NpyRows<f32>,
+    posterior: NpyRows<f32>,
+    texture: NpyRows<f32>,
+    thermal: NpyRows<f32>,
+}
+
+impl MapFiles {
+    /// Files in `folder` for so many surroundings, `height` rows in a block.
+    pub(super) fn create(folder: &Path, height: usize, shape: Shape, surroundings: usize) -> Result<Self> {
+        let size = [shape.rows(), shape.columns()];
+        let map = |name: &str| NpyRows::create(&folder.join(name), &size);
+        Ok(Self {
+            shape,
+            height: height.max(1),
+            material: NpyRows::create(&folder.join("material.npy"), &size)?,
+            candidates: NpyRows::create(&folder.join("candidates.npy"), &size)?,
+            flags: NpyRows::create(&folder.join("flags.npy"), &size)?,
+            temperature_k: map("temperature_k.npy")?,
+            temperature_sigma_k: map("temperature_sigma_k.npy")?,
+            lighting: NpyRows::create(&folder.join("lighting.npy"), &[size[0], size[1], surroundings])?,
+            p_value: map("p_value.npy")?,
+            posterior: map("posterior.npy")?,
+            texture: map("texture.npy")?,
+            thermal: map("thermal.npy")?,
+        })
+    }
+
+    pub(super) fn put(&self, block: &Block) -> Result<()> {
+        let Block { first, maps, texture, thermal } = block;
+        self.material.write(*first, &maps.material)?;
+        self.candidates.write(*first, &maps.candidates)?;
+        self.flags.write(*first, &maps.flags)?;
+        for (file, values) in [
+            (&self.temperature_k, &maps.temperature_k),
+            (&self.temperature_sigma_k, &maps.temperature_sigma_k),
+            (&self.lighting, &maps.lighting),
+            (&self.p_value, &maps.p_value),
+            (&self.posterior, &maps.posterior),
+            (&self.texture, texture),
+            (&self.thermal, thermal),
+        ] {
+            file.write(*first, values)?;
+        }
+        Ok(())
+    }
+
+    fn read(&self, rows: Range<usize>) -> Result<Block> {
+        let of = |file: &NpyRows<f32>| file.read(rows.clone());
+        Ok(Block {
+            first: rows.start,
+            maps: Maps {
+                material: self.material.read(rows.clone())?,
+                candidates: self.candidates.read(rows.clone())?,
+                flags: self.flags.read(rows.clone())?,
+                temperature_k: of(&self.temperature_k)?,
+                temperature_sigma_k: of(&self.temperature_sigma_k)?,
+                ..Maps::default()
+            },
+            texture: of(&self.texture)?,
+            thermal: of(&self.thermal)?,
+        })
+    }
+
+    /// Where they are, in the order of the report.
+    #[must_use]
+    pub fn paths(&self) -> [&Path; 10] {
+        [
+            self.material.path(),
+            self.temperature_k.path(),
+            self.temperature_sigma_k.path(),
+            self.lighting.path(),
+            self.p_value.path(),
+            self.posterior.path(),
+            self.candidates.path(),
+            self.flags.path(),
+            self.texture.path(),
+            self.thermal.path(),
+        ]
+    }
+}

@@ -1,0 +1,276 @@
+//! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
+
+use super::DecomposeStudy;
+use super::kept::Kept;
+use super::ranks::ranked;
+use super::segmented::Segmented;
+use super::vision::{DRAWN, Vision, apart};
+pub use super::worth::TruthFound;
+use crate::Warning;
+use hadar::cube::{Found, Shape};
+use hadar::demand::Work;
+use hadar::error::Result;
+use hadar_estimate::decompose::{Maps, Method, Spared, Spatial, flag};
+use hadar_scenario::DecomposeScenario;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A cube decomposed.
+#[derive(Debug, Clone, Serialize)]
+pub struct Decomposed {
+    /// The question.
+    pub scenario: DecomposeScenario,
+    /// By which method.
+    pub method: Method,
+    /// What the file of the cube was read as.
+    pub read: Found,
+    /// Rows, columns and bands.
+    pub shape: Shape,
+    /// Names of the materials, in the order of their indices.
+    pub materials: Vec<String>,
+    /// All pixels.
+    pub pixels: usize,
+    /// Pixels with one candidate.
+    pub decided: usize,
+    /// Pixels with several candidates, or of which nothing is known.
+    pub undecided: usize,
+    /// Pixels that were left out, a sample of which is missing.
+    pub skipped: usize,
+    /// Of each material that was found.
+    pub found: Vec<MaterialRow>,
+    /// Of each class of the library; empty without classes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub classes: Vec<ClassRow>,
+    /// How many pixels have each flag.
+    pub flags: Vec<FlagCount>,
+    /// What a prior over the image did, if there was one.
+    pub spatial: Option<Spatial>,
+    /// What is drawn of it.
+    pub vision: Vision,
+    /// What is there by categories; nothing without `[[category]]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segmentation: Option<Segmented>,
+    /// How good the maps are, where that is known.
+    pub truth: Option<TruthFound>,
+    /// Time that it took, s.
+    pub seconds: f64,
+    /// What was done and what was spared.
+    pub stats: Work,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+    /// The maps.
+    #[serde(skip)]
+    pub kept: Kept,
+}
+
+/// What was found of one material.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MaterialRow {
+    /// Its name.
+    pub material: String,
+    /// Pixels of which it is the most probable material.
+    pub pixels: usize,
+    /// Those of them that have no other candidate.
+    pub decided: usize,
+    /// Median of their temperatures, K.
+    pub temperature_median_k: f64,
+    /// Between a tenth and nine tenths of them, K.
+    pub temperature_tenths_k: [f64; 2],
+    /// Median of the deviations, K.
+    pub temperature_sigma_median_k: f64,
+}
+
+/// What was found of a class.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ClassRow {
+    /// Its name.
+    pub class: String,
+    /// Spectra that it rests on.
+    pub spectra: usize,
+    /// Pixels of which one of its members is the most probable material.
+    pub pixels: usize,
+}
+
+/// How many pixels have a flag.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct FlagCount {
+    /// Its name.
+    pub flag: &'static str,
+    /// Its bit in `flags.npy`.
+    pub bit: u8,
+    /// Pixels.
+    pub pixels: usize,
+}
+
+/// What is counted of the maps, row after row.
+#[derive(Debug, Default)]
+pub(super) struct Counted {
+    pixels: usize,
+    decided: usize,
+    /// Pixels of each bit of the flags.
+    flags: [usize; 8],
+    /// Pixels of each material that was found, and those of them that are decided.
+    materials: BTreeMap<u16, [usize; 2]>,
+    spared: Spared,
+    spatial: Option<Spatial>,
+}
+
+impl Counted {
+    pub(super) fn take(&mut self, maps: &Maps) {
+        for (i, (material, flags)) in maps.material.iter().zip(&maps.flags).enumerate() {
+            let is_decided = maps.is_decided(i);
+            self.decided += usize::from(is_decided);
+            for (bit, count) in self.flags.iter_mut().enumerate() {
+                *count += usize::from(flags >> bit & 1);
+            }
+            let [pixels, decided] = self.materials.entry(*material).or_default();
+            *pixels += 1;
+            *decided += usize::from(is_decided);
+        }
+        self.pixels += maps.material.len();
+        self.spared = self.spared + maps.spared;
+        self.spatial = maps.spatial;
+    }
+
+    fn has(&self, flag: u8) -> usize {
+        self.flags.get(flag.trailing_zeros() as usize).copied().unwrap_or(0)
+    }
+
+    fn of(&self, material: usize) -> [usize; 2] {
+        let found = u16::try_from(material).ok().and_then(|material| self.materials.get(&material));
+        found.copied().unwrap_or_default()
+    }
+
+    /// How many pixels have each flag, and what the reader must know of them.
+    fn flags(&self, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+        let (pixels, skipped) = (self.pixels, self.has(flag::SKIPPED));
+        let flags: Vec<FlagCount> = flag::NAMES
+            .iter()
+            .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: self.has(*bit) })
+            .filter(|count| count.pixels > 0)
+            .collect();
+        if self.spared.unfinished > 0 {
+            warnings.push(Warning::UnconvergedFits { fits: self.spared.unfinished as usize });
+        }
+        if skipped > 0 {
+            warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
+        }
+        if let Some(Spatial { changed, settled, .. }) = self.spatial {
+            warnings.push(Warning::SpatialPrior { changed, pixels, settled });
+        }
+        let unfit = self.has(flag::NO_FIT);
+        if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
+            warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
+        }
+        flags
+    }
+}
+
+/// How many pixels of maps have each flag, and what the reader must know of them.
+pub(crate) fn flags(maps: &Maps, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+    let mut counted = Counted::default();
+    counted.take(maps);
+    counted.flags(warnings)
+}
+
+/// Shares of the temperatures of a material, and of their deviations, that are said.
+const TEMPERATURES: &[f64] = &[0.5, 0.1, 0.9];
+const DEVIATIONS: &[f64] = &[0.5];
+
+/// The temperatures of every material with pixels, and those between which a picture is drawn.
+pub(super) fn rows(
+    study: &DecomposeStudy,
+    counted: &Counted,
+    kept: &Kept,
+) -> Result<(Vec<MaterialRow>, [f64; 2])> {
+    let names = study.names.len();
+    let mut shares: Vec<&[f64]> = vec![TEMPERATURES; names];
+    shares.extend(vec![DEVIATIONS; names]);
+    shares.push(&DRAWN);
+    let rank = |share: f64, count: u64| (share * count as f64) as u64;
+    let found = ranked(&shares, rank, &mut |count| {
+        kept.each(&mut |block| {
+            let maps = &block.maps;
+            let each = maps.material.iter().zip(maps.temperature_k.iter().zip(&maps.temperature_sigma_k));
+            for (i, (material, (temperature_k, sigma_k))) in each.enumerate() {
+                let material = usize::from(*material);
+                if material < names && temperature_k.is_finite() {
+                    count(material, *temperature_k);
+                }
+                if material < names && sigma_k.is_finite() {
+                    count(names + material, *sigma_k);
+                }
+                if temperature_k.is_finite() && maps.is_decided(i) {
+                    count(2 * names, *temperature_k);
+                }
+            }
+            Ok(())
+        })
+    })?;
+    let at = |group: usize, i: usize| {
+        found.get(group).and_then(|own| own.get(i).copied().flatten()).map(f64::from)
+    };
+    let kelvin = |group: usize, i: usize| at(group, i).unwrap_or(f64::NAN);
+    let mut rows = Vec::new();
+    for (place, material) in study.names.iter().enumerate() {
+        let [pixels, decided] = counted.of(place);
+        if pixels > 0 {
+            rows.push(MaterialRow {
+                material: material.clone(),
+                pixels,
+                decided,
+                temperature_median_k: kelvin(place, 0),
+                temperature_tenths_k: [kelvin(place, 1), kelvin(place, 2)],
+                temperature_sigma_median_k: kelvin(names + place, 0),
+            });
+        }
+    }
+    rows.sort_by(|a, b| b.pixels.cmp(&a.pixels).then_with(|| a.material.cmp(&b.material)));
+    Ok((rows, apart([0, 1].map(|i| at(2 * names, i).unwrap_or(293.15)))))
+}
+
+/// What was found, put together.
+pub(super) fn summary(
+    study: &DecomposeStudy,
+    (method, seconds): (Method, f64),
+    (counted, found): (&Counted, Vec<MaterialRow>),
+    (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
+    mut warnings: Vec<Warning>,
+    kept: Kept,
+) -> Decomposed {
+    let (pixels, decided, skipped) = (counted.pixels, counted.decided, counted.has(flag::SKIPPED));
+    let classes = study.classes.iter().map(|(class, members)| ClassRow {
+        class: class.clone(),
+        spectra: members.len(),
+        pixels: members.iter().map(|member| counted.of(*member)[0]).sum(),
+    });
+    let flags = counted.flags(&mut warnings);
+    if let Some(found) = &segmentation {
+        let guessed = found.objects.iter().filter(|object| 2 * object.decided < object.pixels).count();
+        if guessed > 0 {
+            warnings.push(Warning::ObjectsUndecided { objects: guessed, of: found.objects.len() });
+        }
+    }
+    Decomposed {
+        scenario: study.scenario.clone(),
+        method,
+        read: study.read.clone(),
+        shape: study.cube.shape(),
+        materials: study.names.clone(),
+        pixels,
+        decided,
+        undecided: pixels - decided - skipped,
+        skipped,
+        found,
+        classes: classes.collect(),
+        flags,
+        spatial: counted.spatial,
+        vision,
+        segmentation,
+        truth,
+        seconds,
+        stats: counted.spared.work(),
+        warnings,
+        kept,
+    }
+}

@@ -1,0 +1,223 @@
+//! Distances from the target to one alternative, by every reading: per √photon, of a camera, and the photons they ask
+//! for where priors compete with the photons.
+
+use super::{Study, Surface};
+use hadar::demand::{self, Reason, Thing};
+use hadar::error::Result;
+use hadar::fisher::{Counting, Nuisance, Unknowns};
+use hadar::identifiability::local::{LocalDistance, LocalSolver};
+use hadar::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
+use hadar::scene::State;
+use hadar_scenario::DistanceKind;
+
+/// To what share of itself a nearest distance is proved where nobody asks: with one temperature to search at most, and more.
+const TOLERANCE: f64 = 1e-6;
+const TOLERANCE_OF_MANY: f64 = 1e-3;
+
+/// A statistical distance with what rounding may have done to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Statistical {
+    pub(super) distance: f64,
+    /// Where the solver tells it.
+    pub(super) relative_error: Option<f64>,
+}
+
+impl Statistical {
+    /// Whether the distance is enough whatever rounding did to it.
+    pub(super) fn reaches(self, required: f64) -> bool {
+        self.distance * (1.0 - self.relative_error.unwrap_or(0.0)) >= required
+    }
+}
+
+impl Study {
+    /// Books local distances, of whose columns of derivatives only those of the unknowns and the material are formed.
+    pub(super) fn book_local(&self, unknowns: &Unknowns, count: usize) {
+        let objects = self.surroundings.objects().len();
+        // The material, temperature and gain; lighting and temperature of every object.
+        let (asked, all) = (unknowns.parameters(objects).len() + 1, 3 + 2 * objects);
+        demand::computed(Thing::LocalDistances, count as u64);
+        demand::computed(Thing::DerivativeColumns, (count * asked) as u64);
+        let left_out = count * all.saturating_sub(asked);
+        demand::spared(Thing::DerivativeColumns, Reason::NotAsked, left_out as u64);
+    }
+
+    /// Books distances of a kind.
+    pub(super) fn book_distances(&self, kind: DistanceKind, count: usize) {
+        match kind {
+            DistanceKind::Nearest => demand::computed(Thing::NearestSearches, count as u64),
+            DistanceKind::Local => self.book_local(&self.unknowns, count),
+            DistanceKind::LocalUnknownGain => {
+                self.book_local(&self.unknowns.with(Nuisance::Gain), count);
+            }
+        }
+    }
+
+    /// Local distance per √photon among `photons` photons.
+    pub(super) fn local(
+        &self,
+        unknowns: Unknowns,
+        alternative: &Surface,
+        photons: f64,
+    ) -> Result<LocalDistance> {
+        self.book_local(&unknowns, 1);
+        LocalSolver::new(&self.bands, &self.surroundings, unknowns)
+            .per_photon(&self.target.emissivity, &alternative.emissivity, &self.state, photons)
+            .map_err(|error| error.at(self.scenario.place("bands")))
+    }
+
+    /// The same with gain unknown too.
+    pub(super) fn local_unknown_gain(&self, alternative: &Surface, photons: f64) -> Result<LocalDistance> {
+        self.local(self.unknowns.with(Nuisance::Gain), alternative, photons)
+    }
+
+    /// Whether there are more bands than unknowns without a prior.
+    pub(super) fn enough_bands(&self, unknowns: &Unknowns) -> bool {
+        let parameters = unknowns.parameters(self.surroundings.objects().len());
+        let free = parameters.iter().filter(|parameter| unknowns.sigma_prior(**parameter).is_none()).count();
+        self.bands.len() > free
+    }
+
+    /// To what share of a distance the nearest state is proved: as asked for, else what is cheap enough for the unknowns.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        let surroundings = if self.is_unknown(Nuisance::EnvironmentTemperature) {
+            self.surroundings.objects().len()
+        } else {
+            0
+        };
+        let searched = usize::from(self.is_unknown(Nuisance::Temperature)) + surroundings;
+        self.tolerance.unwrap_or(if searched <= 1 { TOLERANCE } else { TOLERANCE_OF_MANY })
+    }
+
+    /// A solver of nearest states that proves them.
+    pub(crate) fn nearest_solver(&self) -> NearestSolver<'_> {
+        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
+            .proving(self.tolerance())
+    }
+
+    pub(super) fn nearest(&self, alternative: &Surface, photons: f64) -> Result<NearestDistance> {
+        demand::computed(Thing::NearestSearches, 1);
+        self.nearest_solver().per_photon(
+            &self.target.emissivity,
+            &alternative.emissivity,
+            &self.state,
+            photons,
+        )
+    }
+
+    /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target.
+    pub(super) fn return_distance(
+        &self,
+        alternative: &Surface,
+        nearest: &NearestDistance,
+    ) -> Result<NearestDistance> {
+        demand::computed(Thing::NearestSearches, 1);
+        let back =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), StateRange::default())
+                .proving(self.tolerance())
+                .per_photon(
+                    &alternative.emissivity,
+                    &self.target.emissivity,
+                    &nearest.state,
+                    f64::INFINITY,
+                )?;
+        // The search counts per photon of the state that it sets out from.
+        let photons = |surface: &Surface, state: &State| {
+            hadar::sum::sum(&self.bands.weigh(&self.surroundings.signal(&surface.emissivity, state)))
+        };
+        let share = (photons(alternative, &nearest.state) / photons(&self.target, &self.state)).sqrt();
+        Ok(NearestDistance { distance: share * back.distance, lower: share * back.lower, ..back })
+    }
+
+    /// Statistical distance d of a kind at given counts and noise.
+    pub(super) fn statistical_distance(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        counting: &Counting,
+    ) -> Result<f64> {
+        self.statistical(kind, alternative, counting).map(|found| found.distance)
+    }
+
+    /// The same with its rounding error.
+    pub(super) fn statistical(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        counting: &Counting,
+    ) -> Result<Statistical> {
+        self.book_distances(kind, 1);
+        let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        let local = |unknowns: Unknowns| {
+            let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
+            let found = solver.with_counting(target, other, &self.state, counting)?;
+            Ok(Statistical { distance: found.distance, relative_error: Some(found.relative_error) })
+        };
+        match kind {
+            DistanceKind::Nearest => {
+                let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
+                Ok(Statistical {
+                    distance: self.sure(found.distance, found.lower),
+                    relative_error: Some(found.relative_error),
+                })
+            }
+            DistanceKind::Local => local(self.unknowns.clone()),
+            DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),
+        }
+    }
+
+    /// What a verdict may rest on: the distance where it is proved, else what is proved of it. Priors have no part in a proof,
+    /// so that with them it is what the search found.
+    pub(super) fn sure(&self, distance: f64, lower: f64) -> f64 {
+        let proved = lower >= (1.0 - self.tolerance()) * distance;
+        if self.unknowns.has_priors() || proved { distance } else { lower }
+    }
+
+    /// Distance per √photon of a kind, priors counting as among `photons` photons.
+    pub(super) fn distance_per_photon(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        photons: f64,
+    ) -> Result<f64> {
+        match kind {
+            DistanceKind::Nearest => self.nearest(alternative, photons).map(|nearest| nearest.distance),
+            DistanceKind::Local => {
+                self.local(self.unknowns.clone(), alternative, photons).map(|local| local.distance)
+            }
+            DistanceKind::LocalUnknownGain => {
+                self.local_unknown_gain(alternative, photons).map(|local| local.distance)
+            }
+        }
+    }
+
+    /// What is unknown for the distance that decides.
+    pub(super) fn decisive_unknowns(&self) -> Unknowns {
+        match self.scenario.requirement.by {
+            DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
+            DistanceKind::Nearest | DistanceKind::Local => self.unknowns.clone(),
+        }
+    }
+
+    /// Photons at which √N d₀(N) meets the requirement, d₀ depending on N through the priors.
+    pub(super) fn photons_with_priors(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+    ) -> Result<Option<f64>> {
+        let excess = |log: f64| {
+            let photons = log.exp();
+            let distance = self.distance_per_photon(kind, alternative, photons)?;
+            Ok((photons.sqrt() * distance / self.required).max(1e-300).ln())
+        };
+        // From a millionth of a photon to 10⁶⁰ of them.
+        let (low, high) = (-14.0, 138.0);
+        if excess(high)? < 0.0 {
+            return Ok(None);
+        }
+        if excess(low)? >= 0.0 {
+            return Ok(Some(0.0));
+        }
+        hadar::root::crossing(low, high, excess).map(|log| Some(log.exp()))
+    }
+}

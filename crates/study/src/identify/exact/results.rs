@@ -1,0 +1,99 @@
+//! Simulated decisions as data.
+
+use crate::Warning;
+use hadar::identifiability::lattice::LatticeDetection;
+use hadar_simulate::sequential::{Interval, Plan};
+
+/// The simulated decision of one pair beside its limits.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ExactPair {
+    /// The alternative.
+    pub alternative: String,
+    /// Photons of the target.
+    pub photons: f64,
+    /// Statistical distance to the nearest state.
+    pub statistical_distance_nearest: f64,
+    /// Local statistical distance.
+    pub statistical_distance_local: f64,
+    /// Φ of the nearest distance: the limit of the balanced accuracy at large N.
+    pub limit: f64,
+    /// Φ of the local distance: what the paper's distance promises.
+    pub local: f64,
+    /// Estimate for a test of best fits, from the return distance.
+    pub two_sided: f64,
+    /// Rigorous bounds on the error between the two states, by Bhattacharyya, Chernoff and others.
+    pub error_lower: f64,
+    /// See `error_lower`.
+    pub error_upper: f64,
+    /// Simulated share of right decisions, averaged over the two states.
+    pub balanced: f64,
+    /// Its confidence interval.
+    pub balanced_interval: Interval,
+    /// Share of right decisions with the target true, and with the alternative true.
+    pub classes: [f64; 2],
+    /// Trials of both classes.
+    pub trials: u64,
+    /// Fits that did not converge.
+    pub unconverged: u64,
+    /// Algorithm 1 on a lattice, in up to three bands.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lattice: Option<LatticeDetection>,
+}
+
+/// The simulated decision among all materials at once.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ExactLibrary {
+    /// Share of trials in which the target is recognised among all alternatives.
+    pub probability: f64,
+    /// Its confidence interval.
+    pub interval: Interval,
+    /// Share of decisions for each material, the target first.
+    pub decisions: Vec<(String, f64)>,
+    /// Union bound of a test that knows all states, the alternatives in their nearest: 1 less the sum of the pairs'
+    /// upper bounds on missing the target. No bound of `probability`.
+    pub union_bound_known_states: f64,
+    /// Trials.
+    pub trials: u64,
+}
+
+/// All simulated decisions.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Exact {
+    /// Law of counting.
+    pub statistics: &'static str,
+    /// Where counts are drawn by the Gaussian law: how far its distribution function is from that of photons with
+    /// electronic noise, at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal_error: Option<f64>,
+    /// Random generator, with its version.
+    pub generator: &'static str,
+    /// Seed.
+    pub seed: u64,
+    /// Confidence level of the intervals.
+    pub level: f64,
+    /// Pair by pair, the hardest first.
+    pub pairs: Vec<ExactPair>,
+    /// Among all of them; `None` for a single alternative.
+    pub library: Option<ExactLibrary>,
+}
+
+impl Exact {
+    /// What must be said where trials ended before the interval was as narrow as asked for.
+    pub(in super::super) fn ended_early(&self, plan: &Plan) -> Option<Warning> {
+        let of_library = self.library.iter().map(|library| library.interval);
+        let intervals = self.pairs.iter().map(|pair| pair.balanced_interval).chain(of_library);
+        let wide: Vec<f64> =
+            intervals.map(|i| i.half_width()).filter(|reached| *reached > plan.half_width()).collect();
+        let widest = wide.iter().copied().fold(0.0, f64::max);
+        (!wide.is_empty()).then(|| Warning::TrialsEnded {
+            wide: wide.len(),
+            simulations: self.pairs.len() + usize::from(self.library.is_some()),
+            most_trials: plan.most_trials(),
+            widest,
+            asked: plan.half_width(),
+        })
+    }
+}

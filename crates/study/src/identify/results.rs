@@ -1,0 +1,198 @@
+//! What is known of every pair, and of the target against all alternatives, as data.
+
+use super::super::{ClassAnswer, PriorAverage, Warning};
+use hadar::demand::Work;
+use hadar::identifiability::Status;
+use hadar::identifiability::detection::ErrorBracket;
+use hadar_scenario::{DistanceKind, Scenario};
+use std::collections::BTreeMap;
+
+/// What can be told apart from the target, alternative by alternative.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct Identification {
+    /// The scenario with its defaults filled in.
+    pub scenario: Scenario,
+    /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
+    pub photon_radiance: f64,
+    /// The pairs, in the order of the alternatives.
+    pub pairs: Vec<PairResult>,
+    /// The alternative that is hardest to tell apart.
+    pub limiting: String,
+    /// The target against the library as a whole (Algorithm 3).
+    pub identifiability: Identifiability,
+    /// The hardest alternative on average over the priors; `None` without priors, or where it was not asked for.
+    pub prior_average: Option<PriorAverage>,
+    /// What the members of classes say together, alternative by alternative; empty without classes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub classes: Vec<ClassAnswer>,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+    /// What it took. Searches within an average over priors, a choice of bands or a simulated decision are part of that
+    /// section and not counted one by one.
+    pub stats: Work,
+}
+
+/// A target against all its alternatives (Algorithm 3): the one hardest to tell apart decides.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Identifiability {
+    /// Least distance per √photon, by the distance that decides (S33).
+    pub distance_minimum: f64,
+    /// Least statistical distance with the camera.
+    pub statistical_distance_minimum: Option<f64>,
+    /// Φ of it.
+    pub detection_probability_minimum: Option<f64>,
+    /// Identifiability log₂ 2P of the paper, bits.
+    pub identifiability_bits: Option<f64>,
+    /// Whether the camera tells the target from every alternative as reliably as required.
+    pub identifiable: Option<bool>,
+    /// Alternatives that it tells the target from.
+    pub told_from: Option<usize>,
+    /// The paper's prediction vector S32, target first: a heuristic, no bound and no test's probability.
+    pub prediction_heuristic: Option<Vec<Prediction>>,
+}
+
+/// An entry of the prediction vector S32.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Prediction {
+    /// The material.
+    pub material: String,
+    /// Its share by S32.
+    pub probability: f64,
+}
+
+/// The state of the alternative that looks most like the target.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct NearestState {
+    /// Its temperature, K.
+    pub temperature_k: f64,
+    /// Its lighting factors.
+    pub lighting: Vec<f64>,
+    /// Its gain.
+    pub gain: f64,
+    /// Temperatures of the environment objects, K, where they are unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub environment_temperature_k: Option<Vec<f64>>,
+}
+
+/// Photons for the requirement by each reading of the distance, shot noise only.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct PhotonsRequired {
+    /// By the nearest distance.
+    pub nearest: Option<f64>,
+    /// By the local distance.
+    pub local: Option<f64>,
+    /// By the local distance with unknown gain (S29).
+    pub local_unknown_gain: Option<f64>,
+}
+
+impl PhotonsRequired {
+    /// By the distance of a kind.
+    #[must_use]
+    pub const fn of(&self, kind: DistanceKind) -> Option<f64> {
+        match kind {
+            DistanceKind::Nearest => self.nearest,
+            DistanceKind::Local => self.local,
+            DistanceKind::LocalUnknownGain => self.local_unknown_gain,
+        }
+    }
+}
+
+/// How sure a nearest distance is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NearestProof {
+    /// No state is nearer by more than the share that is asked for.
+    Proved,
+    /// It is the best of a search; what is proved is farther below it.
+    Searched,
+}
+
+/// One target against one alternative.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct PairResult {
+    /// The target's material.
+    pub target: String,
+    /// The alternative.
+    pub alternative: String,
+    /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what tells them apart.
+    pub placeholders: bool,
+    /// Local distance per √photon, nuisances of the scenario.
+    pub distance_local: f64,
+    /// The same with gain unknown too: the paper's S29.
+    pub distance_local_unknown_gain: f64,
+    /// The same with nothing unknown but the material.
+    pub distance_no_nuisance: f64,
+    /// Nearest distance per √photon.
+    pub distance_nearest: f64,
+    /// What is proved of it: no state of the alternative is nearer.
+    pub distance_nearest_lower: f64,
+    /// Whether that is as near to it as is asked for.
+    pub proof: NearestProof,
+    /// Estimated relative rounding error of the nearest distance.
+    pub relative_error_nearest: f64,
+    /// The state it belongs to.
+    pub nearest_state: NearestState,
+    /// What of that state stands at the edge of its range.
+    pub nearest_at_edge: Vec<String>,
+    /// Distance from that state back to the target's material, per √photon of the target.
+    pub distance_return: f64,
+    /// Estimated relative rounding error of it.
+    pub relative_error_return: f64,
+    /// Photons for the requirement by the chosen distance, shot noise only; none suffice where `None`.
+    pub photons_required: Option<f64>,
+    /// The same by all three readings.
+    pub photons_required_by: PhotonsRequired,
+    /// Statistical distance of the camera by the chosen distance, with its noise.
+    pub statistical_distance: Option<f64>,
+    /// The same by the nearest distance: the limit, whichever decides.
+    pub statistical_distance_nearest: Option<f64>,
+    /// Whether that of the chosen distance reaches the requirement.
+    pub told_apart: Option<bool>,
+    /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
+    pub statistical_distance_shortcut: Option<f64>,
+    /// Φ(d).
+    pub detection_probability: Option<f64>,
+    /// 1 − Φ(d).
+    pub miss_probability: Option<f64>,
+    /// log₂ 2P.
+    pub information_bits: Option<f64>,
+    /// Mutual information of the binary decision.
+    pub mutual_information_bits: Option<f64>,
+    /// Estimate for a test that must fit temperature and lighting itself.
+    pub two_sided_probability: Option<f64>,
+    /// Rigorous bounds on the error of the best test between the two states; only by the nearest distance, which alone has two.
+    pub error_bracket: Option<ErrorBracket>,
+    /// Condition number of the scaled scores; `None` if infinite.
+    pub condition_number: Option<f64>,
+    /// Estimated bound on the relative rounding error of the local distance.
+    pub relative_error: f64,
+    /// Of the local distance with unknown gain.
+    pub relative_error_unknown_gain: f64,
+    /// Of the local distance with nothing unknown but the material.
+    pub relative_error_no_nuisance: f64,
+    /// Of the statistical distance of the camera, where a local distance decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_error_statistical: Option<f64>,
+    /// What kind of answer the local distance is.
+    pub status: Status,
+    /// The change of the nuisances that imitates the alternative, where the status is `blind`.
+    pub blind_direction: Option<BTreeMap<String, f64>>,
+}
+
+impl PairResult {
+    /// The distance per √photon of a kind.
+    #[must_use]
+    pub fn distance(&self, kind: DistanceKind) -> f64 {
+        match kind {
+            DistanceKind::Nearest => self.distance_nearest,
+            DistanceKind::Local => self.distance_local,
+            DistanceKind::LocalUnknownGain => self.distance_local_unknown_gain,
+        }
+    }
+}

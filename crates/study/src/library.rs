@@ -1,0 +1,151 @@
+//! A library made out of a heat cube: files looked up, emissivities, and what they are worth where the truth is known.
+
+mod results;
+
+pub use results::{ClusterRow, LibraryFound, TruthOfClusters};
+
+use super::Warning;
+use super::decompose::Truth;
+use super::heat_cube::{Measured, Said};
+use hadar::error::{Error, Result};
+use hadar::material::Library;
+use hadar_estimate::decompose::{NO_MATERIAL, Setting};
+use hadar_estimate::separation::{Asked, library_from_cube};
+use hadar_scenario::LibraryScenario;
+
+/// Share of χ²/ν above 1 up to which a cluster counts as one material.
+const MISFIT: f64 = 0.05;
+/// A mean emissivity that is known less well than this is hardly told.
+const HARDLY: f64 = 0.05;
+
+/// The scenario with everything it names looked up and checked.
+#[derive(Debug)]
+pub struct LibraryStudy {
+    scenario: LibraryScenario,
+    measured: Measured,
+    truth: Option<Truth>,
+}
+
+impl LibraryStudy {
+    /// Looks up everything that `scenario` names, materials of the surroundings in `library`, and opens its cube.
+    ///
+    /// # Errors
+    /// A cube and bands that do not agree, files that cannot be used, more clusters than pixels; with file, line and key.
+    pub fn new(scenario: &LibraryScenario, library: &Library) -> Result<Self> {
+        let said = Said {
+            cube: &scenario.cube,
+            bands: scenario.bands.as_ref(),
+            camera: scenario.camera.as_ref(),
+            environment: &scenario.environment,
+            source: &scenario.source,
+        };
+        let measured = said.measured(library)?;
+        let shape = measured.cube.shape();
+        let (pixels, [_, most]) = (shape.rows() * shape.columns(), scenario.clusters.count);
+        if most > pixels {
+            let found = format!("{most} clusters of {pixels} pixels");
+            let error = Error::malformed(found, "ask for fewer clusters than pixels");
+            return Err(said.at("clusters.count")(error));
+        }
+        let truth = scenario.truth.as_ref().map(|spec| {
+            Truth::open(spec, shape, measured.lights.len(), usize::from(NO_MATERIAL))
+                .map_err(|(key, error)| said.at(&key)(error))
+        });
+        Ok(Self { scenario: scenario.clone(), truth: truth.transpose()?, measured })
+    }
+
+    /// The library; `done` is told how many rows of the cube are finished, of how many.
+    ///
+    /// # Errors
+    /// Counts that are negative, a cube that cannot be read, more clusters than pixels that have an emissivity.
+    pub fn library(&self, seed: u64, done: &(dyn Fn(usize, usize) + Sync)) -> Result<LibraryFound> {
+        let start = std::time::Instant::now();
+        let (measured, scenario) = (&self.measured, &self.scenario);
+        let setting = Setting {
+            bands: &measured.bands,
+            library: &[],
+            surroundings: &measured.lights,
+            counts_per_radiance: &measured.counts_per_radiance,
+            var_added: &measured.var_added,
+            units_per_count: measured.units_per_count,
+            temperature_k: scenario.unknown.temperature_k,
+            lighting_total: scenario.unknown.lighting_total,
+            gain: false,
+            bad_bands: &measured.bad_bands,
+        };
+        let clusters = scenario.clusters;
+        let asked = Asked {
+            count: clusters.count,
+            max_emissivity: clusters.max_emissivity,
+            prior: scenario.emissivity,
+            seed,
+        };
+        let rows = measured.cube.shape().rows();
+        let finished = std::sync::atomic::AtomicUsize::new(0);
+        let progress = |more: usize| {
+            done(finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more, rows);
+        };
+        let found = library_from_cube(&setting, &asked, &measured.cube, &progress);
+        let found = found.map_err(|error| match &error {
+            Error::At { place, .. } if place.path.is_some() => error,
+            // What is asked for is wrong, or what the cube holds.
+            _ if error.to_string().contains("clusters of") => {
+                error.at(scenario.source.place("clusters.count"))
+            }
+            _ => error.in_file(&scenario.cube.data),
+        })?;
+        let truth = self.truth.as_ref().map(|truth| Ok(results::against(&truth.all()?, &found.maps)));
+        let truth = truth.transpose()?;
+        let mut warnings = measured.warnings.clone();
+        if clusters.count == [1, 1] {
+            warnings.push(Warning::OneCluster);
+        }
+        let asked_for = found.tried.iter().find(|one| one.left == found.clusters.len());
+        let asked_for = asked_for.map_or(clusters.count[1], |one| one.count);
+        if found.clusters.len() < asked_for {
+            warnings.push(Warning::ClustersWithoutPixels { left: found.clusters.len(), asked: asked_for });
+        }
+        if !found.settled {
+            warnings.push(Warning::ClustersNotSettled { rounds: found.rounds });
+        }
+        let bands = measured.bands.len().saturating_sub(measured.bad_bands.len());
+        let misfits: Vec<(String, f64)> = found
+            .clusters
+            .iter()
+            .enumerate()
+            .filter(|(_, one)| {
+                // χ²/ν of as many readings scatters by √(2/ν).
+                let scatter = (2.0 / (one.fitted * bands).max(1) as f64).sqrt();
+                one.chi_square_reduced > 1.0 + MISFIT.max(6.0 * scatter)
+            })
+            .map(|(i, one)| (results::name(i), one.chi_square_reduced))
+            .collect();
+        if !misfits.is_empty() {
+            warnings.push(Warning::ClusterDoesNotFit {
+                chi_square: misfits.iter().map(|one| one.1).fold(0.0, f64::max),
+                clusters: misfits.into_iter().map(|one| one.0).collect(),
+            });
+        }
+        if measured.lights.len() > 1 && scenario.unknown.lighting_total.is_none() {
+            warnings.push(Warning::MirrorNotExcluded { surroundings: measured.lights.len() });
+        }
+        if found.without_nem > 0 {
+            warnings.push(Warning::NoRelativeEmissivity { pixels: found.without_nem, of: found.drawn });
+        }
+        let hardly: Vec<(String, f64)> = found
+            .clusters
+            .iter()
+            .enumerate()
+            .filter(|(_, one)| one.sigma_mean > HARDLY)
+            .map(|(i, one)| (results::name(i), one.sigma_mean))
+            .collect();
+        if !hardly.is_empty() {
+            warnings.push(Warning::MagnitudeHardlyTold {
+                sigma: hardly.iter().map(|one| one.1).fold(0.0, f64::max),
+                clusters: hardly.into_iter().map(|one| one.0).collect(),
+            });
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        Ok(results::summary(scenario, measured, found, truth, seconds, warnings))
+    }
+}

@@ -1,0 +1,336 @@
+//! What a ranging study finds, as data.
+
+use crate::Warning;
+use hadar::cube::{Found, Shape};
+use hadar::demand::Work;
+use hadar::ranging::depth::DepthSolution;
+use hadar::ranging::metrics::DepthMetrics;
+use hadar_scenario::RangeScenario;
+use hadar_scenario::range::Demand;
+use serde::Serialize;
+use std::ops::Range;
+
+/// What depth is read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Signal {
+    /// All bands counted together, pixel by pixel: thermal imaging.
+    ThermalImage,
+    /// All bands apart: what no algorithm can beat.
+    HeatCube,
+    /// What remains of it where the temperature of every pixel is unknown and estimated from the bands: lighting and
+    /// emissivity as they are reconstructed, with the noise of that.
+    Reconstructed,
+    /// The same where the strength of the emission is unknown and estimated too: scattered light alone, as it is
+    /// reconstructed where the texture of the emissivity is not known beforehand.
+    ReconstructedBlind,
+    /// The scattered light alone, with only its own noise, as the paper has it: no camera measures it.
+    ScatteredAsMeasured,
+}
+
+impl Signal {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 5] = [
+        Self::ThermalImage,
+        Self::HeatCube,
+        Self::Reconstructed,
+        Self::ReconstructedBlind,
+        Self::ScatteredAsMeasured,
+    ];
+
+    /// In a table.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ThermalImage => "thermal image",
+            Self::HeatCube => "heat cube",
+            Self::Reconstructed => "cube, T estimated",
+            Self::ReconstructedBlind => "cube, T and e estimated",
+            Self::ScatteredAsMeasured => "scattered, as if measured",
+        }
+    }
+
+    /// In file names and column heads.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::ThermalImage => "thermal_image",
+            Self::HeatCube => "heat_cube",
+            Self::Reconstructed => "temperature_estimated",
+            Self::ReconstructedBlind => "temperature_and_emissivity_estimated",
+            Self::ScatteredAsMeasured => "scattered_as_measured",
+        }
+    }
+}
+
+/// The answer to 'how well can depth be measured'.
+#[derive(Debug, Serialize)]
+pub struct Ranging {
+    /// The scenario with its defaults filled in.
+    pub scenario: RangeScenario,
+    /// Yes or no, in a sentence and in numbers.
+    pub verdict: DepthVerdict,
+    /// What the file of the left view was read as, where there is one.
+    pub read: Option<Found>,
+    /// Rows, columns and bands of a view.
+    pub shape: Shape,
+    /// Where the cameras stand and what a pixel of disparity means.
+    pub geometry: Geometry,
+    /// Bounds, object by object; the first is all of them together.
+    pub objects: Vec<ObjectBounds>,
+    /// The four cells of Table S4 of the total signal, medians over all windows.
+    pub cells: Option<CellMedians>,
+    /// What would have to change for the demand to be just met, for the heat cube.
+    pub solve_for: Option<DepthSolutions>,
+    /// Witnesses along lines, where they were asked for.
+    pub lines: Vec<Line>,
+    /// Matching of whole views, where it was asked for.
+    pub matched: Vec<Matched>,
+    /// Relative error of medians and quantiles, at most, where there are too many windows to keep them all; none where exact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quantile_error: Option<f64>,
+    /// Windows that hold a missing sample, and have no bound; none where there are none.
+    #[serde(skip_serializing_if = "is_none")]
+    pub missing_windows: usize,
+    /// Row and column of the view, from 0, that the first value of the maps stands for: the centre of the first window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub maps_begin_at: Option<[usize; 2]>,
+    /// What was computed and what was skipped.
+    pub stats: Work,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+    /// Bounds of every window, for pictures and tables.
+    #[serde(skip)]
+    pub maps: BoundMaps,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+const fn is_none(count: &usize) -> bool {
+    *count == 0
+}
+
+/// Yes or no.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DepthVerdict {
+    /// Whether enough windows reach the demanded error; `None` without depth.
+    pub met: Option<bool>,
+    /// The answer, in JSON a sentence.
+    pub sentence: DepthFinding,
+    /// Share of the windows that reach it by the heat cube.
+    pub share: Option<f64>,
+    /// Share demanded.
+    pub required_share: f64,
+    /// The signal that decides.
+    pub signal: Signal,
+}
+
+/// What there is to be said of depth. Its `Display` is a sentence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DepthFinding {
+    /// Windows were held against the demand.
+    Judged {
+        /// Whether enough of them reach it.
+        met: bool,
+        /// Error demanded.
+        error: Demand,
+        /// Share of the windows that reach it.
+        share: f64,
+        /// Share demanded.
+        required_share: f64,
+        /// The signal that decides.
+        signal: Signal,
+        /// Another signal, and its share.
+        beside: Option<(Signal, f64)>,
+    },
+    /// Depth is not known.
+    NoDepth {
+        /// Median of the least disparity error by the heat cube, pixels.
+        disparity_error_px: f64,
+    },
+    /// No window has a bound.
+    NoBound,
+}
+
+/// The pair of cameras.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Geometry {
+    /// Distance of the cameras, m.
+    pub baseline_m: f64,
+    /// Focal length, m.
+    pub focal_length_m: f64,
+    /// Distance of the pixels, m.
+    pub pixel_m: f64,
+    /// Disparity of a point 10 m away, pixels.
+    pub disparity_at_10_m_px: f64,
+    /// Depth error that a disparity error of 1 pixel makes 10 m away, m.
+    pub depth_error_per_px_at_10_m: f64,
+    /// Deviation σ_d that diffraction gives to the position of one photon, pixels; 0 where the image has it in it.
+    pub sigma_diffraction_px: f64,
+}
+
+/// Bounds of the windows on one object.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObjectBounds {
+    /// Which.
+    pub name: String,
+    /// Windows that both cameras see.
+    pub windows: usize,
+    /// Least, median and largest depth, m; `None` where depth is not known.
+    pub depth_m: Option<[f64; 3]>,
+    /// What each signal gives.
+    pub signals: Vec<SignalBounds>,
+}
+
+/// Bounds of an object's windows by one signal: medians over the windows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SignalBounds {
+    /// Which.
+    pub signal: Signal,
+    /// How many have a bound; not those in which a sample is 0 and has no noise, whose information has no value.
+    pub windows: usize,
+    /// Photons of a window.
+    pub photons: f64,
+    /// γ: electronic noise over shot noise of a window.
+    pub gamma: f64,
+    /// Information J of one view about the window's position, pixel⁻².
+    pub information_per_px2: f64,
+    /// Deviation σ_c of one photon by correspondence, pixels; infinite without texture.
+    pub sigma_correspondence_px: f64,
+    /// Least disparity error, pixels.
+    pub disparity_error_px: f64,
+    /// Least depth error: the tenth, the half and nine tenths of the windows stay below, m.
+    pub depth_error_m: Option<[f64; 3]>,
+    /// Median of the least depth error over the depth.
+    pub relative_depth_error: Option<f64>,
+    /// Share of the windows that reach the demanded error.
+    pub share: Option<f64>,
+    /// Largest depth at which the demanded share of the windows would still reach it, their image as it is, m.
+    pub largest_depth_m: Option<f64>,
+}
+
+/// Medians of J over all windows, pixel⁻².
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CellMedians {
+    /// Neither spatial nor spectral resolution.
+    pub total: f64,
+    /// Spatial resolution alone.
+    pub spatial: f64,
+    /// Spectral resolution alone.
+    pub spectral: f64,
+    /// Both.
+    pub full: f64,
+    /// The last by another derivative (cubic spline, or central if that is the one asked for), over that asked for.
+    pub other_derivative: Option<f64>,
+}
+
+/// Each quantity with the others held.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DepthSolutions {
+    /// The signal they are for.
+    pub signal: Signal,
+    /// Depth of the window that decides, m.
+    pub depth_m: f64,
+    /// Its row and column.
+    pub pixel: [usize; 2],
+    /// Largest depth at which this window would do, if texture and window stay on the object, m.
+    pub farthest_on_object_m: Option<f64>,
+    /// δz that is allowed there, m.
+    pub allowed_m: f64,
+    /// Distance of the cameras, m.
+    pub baseline_m: DepthSolution,
+    /// Exposure of a frame, s.
+    pub exposure_s: Option<DepthSolution>,
+    /// Diameter of the lens, m.
+    pub aperture_m: Option<DepthSolution>,
+    /// Electronic noise per reading, counts.
+    pub noise_counts: Option<DepthSolution>,
+}
+
+/// Bounds and witnesses along a row of the left view.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// Row.
+    pub row: usize,
+    /// Signal.
+    pub signal: Signal,
+    /// Method of matching; `None` for the bound alone.
+    pub method: Option<&'static str>,
+    /// Columns of the windows' centres.
+    pub columns: Vec<usize>,
+    /// True depth, m.
+    pub depth_m: Vec<f64>,
+    /// Least depth error, m; of the disparity in pixels where depth is not known, as all that follows.
+    pub bound_m: Vec<f64>,
+    /// The same of a lens without diffraction, as the views are that are matched.
+    pub bound_without_diffraction_m: Vec<f64>,
+    /// Root-mean-square depth error of the matches, m.
+    pub rmse_m: Vec<f64>,
+    /// Mean depth error, m.
+    pub bias_m: Vec<f64>,
+    /// Share of matches that fail or miss by more than a pixel.
+    pub outliers: Vec<f64>,
+    /// Median over the columns of the scatter of the matches, √(RMSE² − bias²), over the bound without diffraction.
+    pub scatter_over_bound: Option<f64>,
+    /// Trials.
+    pub trials: usize,
+}
+
+/// A whole view matched once, with noise.
+#[derive(Debug, Clone, Serialize)]
+pub struct Matched {
+    /// Signal.
+    pub signal: Signal,
+    /// How far the depths are from the truth.
+    pub metrics: DepthMetrics,
+    /// Depth, m, `[row][column]` of the left view; NaN where there is no match.
+    #[serde(skip)]
+    pub depth_m: Vec<f64>,
+}
+
+/// Maps over the windows' centres in the left view.
+#[derive(Debug, Clone)]
+pub struct BoundMaps {
+    /// Rows of the centres.
+    pub rows: Range<usize>,
+    /// Columns of the centres.
+    pub columns: Range<usize>,
+    /// From a row and column that is here to the next: 1 for all of them. The others were given to the [`MapSink`](super::MapSink).
+    pub step: usize,
+    /// Least disparity error of each signal, pixels; NaN where there is none.
+    pub disparity_error_px: Vec<(Signal, Vec<f64>)>,
+    /// Depth at the centres, m.
+    pub depth_m: Vec<f64>,
+    /// Photons of the brightest band of the brightest pixel in one frame, of a scene.
+    pub brightest: Option<f64>,
+    /// Pictures of the left view, `[row][column]`.
+    pub pictures: Vec<(PictureKind, Vec<f64>)>,
+}
+
+impl Default for BoundMaps {
+    fn default() -> Self {
+        Self {
+            rows: 0..0,
+            columns: 0..0,
+            step: 1,
+            disparity_error_px: Vec::new(),
+            depth_m: Vec::new(),
+            brightest: None,
+            pictures: Vec::new(),
+        }
+    }
+}
+
+/// What a picture of the left view shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureKind {
+    /// Photons of all bands.
+    ThermalImage,
+    /// Photons that were scattered, all bands.
+    Scattered,
+    /// Share of the ground and the objects in the lighting, the rest being sky.
+    Lighting,
+    /// Temperature, K.
+    Temperature,
+    /// Depth, m.
+    Depth,
+}

@@ -1,0 +1,196 @@
+//! Names and files of a scenario looked up: materials on the nodes of the bands, surroundings, camera.
+
+mod defaults;
+mod finder;
+
+use self::defaults::{check_range, fill, state_range, unknowns};
+use self::finder::Finder;
+use super::air::{Air, Behind};
+use super::bands::{self, check_detector};
+use super::classes::Members;
+use super::warn::noise_that_moves;
+use super::{Study, Surface, camera, camera_bands};
+use hadar::demand::Skipping;
+use hadar::error::{Error, Result};
+use hadar::identifiability::detection;
+use hadar::material::{Library, Material};
+use hadar::scene::{EnvironmentObject, Surroundings};
+use hadar_scenario::{Reliability, Scenario};
+
+impl Study {
+    /// Looks up everything that `scenario` names, materials in `library`.
+    ///
+    /// # Errors
+    /// An unknown material or camera (with the nearest names), a file that cannot be used, a spectrum that
+    /// does not cover the bands; each with file, line and key.
+    ///
+    /// ```
+    /// use hadar::material::Library;
+    /// use Study;
+    /// let text = r#"
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    ///     [[environment]]
+    ///     temperature = "20 degC"
+    ///     lighting = 0.5
+    ///     [alternatives]
+    ///     materials = ["aluminium"]
+    /// "#;
+    /// let study = Study::new(&Scenario::from_toml(text, None)?, &Library::embedded()?)?;
+    /// let pair = &study.identify()?.pairs[0];
+    /// assert!((pair.distance_nearest / 8.852e-4 - 1.0).abs() < 1e-3);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn new(scenario: &Scenario, library: &Library) -> Result<Self> {
+        Self::new_skipping(scenario, library, Skipping::On)
+    }
+
+    /// The same, with every pair of members of classes searched in full where nothing is to be skipped.
+    ///
+    /// # Errors
+    /// As [`Study::new`].
+    pub fn new_skipping(scenario: &Scenario, library: &Library, skipping: Skipping) -> Result<Self> {
+        Self::with_members(scenario, library)?.of_worst_members(skipping)
+    }
+
+    /// The same with all members of classes side by side: those of the target's are [`Study::targets`], the first of which is the
+    /// target, and those of the alternatives' are alternatives of their own.
+    pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
+        let mut scenario = scenario.clone();
+        let mut finder = Finder { scenario: &scenario, library, warnings: Vec::new(), skies: Vec::new() };
+        finder.check_names()?;
+        let target =
+            finder.group("target.material", &scenario.target.material, scenario.target.extrapolate)?;
+        let environment = scenario
+            .environment
+            .iter()
+            .enumerate()
+            .map(|(k, object)| {
+                let found = object.material.as_ref().map(|material| {
+                    finder.find(&format!("environment[{k}].material"), material, object.extrapolate)
+                });
+                found.transpose()
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let behind = match scenario.background.as_ref().map(|behind| (behind.temperature_k, &behind.material))
+        {
+            None => None,
+            Some((temperature_k, None)) => Some((temperature_k, None)),
+            Some((temperature_k, Some(material))) => {
+                let extrapolate = scenario.background.as_ref().and_then(|behind| behind.extrapolate);
+                Some((temperature_k, Some(finder.find("background.material", material, extrapolate)?)))
+            }
+        };
+        let camera =
+            scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
+        let asked =
+            camera_bands::asked(&scenario.bands.source, camera.as_ref().zip(scenario.camera.as_ref()));
+        let bands = bands::at_centres(&asked, &scenario.source)?;
+        if let (Some(camera), Some(spec)) = (&camera, &scenario.camera) {
+            check_detector(&bands, camera, &scenario)?;
+            let place = |key: &str| scenario.place(key);
+            finder.warnings.extend(camera_bands::check(camera, spec, &asked, &bands, &place)?);
+            finder.warnings.extend(noise_that_moves(spec, &scenario.source));
+        }
+        let target = finder.covering(target, &bands, scenario.target.extrapolate)?;
+        let alternatives = finder.alternatives(&target, &bands)?;
+        let Finder { warnings, skies, .. } = finder;
+
+        let surfaces = std::iter::once(&target).chain(&alternatives).flat_map(|group| &group.members);
+        let surfaces: Vec<&Material> = surfaces.map(|(material, _)| material.as_ref()).collect();
+        let materials = bands::Materials { surfaces: &surfaces, environment: &environment };
+        let bands = bands::integrated(&scenario, bands, &materials)?;
+
+        let nodes = bands.nodes_cm1();
+        let on_nodes = |material: &Material, key: &str| {
+            Surface::of(material, nodes).map_err(|error| error.at(scenario.place(key)))
+        };
+        let objects = scenario
+            .environment
+            .iter()
+            .zip(&environment)
+            .enumerate()
+            .map(|(k, (object, material))| {
+                let key = format!("environment[{k}].material");
+                let surface = material.as_ref().map(|material| on_nodes(material, &key)).transpose()?;
+                Ok(EnvironmentObject {
+                    temperature_k: object.temperature_k,
+                    emissivity: surface.map(|surface| surface.emissivity),
+                })
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let surroundings = Surroundings::new(nodes, objects)?;
+        let lighting: Vec<f64> = scenario.environment.iter().map(|object| object.lighting).collect();
+        let state = surroundings
+            .state(scenario.target.temperature_k, &lighting)
+            .map_err(|error| error.at(scenario.place("environment")))?;
+        let members = |group: &finder::Group<'_>| {
+            let surfaces = group.members.iter().map(|(material, _)| on_nodes(material, &group.key));
+            let weights = group.members.iter().map(|(_, weight)| *weight).collect();
+            Ok(Members::new(&group.name, group.spec.clone(), surfaces.collect::<Result<_>>()?, weights))
+        };
+        let target = members(&target)?;
+        let groups = alternatives.iter().map(members).collect::<Result<Vec<_>>>()?;
+        let alternatives: Vec<Surface> = groups.iter().flat_map(|group| group.surfaces.clone()).collect();
+        let behind = behind
+            .map(|(temperature_k, material)| {
+                let surface = match &material {
+                    Some(material) => on_nodes(material, "background.material")?,
+                    None => Surface::of(&Material::constant("blackbody", 1.0)?, nodes)?,
+                };
+                Ok::<_, Error>(Behind { surface, temperature_k })
+            })
+            .transpose()?;
+        let required = match scenario.requirement.reliability {
+            Reliability::Distance(distance) => distance,
+            Reliability::DetectionProbability(probability) => {
+                detection::distance_for_probability(probability)
+                    .map_err(|error| error.at(scenario.place("requirement.detection_probability")))?
+            }
+            Reliability::Rates { detection, false_alarm } => {
+                detection::distance_for_rates(detection, false_alarm)
+                    .map_err(|error| error.at(scenario.place("requirement.false_alarm_probability")))?
+            }
+        };
+        let atmosphere = Air::of(&scenario)?;
+        scenario.bands.source = asked;
+        let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
+        let range = state_range(&scenario);
+        check_range(&scenario, &range)?;
+        let names: Vec<String> = groups.iter().map(|group| group.name.clone()).collect();
+        fill(&mut scenario, &names, camera.as_ref(), &range);
+        let mut study = Self {
+            scenario,
+            open_bands: bands.clone(),
+            bands,
+            atmosphere,
+            air: Vec::new(),
+            behind,
+            surroundings,
+            state,
+            unknowns,
+            range,
+            target: target.surfaces.first().cloned().ok_or_else(no_members)?,
+            alternatives,
+            members: [vec![target], groups],
+            classes: Vec::new(),
+            paired: Vec::new(),
+            camera,
+            tolerance: None,
+            required,
+            skies,
+            warnings,
+            looked_up: library.work(),
+            remembered: None,
+        };
+        study.check_sight()?;
+        (study.bands, study.air) = study.received(study.camera.as_ref(), study.scenario.target.distance_m)?;
+        study.check_magnitudes()?;
+        Ok(study)
+    }
+}
+
+fn no_members() -> Error {
+    Error::malformed("the class has no members", "write materials = [\"my_skin.csv\"]")
+}

@@ -1,0 +1,71 @@
+//! What a scenario leaves silent: unknowns and ranges, and the echo that says everything.
+
+use hadar::error::{Error, Result};
+use hadar::fisher::Unknowns;
+use hadar::identifiability::nearest::StateRange;
+use hadar::instrument::figures::{self, Part, TABLE};
+use hadar::instrument::{Camera, CameraSpec};
+use hadar_scenario::{MaterialRef, Scenario};
+
+pub(super) fn unknowns(scenario: &Scenario) -> Result<Unknowns> {
+    let unknown = &scenario.unknown;
+    let mut unknowns =
+        Unknowns::new(unknown.nuisances.iter().copied())?.lighting_total(unknown.lighting_total)?;
+    for (nuisance, sigma) in &unknown.priors {
+        unknowns = unknowns.prior(*nuisance, *sigma)?;
+    }
+    Ok(unknowns)
+}
+
+pub(super) fn state_range(scenario: &Scenario) -> StateRange {
+    let default = StateRange::default();
+    StateRange {
+        temperature_k: scenario.alternatives.temperature_range_k.unwrap_or(default.temperature_k),
+        lighting: scenario.alternatives.lighting_range.unwrap_or(default.lighting),
+        lighting_sum: default.lighting_sum,
+    }
+}
+
+/// The least lighting of all objects together must fit into what they may sum to.
+pub(super) fn check_range(scenario: &Scenario, range: &StateRange) -> Result<()> {
+    let least = range.lighting[0] * scenario.environment.len() as f64;
+    let most = scenario.unknown.lighting_total.unwrap_or(range.lighting_sum);
+    if least <= most {
+        return Ok(());
+    }
+    let found = format!("a lighting of at least {} for each object makes {least} in all", range.lighting[0]);
+    let error = Error::malformed(found, format!("lower it, so that all together stay at or below {most}"));
+    Err(error.at(scenario.place("alternatives.lighting")))
+}
+
+/// Fills in what the scenario left silent and others knew, so that its echo says everything.
+pub(super) fn fill(
+    scenario: &mut Scenario,
+    alternatives: &[String],
+    camera: Option<&Camera>,
+    range: &StateRange,
+) {
+    if scenario.alternatives.materials.is_none() {
+        scenario.alternatives.materials =
+            Some(alternatives.iter().map(|name| MaterialRef::Name(name.clone())).collect());
+    }
+    scenario.alternatives.temperature_range_k = Some(range.temperature_k);
+    scenario.alternatives.lighting_range = Some(range.lighting);
+    if let (Some(spec), Some(camera)) = (scenario.camera.as_mut(), camera) {
+        // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
+        // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
+        let used = CameraSpec::of(camera);
+        for row in TABLE {
+            let is_filled = match row.part {
+                Part::Own => true,
+                Part::Noise => false,
+                Part::Condition(noises) => {
+                    noises.iter().any(|key| figures::row(key).is_some_and(|noise| noise.is_given(spec)))
+                }
+            };
+            if is_filled && !row.is_given(spec) {
+                row.lay(&used, spec);
+            }
+        }
+    }
+}

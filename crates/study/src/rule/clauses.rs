@@ -1,0 +1,301 @@
+//! What comes of the clauses of a rule, as data.
+
+use super::results::{
+    ApproachResult, CameraVerdict, EnvelopeResult, Grade, NotIdentifiable, RuleRequirement, StopResult,
+    WhoMeets,
+};
+use super::uncertainty::MarginUncertainty;
+use crate::companion::Companion;
+use crate::proviso::Proviso;
+use crate::{Shortfall, Warning};
+use hadar::demand::Work;
+use hadar_scenario::rule::Verdict;
+use hadar_scenario::{Date, Rule};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+/// Which cameras meet a rule.
+///
+/// In JSON a rule without `[[clause]]` has what its one clause has, `requirement`, `envelope`, `cameras` and
+/// `not_identifiable`, at the top; one with clauses has the verdict on each camera in `cameras`, and all else in `clauses`.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct RuleAnswer {
+    /// The rule with its defaults filled in.
+    pub rule: Rule,
+    /// The day that was asked about.
+    pub on: Option<Date>,
+    /// Which cameras do, in JSON a sentence.
+    pub sentence: WhoMeets,
+    /// Every camera, in the order of the rule.
+    pub cameras: Vec<CameraAnswer>,
+    /// What every clause says of it, in the order of the rule.
+    pub clauses: Vec<ClauseAnswer>,
+    /// What the reader must know; what concerns one camera is with that camera.
+    pub warnings: Vec<Warning>,
+    /// What it took.
+    pub stats: Work,
+}
+
+/// A camera before all clauses.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct CameraAnswer {
+    /// Its name.
+    pub name: String,
+    /// What comes of it.
+    pub verdict: Verdict,
+    /// Whether it meets the rule.
+    pub passes: bool,
+    /// The least of the margins: what is there over what is demanded.
+    pub margin: f64,
+    /// The clause of that margin; none of a rule without clauses.
+    pub limiting_clause: Option<String>,
+    /// The interval of the margin of that clause; `None` where no uncertainty is stated.
+    pub interval: Option<[f64; 2]>,
+    /// Clauses that it does not meet.
+    pub fails: Vec<String>,
+    /// Clauses that it may or may not meet.
+    pub undecided: Vec<String>,
+    /// The weakest evidence that its verdict rests on.
+    pub grade: Grade,
+    /// What meeting the rule hangs on.
+    pub provided: Option<Proviso>,
+}
+
+/// A clause before all cameras.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct ClauseAnswer {
+    /// Its name; none of a rule without clauses.
+    pub name: Option<String>,
+    /// Its kind, e.g. `tell-apart`.
+    pub kind: &'static str,
+    /// Its wording.
+    pub text: Option<String>,
+    /// How the vehicle comes to a stop, if that is said.
+    pub stop: Option<StopResult>,
+    /// Which cameras meet it, in JSON a sentence.
+    pub sentence: WhoMeets,
+    /// What was found.
+    #[serde(flatten)]
+    pub found: Found,
+}
+
+/// What was found of a clause, by what it demands.
+#[derive(Debug, Clone, serde::Serialize)]
+#[serde(untagged)]
+pub enum Found {
+    /// Materials that are told apart.
+    Apart(Box<ApartAnswer>),
+    /// A quantity that a camera reaches.
+    Measured(MeasuredAnswer),
+}
+
+/// A clause that tells materials apart.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct ApartAnswer {
+    /// What is demanded.
+    pub requirement: RuleRequirement,
+    /// Where it is demanded.
+    pub envelope: EnvelopeResult,
+    /// Every camera, in the order of the rule.
+    pub cameras: Vec<CameraVerdict>,
+    /// The part of the envelope in which no camera could do it; `None` where only the verdict was asked for.
+    pub not_identifiable: Option<NotIdentifiable>,
+    /// What sizing practice says of every camera at its worst distance, where the rule says how large the target is.
+    pub companions: Vec<Companion>,
+}
+
+/// A clause that demands a quantity.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct MeasuredAnswer {
+    /// Which.
+    pub quantity: Measure,
+    /// How much of it, in the unit of the quantity.
+    pub demanded: f64,
+    /// What that means, in words.
+    pub definition: String,
+    /// Every camera, in the order of the rule.
+    pub cameras: Vec<MeasuredVerdict>,
+}
+
+/// A quantity that a clause demands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// Pixels across the target, at least.
+    Pixels,
+    /// Error of the temperature, K, at most.
+    TemperatureErrorK,
+    /// Error of the distance, m, at most.
+    DepthErrorM,
+    /// Error of the distance over the distance, at most.
+    RelativeDepthError,
+}
+
+/// One camera against a quantity.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct MeasuredVerdict {
+    /// Its name.
+    pub name: String,
+    /// What comes of it.
+    pub verdict: Verdict,
+    /// Whether it meets the clause.
+    pub passes: bool,
+    /// What it does not meet.
+    pub fails_by: Vec<Shortfall>,
+    /// What it may or may not meet, its figures being uncertain.
+    pub undecided_by: Vec<Shortfall>,
+    /// How well its margin is known; `None` where no uncertainty is stated.
+    pub uncertainty: Option<MarginUncertainty>,
+    /// What it reaches where that is the least; `None` where there is no bound on an error.
+    pub value: Option<f64>,
+    /// How much better than demanded: the value over the demand of what must be large, the demand over the value of an error.
+    pub margin: f64,
+    /// How that is known.
+    pub grade: Grade,
+    /// Where it is the least.
+    pub limiting: MeasuredScene,
+    /// How the vehicle comes nearer, if that is said.
+    pub approach: Option<ApproachResult>,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+}
+
+/// Where a camera is nearest to failing; what does not matter is `None`.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
+#[non_exhaustive]
+pub struct MeasuredScene {
+    /// Distance, m.
+    pub distance_m: Option<f64>,
+    /// What is looked at.
+    pub target: Option<String>,
+    /// Its temperature, K.
+    pub temperature_k: Option<f64>,
+    /// Lighting factor of every object.
+    pub lighting: Vec<f64>,
+    /// Temperature of every object, K.
+    pub surroundings_k: Vec<f64>,
+}
+
+/// What is the same of every line: one camera before one clause.
+#[derive(Debug, Clone, Copy)]
+pub struct Line<'a> {
+    /// The camera.
+    pub camera: &'a str,
+    /// What comes of it.
+    pub verdict: Verdict,
+    /// Least margin.
+    pub margin: f64,
+    /// Evidence.
+    pub grade: Grade,
+    /// What it does not meet.
+    pub fails_by: &'a [Shortfall],
+    /// What it may or may not meet.
+    pub undecided_by: &'a [Shortfall],
+    /// How well the margin is known.
+    pub uncertainty: Option<&'a MarginUncertainty>,
+    /// What meeting it hangs on.
+    pub provided: Option<Proviso>,
+    /// How the vehicle comes nearer.
+    pub approach: Option<&'a ApproachResult>,
+    /// What the reader must know.
+    pub warnings: &'a [Warning],
+}
+
+impl ClauseAnswer {
+    /// What it says of every camera.
+    #[must_use]
+    pub fn lines(&self) -> Vec<Line<'_>> {
+        match &self.found {
+            Found::Apart(apart) => apart.cameras.iter().map(CameraVerdict::line).collect(),
+            Found::Measured(measured) => measured.cameras.iter().map(MeasuredVerdict::line).collect(),
+        }
+    }
+
+    /// Materials that are told apart, if that is what it demands.
+    #[must_use]
+    pub fn apart(&self) -> Option<&ApartAnswer> {
+        match &self.found {
+            Found::Apart(apart) => Some(apart),
+            Found::Measured(_) => None,
+        }
+    }
+}
+
+impl CameraVerdict {
+    /// What it has in common with other kinds of verdicts.
+    #[must_use]
+    pub fn line(&self) -> Line<'_> {
+        Line {
+            camera: &self.name,
+            verdict: self.verdict,
+            margin: self.margin,
+            grade: self.grade,
+            fails_by: &self.fails_by,
+            undecided_by: &self.undecided_by,
+            uncertainty: self.uncertainty.as_ref(),
+            provided: self.provided,
+            approach: self.approach.as_ref(),
+            warnings: &self.warnings,
+        }
+    }
+}
+
+impl MeasuredVerdict {
+    /// What it has in common with other kinds of verdicts.
+    #[must_use]
+    pub fn line(&self) -> Line<'_> {
+        Line {
+            camera: &self.name,
+            verdict: self.verdict,
+            margin: self.margin,
+            grade: self.grade,
+            fails_by: &self.fails_by,
+            undecided_by: &self.undecided_by,
+            uncertainty: self.uncertainty.as_ref(),
+            provided: None,
+            approach: self.approach.as_ref(),
+            warnings: &self.warnings,
+        }
+    }
+}
+
+impl RuleAnswer {
+    /// The one clause of a rule without `[[clause]]`, which tells materials apart.
+    #[must_use]
+    pub fn only(&self) -> Option<&ApartAnswer> {
+        match self.clauses.as_slice() {
+            [one] if one.name.is_none() => one.apart(),
+            _ => None,
+        }
+    }
+}
+
+impl Serialize for RuleAnswer {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        map.serialize_entry("rule", &self.rule)?;
+        map.serialize_entry("sentence", &self.sentence)?;
+        match (self.only(), self.clauses.first()) {
+            (Some(only), Some(clause)) => {
+                map.serialize_entry("stop", &clause.stop)?;
+                map.serialize_entry("requirement", &only.requirement)?;
+                map.serialize_entry("envelope", &only.envelope)?;
+                map.serialize_entry("cameras", &only.cameras)?;
+                map.serialize_entry("not_identifiable", &only.not_identifiable)?;
+                map.serialize_entry("companions", &only.companions)?;
+            }
+            _ => {
+                map.serialize_entry("cameras", &self.cameras)?;
+                map.serialize_entry("clauses", &self.clauses)?;
+            }
+        }
+        map.serialize_entry("warnings", &self.warnings)?;
+        map.serialize_entry("stats", &self.stats)?;
+        map.end()
+    }
+}

@@ -1,0 +1,223 @@
+//! A clause that demands a distance: the depth of an object of a rendered street, known to an error in a share of its windows.
+//!
+//! The object is put at several distances, from the nearest to the farthest from which a frame is taken: those of `[stop]`, else that of the
+//! clause's own scene, else those of the envelope. The bounds are those of [`crate::range`]. The least depth error grows with the
+//! square of the distance as long as the picture stays as it is, so that the largest depth at which the demand would still be met gives
+//! the margin. The picture does not stay as it is, and what is near may be known worse: the worst of the distances counts. A distance at
+//! which no window shows the object is not met.
+
+use super::apart::steps;
+use super::approach::{Approach, Moving, contradiction, spoiled};
+use super::cameras::Named;
+use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::results::Grade;
+use crate::range::{RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::{Shortfall, Warning};
+use hadar::error::{Error, Result};
+use hadar::material::Library;
+use hadar_scenario::range::{Demand, RangeScenario, Subject};
+use hadar_scenario::rule::{Clause, DepthDemand, DepthObject, StopSpec, Verdict};
+use hadar_scenario::{BandsSpec, Rule};
+use hadar_simulate::render::StreetSpec;
+
+/// Ends of distances nearer to each other than by this factor have none between them.
+const ALIKE: f64 = 1.05;
+
+/// A clause with its cameras before the street.
+#[derive(Debug)]
+pub(super) struct DepthClause {
+    demand: DepthDemand,
+    cameras: Vec<Before>,
+}
+
+#[derive(Debug)]
+struct Before {
+    named: Named,
+    /// From every distance (m), the least first.
+    studies: Vec<(f64, RangeStudy)>,
+    approach: Option<Approach>,
+    spoiled: Vec<Shortfall>,
+    /// Whether the rule has air, which the street has not.
+    air: bool,
+}
+
+/// What is found from one distance.
+struct Seen {
+    met: bool,
+    margin: f64,
+    /// Median of the object's windows, m; as asked for where none shows it.
+    distance_m: f64,
+    warnings: Vec<Warning>,
+}
+
+impl DepthClause {
+    pub(super) fn new(
+        rule: &Rule,
+        clause: &Clause,
+        demand: &DepthDemand,
+        cameras: &[Named],
+        library: &Library,
+    ) -> Result<Self> {
+        let before = |(index, named): (usize, &Named)| {
+            let mut scenario = rule.with_camera(clause, index);
+            let bands = named.bands(&scenario)?;
+            let stop = clause.stop.as_ref().map(StopSpec::stop);
+            let approach = stop.map(|stop| Approach::of(stop, &named.camera, bands));
+            let distances_m = distances(clause, demand, approach.as_ref());
+            let moving = Moving::of(clause).map(|moving| match stop {
+                Some(_) => moving,
+                None => Moving { distance_m: distances_m.first().copied(), ..moving },
+            });
+            let spoiled = spoiled(moving, stop, &named.camera, bands);
+            let air = scenario.atmosphere.is_some();
+            let bands = BandsSpec { source: scenario.bands.source.clone(), ..BandsSpec::default() };
+            let mut range = RangeScenario {
+                title: scenario.title.take(),
+                subject: Subject::Scene(Box::new(demand.scene.clone())),
+                bands: Some(bands),
+                camera: scenario.camera.take(),
+                stereo: demand.stereo.clone(),
+                requirement: demand.requirement,
+                source: scenario.source,
+            };
+            let from = |distance_m: f64| {
+                let mut scene = demand.scene.clone();
+                *demand.object.distance_m(&mut scene) = Some(distance_m);
+                range.subject = Subject::Scene(Box::new(scene));
+                Ok((distance_m, RangeStudy::new(&range, library)?))
+            };
+            let studies = distances_m.into_iter().map(from).collect::<Result<_>>()?;
+            Ok(Before { named: named.clone(), studies, approach, spoiled, air })
+        };
+        let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
+        Ok(Self { demand: demand.clone(), cameras })
+    }
+
+    pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
+        let mut verdicts = Vec::with_capacity(self.cameras.len());
+        for (done, camera) in self.cameras.iter().enumerate() {
+            verdicts.push(self.judged(camera)?);
+            progress(done + 1);
+        }
+        let share = self.demand.requirement.share;
+        let (quantity, demanded, error) = match self.demand.requirement.error {
+            Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m, hadar::words::length(error_m)),
+            Demand::Relative(part) => (Measure::RelativeDepthError, part, hadar::words::share(part)),
+        };
+        let looks = self.cameras.iter().map(|camera| camera.studies.len()).max().unwrap_or(1);
+        let from = match looks {
+            1 => String::new(),
+            _ => format!(", at {looks} distances from the nearest to the farthest"),
+        };
+        let mut definition = format!(
+            "least depth error of the {} within {error} in {} of its windows{from}",
+            self.demand.object.name(),
+            hadar::words::share(share)
+        );
+        if self.cameras.iter().any(|camera| camera.air) {
+            definition += " (the air of the rule is not in it: no camera is said to meet it)";
+        }
+        if self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()) {
+            definition +=
+                " (uncertain figures are not carried into it: no camera that has some is said to meet it)";
+        }
+        Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
+    }
+
+    /// What is found from one distance.
+    fn seen(&self, distance_m: f64, study: &RangeStudy) -> Result<Seen> {
+        let found = study.range(&RangePlan::default(), None, &|_, _| ())?;
+        let object = found.objects.iter().find(|object| object.name == self.demand.object.name());
+        let by = |signal: Signal| {
+            object.and_then(|object| object.signals.iter().find(|bounds| bounds.signal == signal))
+        };
+        let share = |bounds: &SignalBounds| bounds.share.unwrap_or(-1.0);
+        let better = |a: &'_ SignalBounds, b: &'_ SignalBounds| share(a) > share(b);
+        let cube = by(Signal::HeatCube);
+        let bounds = match (cube, by(Signal::ThermalImage)) {
+            (Some(cube), Some(image)) if better(image, cube) => Some(image),
+            (cube, _) => cube,
+        };
+        let met = bounds.is_some_and(|bounds| share(bounds) >= self.demand.requirement.share);
+        let depth_m = object.and_then(|object| object.depth_m).map(|[_, median, _]| median);
+        let reach = bounds.and_then(|bounds| bounds.largest_depth_m).zip(depth_m).map(|(most, z)| most / z);
+        let power = match self.demand.requirement.error {
+            Demand::Absolute(_) => 2,
+            Demand::Relative(_) => 1,
+        };
+        let margin = reach.map_or(0.0, |reach| reach.powi(power));
+        Ok(Seen { met, margin, distance_m: depth_m.unwrap_or(distance_m), warnings: found.warnings })
+    }
+
+    fn judged(&self, before: &Before) -> Result<MeasuredVerdict> {
+        let seen = before.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
+        let mut seen = seen.collect::<Result<Vec<_>>>()?;
+        seen.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
+        let mut warnings: Vec<Warning> = Vec::new();
+        for warning in seen.iter().flat_map(|seen| &seen.warnings) {
+            if !warnings.iter().any(|known| known.code() == warning.code()) {
+                warnings.push(warning.clone());
+            }
+        }
+        warnings.extend(contradiction(&before.named.camera));
+        let worst = seen
+            .into_iter()
+            .next()
+            .ok_or_else(|| Error::malformed("a depth from no distance", "report this as a bug"))?;
+        let Seen { met, margin, distance_m, .. } = worst;
+        let demanded = match self.demand.requirement.error {
+            Demand::Absolute(error_m) => error_m,
+            Demand::Relative(part) => part,
+        };
+        let mut fails_by = Vec::new();
+        if !met {
+            fails_by.push(Shortfall::DepthError);
+        }
+        fails_by.extend(before.spoiled.iter().copied());
+        if warnings.iter().any(|warning| matches!(warning, Warning::PixelFull { .. })) {
+            fails_by.push(Shortfall::FullWell);
+        }
+        // The street has no air, and is rendered for each camera as it is stated: who passes without either may not with them.
+        let unasked = before.air || !before.named.uncertainty.is_empty();
+        let (verdict, undecided_by) = match (fails_by.is_empty(), unasked) {
+            (false, _) => (Verdict::Fails, Vec::new()),
+            (true, true) => (Verdict::Undecided, vec![Shortfall::DepthError]),
+            (true, false) => (Verdict::Meets, Vec::new()),
+        };
+        Ok(MeasuredVerdict {
+            name: before.named.name.clone(),
+            verdict,
+            passes: verdict == Verdict::Meets,
+            fails_by,
+            undecided_by,
+            uncertainty: None,
+            value: (margin > 0.0).then(|| demanded / margin),
+            margin,
+            // The street is one scene, and nobody's: a picture with other texture has another bound.
+            grade: Grade::Assumed,
+            limiting: MeasuredScene {
+                distance_m: Some(distance_m),
+                target: Some(self.demand.object.name().to_owned()),
+                ..MeasuredScene::default()
+            },
+            approach: before.approach.as_ref().map(|approach| approach.result),
+            warnings,
+        })
+    }
+}
+
+/// From where the object is looked at, m.
+fn distances(clause: &Clause, demand: &DepthDemand, approach: Option<&Approach>) -> Vec<f64> {
+    let own = *demand.object.distance_m(&mut demand.scene.clone());
+    let street = StreetSpec::default();
+    let [_, silent] = match demand.object {
+        DepthObject::Person => street.person_at_m,
+        DepthObject::Car => street.car_at_m,
+    };
+    let range = approach.map(|approach| approach.distance_m).or(own.map(|z| [z; 2]));
+    match range.or(clause.envelope().distance_m).unwrap_or([silent; 2]) {
+        [least, most] if least == most => vec![least],
+        [least, most] if most < ALIKE * least => vec![least, most],
+        ends => steps(ends).collect(),
+    }
+}

@@ -1,0 +1,124 @@
+//! The margin of a camera that tells materials apart, taken anew with other figures: what `uncertainty` asks for.
+
+use super::apart::{Candidate, TellApart};
+use super::approach::Approach;
+use super::envelope::{Estimate, Sighted};
+use super::search::Searched;
+use super::uncertainty::{Errors, MarginUncertainty, Uncertain};
+use crate::Study;
+use crate::size::sensitivity::{linear, ripple::Ripple, scatter::Scatter};
+use hadar::error::{Place, Result};
+use hadar::instrument::Camera;
+use hadar::scene::State;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+
+const SEED: u64 = 1;
+
+/// A scene in which a margin is taken anew.
+struct Scene {
+    sighted: Sighted,
+    alternative: usize,
+    state: State,
+}
+
+impl TellApart {
+    /// How well the margin of a camera is known, in its worst scene `at` and in those of other pairs that come `near` it.
+    pub(super) fn guarded(
+        &self,
+        uncertain: &Uncertain<'_>,
+        candidate: &Candidate,
+        worst: &Searched,
+        near: Vec<Estimate>,
+        at: &Study,
+    ) -> Result<MarginUncertainty> {
+        let distance = worst.pair.distance;
+        let scenes = self.scenes(candidate, worst, near);
+        let ripple = self
+            .scenario
+            .sensitivity
+            .map(|spec| Ripple::new(at.bands.nodes_cm1(), spec.emissivity_error, spec.correlation_cm1))
+            .map(Scatter::Ripple);
+        let emissivities = match (self.scenario.sensitivity, &ripple, scenes.first()) {
+            (Some(spec), Some(ripple), Some(own)) => {
+                let surface = &at.alternatives[worst.pair.alternative];
+                let (nearest, counting) = (&worst.pair.nearest, &own.sighted.counting);
+                let sigma = linear::sigma(at, surface, nearest, counting, distance, [ripple, ripple]);
+                Some((spec.emissivity_error, sigma / self.required))
+            }
+            _ => None,
+        };
+        let of = |camera: &Camera, errors: Errors| {
+            self.least_margin((candidate, &scenes), ripple.as_ref(), camera, errors)
+        };
+        uncertain.of_margin(distance / self.required, emissivities, true, &of)
+    }
+
+    /// What is uncertain of a camera, if anything is.
+    pub(super) fn uncertain<'a>(
+        &self,
+        candidate: &Candidate,
+        place: &'a (dyn Fn(&str) -> Place + Sync),
+    ) -> Result<Option<Uncertain<'a>>> {
+        let emissivities = self.scenario.sensitivity.is_some();
+        Uncertain::of(&candidate.named, (self.rule.coverage_factor, emissivities), place)
+    }
+
+    /// The scenes in which a margin is taken anew: the worst one, and those of other pairs that come near it.
+    fn scenes(&self, candidate: &Candidate, worst: &Searched, near: Vec<Estimate>) -> Vec<Scene> {
+        let own = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
+        let mut scenes = vec![Scene {
+            sighted: own.clone(),
+            alternative: worst.pair.alternative,
+            state: worst.pair.state.clone(),
+        }];
+        let others = near
+            .into_iter()
+            .filter(|pair| (pair.sighted, pair.alternative) != (worst.pair.sighted, worst.pair.alternative));
+        scenes.extend(others.map(|pair| Scene {
+            sighted: candidate.sighted[pair.sighted].clone(),
+            alternative: pair.alternative,
+            state: pair.state,
+        }));
+        scenes
+    }
+
+    /// The distance of a scene; of one from where the first frame is taken, where the camera takes it now.
+    fn seen_from_m(&self, candidate: &Candidate, sighted: &Sighted, camera: &Camera) -> Option<f64> {
+        let own = sighted.study.scenario.target.distance_m;
+        let farthest = candidate.distance_m.map(|[_, most]| most);
+        match &self.stop {
+            Some(spec) if own == farthest => {
+                Some(Approach::of(spec.stop(), camera, sighted.study.bands.len()).distance_m[1])
+            }
+            _ => own,
+        }
+    }
+
+    /// The least margin of a camera in some scenes.
+    fn least_margin(
+        &self,
+        (candidate, scenes): (&Candidate, &[Scene]),
+        ripple: Option<&Scatter<'_>>,
+        camera: &Camera,
+        errors: Errors,
+    ) -> Result<f64> {
+        let mut least = f64::INFINITY;
+        for Scene { sighted, alternative, state } in scenes {
+            let distance_m = self.seen_from_m(candidate, sighted, camera);
+            let sighted = sighted.before(camera, distance_m, &self.envelope)?;
+            let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
+            let pair: [Vec<f64>; 2] = match (errors, ripple) {
+                (Errors::Stream(stream), Some(ripple)) => {
+                    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+                    random.set_stream(stream);
+                    pair.map(|surface| ripple.applied(&surface.emissivity, &mut random))
+                }
+                _ => pair.map(|surface| surface.emissivity.clone()),
+            };
+            let found = sighted.solver().with_counting(&pair[0], &pair[1], state, &sighted.counting)?;
+            least = least.min(found.distance);
+        }
+        Ok(least / self.required)
+    }
+}

@@ -1,0 +1,389 @@
+//! One camera against a rule: the least distance over all materials, alternatives and scenes, and what would raise it.
+//!
+//! A few scenes of every pair give an estimate from above. The pairs are then searched in the order of these estimates,
+//! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
+//! that is above that, not its own worst case to 1 %.
+
+use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
+use super::apart::{Candidate, TellApart};
+use super::approach::{contradiction, spoiled};
+use super::envelope::{Estimate, Sighted, brightest};
+use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, WithoutPlaceholders};
+use super::uncertainty::{self, Judged};
+use crate::proviso::Proviso;
+use hadar::demand::{self, Reason, Thing};
+use hadar::error::{Error, Result};
+use hadar::fisher::Nuisance;
+use hadar::identifiability::detection;
+use hadar::instrument::{Camera, Readout};
+use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
+use hadar::policy::{self, CapCode, Quantity};
+use hadar::scene::State;
+use hadar_scenario::rule::{StopSpec, Verdict};
+use std::collections::BTreeMap;
+
+/// How far below the distance attained a bound may be, as a share of it.
+pub(super) const TOLERANCE: f64 = 0.01;
+/// Boxes of the branch and bound for each pair at most: a second or so.
+const BOXES: u64 = 200_000;
+
+/// Share of the worst distance up to which the scenes of other pairs count where figures are uncertain.
+const NEAR: f64 = 1.5;
+
+/// A pair's scene with what is known of it.
+pub(super) struct Searched {
+    pub(super) pair: Estimate,
+    /// Where it was found, if between the distances of the candidate.
+    pub(super) between: Option<Box<Sighted>>,
+    pub(super) certificate: Option<Certificate>,
+    pub(super) lower_bound: Option<f64>,
+    /// Boxes that its proof took.
+    pub(super) boxes: u64,
+}
+
+/// What a camera's image of the brightest scene is like.
+#[derive(Debug, Default)]
+struct Image {
+    /// Motion during an exposure, pixels.
+    blur: Option<f64>,
+    /// Photons of the fullest reading.
+    reading: f64,
+    longest_exposure_s: Option<f64>,
+    /// What is wrong with it.
+    spoiled: Vec<Shortfall>,
+}
+
+impl Searched {
+    /// What the estimate says alone.
+    fn estimated(pair: Estimate) -> Self {
+        Self { pair, between: None, certificate: None, lower_bound: None, boxes: 0 }
+    }
+}
+
+impl TellApart {
+    /// The verdict on one camera; `alone` asks for no more than it. `progress` is told how many pairs are done.
+    pub(super) fn judged(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        progress: &dyn Fn(usize),
+    ) -> Result<CameraVerdict> {
+        let place = |key: &str| self.rule.camera_place(candidate.named.index, key);
+        let uncertain = self.uncertain(candidate, &place)?;
+        let alone = alone && uncertain.is_none();
+        let (worst, near) = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
+            Error::malformed("there is no pair of materials", "name one in alternatives.materials")
+        })?;
+        let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
+        let surface = &sighted.study.alternatives[worst.pair.alternative];
+        let distance = worst.pair.distance;
+        let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
+        let mut warnings = self.warnings_of(candidate);
+        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
+        let image = image.unwrap_or_default();
+        let mut others = vec![image.spoiled.clone()];
+        let uncertainty = match uncertain.filter(|_| distance > 0.0) {
+            Some(uncertain) => {
+                for camera in uncertain.sides() {
+                    others.push(self.image(candidate, &camera?).spoiled);
+                }
+                Some(self.guarded(&uncertain, candidate, &worst, near, &at)?)
+            }
+            None => None,
+        };
+        let Judged { verdict, fails_by, undecided_by } =
+            uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
+        let passes = verdict == Verdict::Meets;
+        let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
+        let certificate =
+            worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
+        let mut grade = Grade::Proved;
+        // What is proved of the worst scene is guarded as its margin is, and what is guarded rests on draws.
+        let guard = uncertainty.as_ref().map_or(0.0, |found| distance / self.required - found.low);
+        let lower_bound = worst.lower_bound.map(|bound| (bound - guard * self.required).max(0.0));
+        grade = grade.guarded(verdict, uncertainty.as_ref());
+        if passes && lower_bound.is_none_or(|bound| bound < self.required) {
+            warnings.push(Warning::NotProved);
+            grade = grade.max(Grade::Searched);
+        }
+        if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
+            warnings.push(Warning::BrightestNoise);
+            // A scene that fails with more noise than it has itself may do with its own.
+            if fails_by.as_slice() == [Shortfall::Distance] {
+                grade = Grade::Searched;
+            }
+        }
+        let mut limiting = limiting(
+            candidate.distance_matters,
+            &at,
+            surface,
+            &worst.pair,
+            self.is_unknown(Nuisance::EnvironmentTemperature),
+        );
+        let (mut fixes, mut without_placeholders) = (None, None);
+        if let Some(warning) = at.placeholders(surface) {
+            warnings.push(warning);
+            without_placeholders = if alone { None } else { self.without_placeholders(candidate)? };
+        }
+        if !alone {
+            let shot = at.nearest(surface, f64::INFINITY)?;
+            limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
+                .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
+            let local = at.local(at.unknowns.clone(), surface, f64::INFINITY)?;
+            if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
+                warnings.push(Warning::FragileScene);
+            }
+            if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
+                let task = at.task(&camera);
+                let mut quantities = at.solutions(&camera, surface)?;
+                // Where the target is and how fast it moves is the rule's to say.
+                quantities
+                    .0
+                    .retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
+                let mut any = false;
+                let mut spoils = BTreeMap::new();
+                for (quantity, solution) in &quantities.0 {
+                    let Some(value) = solution.value else { continue };
+                    let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    // That is not the quantity's doing.
+                    spoiled.retain(|by| *by != Shortfall::MotionUnknown);
+                    // Those of the limiting scene that the brightest one does not know of.
+                    spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
+                        CapCode::Diffraction => Some(Shortfall::Diffraction),
+                        CapCode::Impractical => Some(Shortfall::Impractical),
+                        CapCode::LowestNoise => Some(Shortfall::LowestNoise),
+                        CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
+                    }));
+                    any |= spoiled.is_empty();
+                    if !spoiled.is_empty() {
+                        spoils.insert(quantity.key(), spoiled);
+                    }
+                }
+                fixes = Some(Fixes { any, spoils, quantities });
+            }
+        }
+        let frames = warnings.iter().find_map(|warning| match *warning {
+            Warning::FramesInMotion(proviso) => Some(proviso),
+            _ => None,
+        });
+        let bands = at.bands.len();
+        Ok(CameraVerdict {
+            name: candidate.named.name.clone(),
+            passes,
+            fails_by,
+            provided: frames.filter(|_| passes),
+            bands,
+            readout: at.camera.as_ref().map_or(Readout::Simultaneous, |camera| camera.readout),
+            sweep_s: at.camera.as_ref().map_or(0.0, |camera| camera.sweep_s(bands)),
+            without_placeholders,
+            margin: distance / self.required,
+            statistical_distance: distance,
+            detection_probability: detection::probability(distance),
+            lower_bound,
+            certificate,
+            limiting,
+            fixes,
+            motion_blur_pixels: image.blur,
+            brightest_reading: image.reading,
+            longest_exposure_s: image.longest_exposure_s,
+            approach: candidate.approach.as_ref().map(|approach| approach.result),
+            verdict,
+            undecided_by,
+            uncertainty,
+            grade,
+            warnings,
+        })
+    }
+
+    fn is_unknown(&self, nuisance: Nuisance) -> bool {
+        self.scenario.unknown.nuisances.contains(&nuisance)
+    }
+
+    /// The image that a camera makes of the brightest scene, from the least distance.
+    fn image(&self, candidate: &Candidate, camera: &Camera) -> Image {
+        let mut image = Image::default();
+        for near in &candidate.near {
+            let Ok(ranges) = near.ranges(&self.envelope) else { continue };
+            let (state, camera) = (brightest(&ranges), Some(camera.clone()));
+            let bright = Study { state, camera, ..near.clone() };
+            let Some(seen) = bright.camera_result(bright.photon_radiance()) else { continue };
+            image.reading = image.reading.max(seen.brightest_reading);
+        }
+        let bands = candidate.near.first().map_or(1, |near| near.bands.len());
+        image.blur = self.moving.and_then(|moving| moving.blur_pixels(camera, bands));
+        let blurred =
+            image.blur.map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
+        let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
+        image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
+        image.spoiled = spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands);
+        if camera.full_well.is_some_and(|full| image.reading > full) {
+            image.spoiled.push(Shortfall::FullWell);
+        }
+        if camera.clone().checked().is_err()
+            && camera.frame_s().is_some_and(|frame| camera.exposure_s > frame)
+        {
+            image.spoiled.push(Shortfall::FrameRate);
+        }
+        image
+    }
+
+    /// What is to be said of a camera before any scene is searched.
+    fn warnings_of(&self, candidate: &Candidate) -> Vec<Warning> {
+        let Some(near) = candidate.near.first() else { return Vec::new() };
+        let Some(camera) = &near.camera else { return Vec::new() };
+        let state =
+            near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
+        let mut warnings = Study { state, ..near.clone() }.camera_warnings();
+        let frames = self.pace_m_s().and_then(|speed| Proviso::of(camera, near.bands.len(), speed));
+        warnings.extend(frames.map(Warning::FramesInMotion));
+        let farthest_m = candidate.distance_m.map(|[_, most]| most);
+        warnings.extend(near.size_unknown(camera, farthest_m));
+        let assumed = camera.assumed.iter().cloned();
+        warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
+        warnings.extend(contradiction(camera).filter(|_| self.moving.is_some()));
+        if self.moving.is_some() && self.image(candidate, camera).blur.is_none() {
+            warnings.push(Warning::RuleMotionBlurUnknown);
+        }
+        warnings
+    }
+
+    /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
+    fn worst(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        counts: &dyn Fn(&Surface, &Surface) -> bool,
+        progress: &dyn Fn(usize),
+    ) -> Result<Option<(Searched, Vec<Estimate>)>> {
+        let mut pairs: Vec<Estimate> = Vec::new();
+        for (index, sighted) in candidate.sighted.iter().enumerate() {
+            let (estimates, searched) = sighted.estimates(index)?;
+            demand::computed(Thing::NearestSearches, searched);
+            let Study { target, alternatives, .. } = &sighted.study;
+            pairs
+                .extend(estimates.into_iter().filter(|pair| counts(target, &alternatives[pair.alternative])));
+        }
+        pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let count = pairs.len();
+        let mut found: Vec<Searched> = Vec::with_capacity(count);
+        let mut best = f64::INFINITY;
+        let mut all = true;
+        for (done, pair) in pairs.into_iter().enumerate() {
+            if alone && (pair.distance < self.required || best < self.required) {
+                demand::spared(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
+                if best >= self.required {
+                    return Ok(Some((Searched::estimated(pair), Vec::new())));
+                }
+                all = false;
+                break;
+            }
+            let sighted = &candidate.sighted[pair.sighted];
+            let enough = if alone { self.required } else { best };
+            let mut tolerance = (1.0 - enough / pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+            let mut searched = search(sighted, pair, tolerance)?;
+            best = best.min(searched.pair.distance);
+            // A worst case below the estimate may leave a bound that does not reach what is enough.
+            let short = |searched: &Searched, enough: f64| {
+                let exact = searched.pair.distance * (1.0 - TOLERANCE);
+                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - TOLERANCE)))
+            };
+            let enough = if alone { self.required } else { best };
+            if tolerance > TOLERANCE && short(&searched, enough) {
+                tolerance = (1.0 - enough / searched.pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+                searched = search(sighted, searched.pair, tolerance)?;
+                best = best.min(searched.pair.distance);
+            }
+            found.push(searched);
+            progress(done + 1);
+        }
+        let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
+        let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
+        let near: Vec<Estimate> = found
+            .iter()
+            .map(|searched| &searched.pair)
+            .filter(|pair| pair.distance <= NEAR * best)
+            .cloned()
+            .collect();
+        let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
+        let Some(worst) = worst else { return Ok(None) };
+        if !all {
+            // A scene below the requirement, and other pairs not looked at.
+            return Ok(Some((Searched::estimated(worst.pair), near)));
+        }
+        let (worst, lower) = match (candidate.between.is_empty(), worst.pair.distance > 0.0) {
+            (false, true) => {
+                let (worst, along) = self.between(candidate, worst, alone, counts)?;
+                (worst, lower.zip(along).map(|(lower, along)| lower.min(along)))
+            }
+            _ => (worst, lower),
+        };
+        if alone && worst.pair.distance < self.required {
+            return Ok(Some((Searched { lower_bound: None, certificate: None, ..worst }, near)));
+        }
+        let distance = worst.pair.distance;
+        let certificate = match (worst.certificate, lower) {
+            (Some(Certificate::Equilibrium), _) => Some(Certificate::Equilibrium),
+            _ if distance == 0.0 => Some(Certificate::Equilibrium),
+            (_, None) => Some(Certificate::DenseSearch { points: 0 }),
+            (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
+            (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
+        };
+        let lower_bound = lower.map(|bound| bound * candidate.share);
+        Ok(Some((Searched { lower_bound, certificate, ..worst }, near)))
+    }
+
+    /// The worst of the pairs that are more than two numbers, where one of numbers alone is the worst of all.
+    fn without_placeholders(&self, candidate: &Candidate) -> Result<Option<WithoutPlaceholders>> {
+        let known = |target: &Surface, other: &Surface| target.placeholders(other).is_none();
+        Ok(self.worst(candidate, false, &known, &|_| ())?.map(|(worst, _)| {
+            let Study { target, alternatives, .. } = &candidate.sighted[worst.pair.sighted].study;
+            WithoutPlaceholders {
+                margin: worst.pair.distance / self.required,
+                statistical_distance: worst.pair.distance,
+                target: target.name.clone(),
+                alternative: alternatives[worst.pair.alternative].name.clone(),
+            }
+        }))
+    }
+}
+
+/// The worst case of one pair, no worse than its estimate.
+pub(super) fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
+    let surface = &sighted.study.alternatives[pair.alternative];
+    let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
+    let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
+        worst_case(&sighted.scene(surface), &sighted.ranges, &effort)?;
+    demand::computed(Thing::WorstCases, 1);
+    demand::computed(Thing::NearestSearches, evaluations);
+    demand::computed(Thing::Boxes, boxes);
+    let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
+    let lower_bound = lower_bound.map(|bound| bound.min(pair.distance));
+    Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound, boxes })
+}
+
+fn limiting(
+    distance_matters: bool,
+    at: &Study,
+    surface: &Surface,
+    pair: &Estimate,
+    environment: bool,
+) -> LimitingScene {
+    let State { temperature_k, lighting, environment_k, .. } = pair.state.clone();
+    LimitingScene {
+        target: at.target.name.clone(),
+        alternative: surface.name.clone(),
+        temperature_k,
+        lighting,
+        surroundings_k: environment_k,
+        distance_m: at.scenario.target.distance_m,
+        distance_matters,
+        nearest_state: NearestState {
+            temperature_k: pair.nearest.temperature_k,
+            lighting: pair.nearest.lighting.clone(),
+            gain: pair.nearest.gain,
+            environment_temperature_k: environment.then(|| pair.nearest.environment_k.clone()),
+        },
+        placeholders: at.target.placeholders(surface),
+        hardware_m2_s: None,
+    }
+}

@@ -1,0 +1,74 @@
+//! Two quantities at a time, for the scenario's camera and the limiting alternative.
+
+use crate::Study;
+use crate::size::{Reach, Sizing};
+use hadar::demand;
+use hadar::error::Result;
+use hadar::policy::caps::Circumstances;
+use hadar::policy::trade_off::{self, PAIRS, POINTS, TradeOff};
+use hadar::policy::{Motion, Quantity, Trial};
+use rayon::prelude::*;
+
+impl Study {
+    /// The trade-off curves of the pairs in [`trade_off::PAIRS`], against the limiting alternative of `result`; none
+    /// without a camera. Those of a speed are left out where the scenario does not say enough for one, those of noise
+    /// where the detector has none, those of distance where nothing depends on it (neither size nor air), and all that
+    /// have no solution anywhere.
+    ///
+    /// # Errors
+    /// As [`Study::size`].
+    pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
+        let pairs = self.traded_off().into_par_iter();
+        let curves =
+            demand::gathered(pairs.map(|pair| demand::ledger_of(|| self.trade_off(result, pair, POINTS))))?;
+        Ok(curves.into_iter().flatten().collect())
+    }
+
+    /// The pairs of quantities that are traded off in this scenario, the second solved for along the first.
+    #[must_use]
+    pub fn traded_off(&self) -> Vec<(Quantity, Quantity)> {
+        let Some(camera) = &self.camera else { return Vec::new() };
+        let task = self.task(camera);
+        let known = |pair: &(Quantity, Quantity)| match pair.1 {
+            Quantity::Speed => Motion::of(camera, task.distance_m).is_some(),
+            Quantity::Noise => task.value(Quantity::Noise) > 0.0,
+            // Else distance does not matter.
+            Quantity::Frames => task.size_m.is_some() || self.scenario.atmosphere.is_some(),
+            _ => true,
+        };
+        PAIRS.into_iter().filter(known).collect()
+    }
+
+    /// One of the curves of [`Study::trade_offs`], of so many points between its boundaries; none where nothing along it suffices, or
+    /// without a camera.
+    ///
+    /// # Errors
+    /// As [`Study::size`].
+    pub fn trade_off(
+        &self,
+        result: &Sizing,
+        pair: (Quantity, Quantity),
+        points: usize,
+    ) -> Result<Option<TradeOff>> {
+        let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
+            return Ok(None);
+        };
+        let brightest = |trial: &Trial| self.brightest(trial);
+        let speed_m_s = self.scenario.requirement.speed_m_s;
+        let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
+        let mut solved = result.solve_for.iter().flat_map(|solutions| &solutions.0);
+        let alone = solved.find(|(quantity, _)| *quantity == pair.0).and_then(|(_, found)| found.value);
+        let as_now = result.verdict.statistical_distance.unwrap_or(0.0);
+        let mut reach = Reach::new(self, alternative);
+        let curve = trade_off::trace(
+            &self.task(camera),
+            pair,
+            as_now,
+            alone,
+            &given,
+            points,
+            &mut |task, quantity| reach.solve(task, quantity),
+        )?;
+        Ok(Some(curve).filter(TradeOff::has_solution))
+    }
+}

@@ -1,0 +1,123 @@
+//! Warnings on the camera in its scene: where an assumption of the bound fails.
+
+use super::super::identify::PairResult;
+use super::super::size::CameraResult;
+use super::super::{Study, Warning};
+use hadar::instrument::{Camera, CameraSpec};
+use hadar::policy::caps::longest_wavelength_m;
+use hadar_scenario::Source;
+
+/// Relative difference between shortcut and exact statistical distance worth a word.
+const SHORTCUT: f64 = 0.1;
+/// Share of a band that may be outside: a band that is centred at the end of the range, and rounding.
+const HALF: f64 = 0.5 + 1e-9;
+/// Radius of the first dark ring of a point's image, in units of λF.
+const AIRY: f64 = 1.22;
+
+/// Figures that are set in the place of the file's beside a noise of its own that is stated for no value of them.
+pub(crate) fn noise_that_moves(spec: &CameraSpec, source: &Source) -> Vec<Warning> {
+    let noise = &spec.noise;
+    let of_netd = noise.netd_k.is_some();
+    let conditions = [
+        ("exposure", "noise_exposure", spec.states_noise() && spec.noise_exposure_s.is_none()),
+        ("f_number", "netd_f_number", of_netd && noise.netd_f_number.is_none()),
+        ("pixel", "netd_pixel", of_netd && noise.netd_pixel_m.is_none()),
+    ];
+    let is_set = |figure: &str| {
+        let key = format!("camera.{figure}");
+        source.settings.iter().any(|setting| setting.key == key)
+    };
+    let moving = conditions.into_iter().filter(|(figure, _, silent)| *silent && is_set(figure));
+    moving.map(|(figure, condition, _)| Warning::NoiseMovesWithFigure { figure, condition }).collect()
+}
+
+impl Study {
+    /// Warnings on the camera in the scene, against the limiting alternative.
+    pub(crate) fn camera_result_warnings(&self, result: &CameraResult, pair: &PairResult) -> Vec<Warning> {
+        let camera = &result.camera;
+        let found = [
+            shortcut(pair),
+            self.motion(result),
+            self.proviso().map(Warning::FramesInMotion),
+            full_well(result),
+            self.small_target(camera),
+            self.size_unknown(camera, self.scenario.target.distance_m),
+            self.diffraction(camera),
+            self.frame_rate(camera),
+            self.outside_range(camera),
+            self.filter_light(camera),
+            assumed(camera),
+        ];
+        found.into_iter().flatten().collect()
+    }
+
+    fn motion(&self, result: &CameraResult) -> Option<Warning> {
+        self.scenario.requirement.speed_m_s?;
+        let Some(blur) = result.motion_blur_pixels else {
+            return Some(Warning::MotionBlurUnknown);
+        };
+        (blur >= 1.0).then_some(Warning::MotionBlur { pixels: blur })
+    }
+
+    /// Filters without the light they throw back, or a sensor's temperature without filters.
+    fn filter_light(&self, camera: &Camera) -> Option<Warning> {
+        let filters = self.open_bands.bands().iter().any(|band| band.name.is_some());
+        match (filters, camera.sensor_temperature_k) {
+            (true, None) => Some(Warning::FilterLightLeftOut),
+            (false, Some(_)) => Some(Warning::SensorTemperatureIdle),
+            _ => None,
+        }
+    }
+
+    fn small_target(&self, camera: &Camera) -> Option<Warning> {
+        let fill = self.view_of(camera).fill;
+        (fill < 1.0).then_some(Warning::TargetSmallerThanPixel { fill })
+    }
+
+    fn diffraction(&self, camera: &Camera) -> Option<Warning> {
+        let wavelength_m = longest_wavelength_m(&self.bands);
+        let blur_m = wavelength_m * camera.f_number;
+        let (ring_m, pixel_m) = (AIRY * blur_m, camera.pixel_m);
+        (pixel_m < blur_m).then_some(Warning::Diffraction { wavelength_m, blur_m, ring_m, pixel_m })
+    }
+
+    /// Several exposures come at the frame rate, however short each is.
+    fn frame_rate(&self, camera: &Camera) -> Option<Warning> {
+        let frame_s = camera.frame_s()?;
+        let exposures = camera.readout.exposures(self.bands.len()) as f64 * f64::from(camera.frames);
+        // Shorter by less than this is no other time.
+        let waits = camera.exposure_s < 0.9 * frame_s;
+        (exposures > 1.0 && waits).then(|| Warning::FrameRate {
+            exposures,
+            acquisition_s: camera.acquisition_s(self.bands.len()),
+            frame_rate_hz: frame_s.recip(),
+            exposed_s: exposures * camera.exposure_s,
+        })
+    }
+
+    /// Bands of which more than half is out of the range of the detector; one that is wholly so was refused.
+    pub(crate) fn outside_range(&self, camera: &Camera) -> Option<Warning> {
+        let [low, high] = camera.spectral_range_cm1;
+        let beyond = |from: f64, to: f64| (low - from).max(to - high) > HALF * (to - from);
+        let outside = self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count();
+        let (bands, range_cm1) = (self.bands.len(), camera.spectral_range_cm1);
+        (outside > 0).then_some(Warning::OutsideDetectorRange { outside, bands, range_cm1 })
+    }
+}
+
+fn shortcut(pair: &PairResult) -> Option<Warning> {
+    let (exact, shortcut) = (pair.statistical_distance?, pair.statistical_distance_shortcut?);
+    let off = shortcut / exact - 1.0;
+    (exact > 0.0 && off.abs() > SHORTCUT).then_some(Warning::GammaShortcut { off })
+}
+
+fn full_well(result: &CameraResult) -> Option<Warning> {
+    let (counts, full_well) = (result.brightest_reading, result.camera.full_well?);
+    (counts > full_well).then_some(Warning::FullWell { counts, full_well })
+}
+
+pub(crate) fn assumed(camera: &Camera) -> Option<Warning> {
+    let (name, figures) = (&camera.name, &camera.assumed);
+    (!figures.is_empty())
+        .then(|| Warning::CameraFiguresAssumed { camera: name.clone(), figures: figures.clone() })
+}
