@@ -2,7 +2,8 @@
 
 * `$...$` and `$$...$$` become MathML, which browsers show without fonts, scripts or network; `\\tag{S27}` is the number in the paper.
 * Pictures of the repository, `../../reports/...`, are put into the page.
-* `<!-- made: ledger -->`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain --all` says.
+* `<!-- made: ledger -->`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain --all` says,
+  `accuracy` by the table of reports/accuracy.
 * A link to a file that is not there fails the build.
 
 mdBook hands over `[context, book]` as JSON and takes the book back. `pages.py check` does the same to all pages without mdBook. Needs Python 3.11 and latex2mathml.
@@ -182,7 +183,13 @@ def results():
     return "\n\n".join(f"## {letter}\n\n{table(['key', 'part of', 'means'], rows)}" for letter, rows in letters.items())
 
 
-TABLES = {"ledger": ledger, "keys": keys, "warnings": warnings, "results": results}
+def accuracy():
+    """The first table of the report: a row for each computation, by its default method."""
+    text = (REPORTS / "accuracy/README.md").read_text()
+    return re.search(r"(^\|.*\n)+", text, re.M)[0]
+
+
+TABLES = {"accuracy": accuracy, "ledger": ledger, "keys": keys, "warnings": warnings, "results": results}
 
 
 def page(text, folder):

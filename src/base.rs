@@ -1,4 +1,5 @@
-//! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
+//! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, best-first search, least squares in a box,
+//! statistics.
 
 pub mod allowed;
 pub(crate) mod best_first;

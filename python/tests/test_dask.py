@@ -2,7 +2,6 @@
 
 import os
 import signal
-import time
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ pytest.importorskip("xarray")
 
 import dask.array
 import xarray
-from distributed import Client, LocalCluster
+from distributed import Client, Event, LocalCluster
 
 import hadar.dask
 from hadar.dask import Axis
@@ -124,20 +123,25 @@ def test_windows_of_chunks_are_those_of_the_cube(client, derivative):
         np.testing.assert_allclose(found[name].values, expected.to_dict()[name], rtol=1e-12, err_msg=name)
 
 
-def _slow(block, pause):
-    time.sleep(pause)
+def _held(block, block_id=None):
+    """A block of which the later ones wait until a worker has been killed."""
+    if block_id and block_id[0] >= 4:
+        Event("waiting").set()
+        Event("killed").wait()
     return block
 
 
 def test_a_worker_that_is_killed_loses_nothing(client):
     counts = cube()
-    chunked = dask.array.from_array(counts, chunks=(4, 15, -1)).map_blocks(_slow, 0.15, dtype=counts.dtype)
-    maps = hadar.dask.decompose(chunked, LIBRARY, LIGHT, NU, **OPTIONS)
-    expected = maps.compute(scheduler="synchronous")
-    kept = maps.persist()
-    time.sleep(0.7)
+    chunked = dask.array.from_array(counts, chunks=(4, 15, -1))
+    expected = hadar.dask.decompose(chunked, LIBRARY, LIGHT, NU, **OPTIONS).compute(scheduler="synchronous")
+    held = chunked.map_blocks(_held, dtype=counts.dtype)
+    kept = hadar.dask.decompose(held, LIBRARY, LIGHT, NU, **OPTIONS).persist()
+    # Its results are lost, and what it was at.
+    Event("waiting").wait()
     workers = client.run(os.getpid)
     os.kill(next(iter(workers.values())), signal.SIGKILL)
+    Event("killed").set()
     found = kept.compute()
     np.testing.assert_array_equal(found.material, expected.material)
     np.testing.assert_array_equal(found.temperature_k, expected.temperature_k)

@@ -6,7 +6,7 @@
 //!
 //! Four solvers are kept beside it, for the reasons that their headers state with a measurement: of a box's linear model
 //! (`policy::envelope::linear`), over a polytope known by its vertices (`identifiability::nearest::proof::hull`), over
-//! mixtures of spectra (`identifiability::mixture::hull`), and of a pixel (`step` of the decomposition).
+//! mixtures of spectra (`identifiability::mixture::hull`), and of a pixel (`decompose::step` of `hadar-estimate`).
 //!
 //! Source: Nocedal and Wright, 'Numerical Optimization' (2006), section 16.5.
 

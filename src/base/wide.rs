@@ -7,6 +7,10 @@
 //! eˣ − 1 = 2^k(1 + E) − 1 with x = k ln2 + r, E = e^r − 1: Taylor's series at r/2^m, doubled m times by E → E(2 + E), which
 //! keeps the relative precision. Assumption: |k| < 2³¹ in it.
 //!
+//! Kept beside the arbitrary precision of the references (`astro-float-num`): that allocates each number and brings a dependency, and at 256
+//! bits a sum takes 73 ns there and 13 ns here, a product 86 and 16 ns, an exponential 26 and 1.7 µs (at 128 bits 106 and 10 ns, 105 and
+//! 8 ns, 22 and 0.8 µs). Only quotients of 512 bits are faster there (0.48 µs against 0.67).
+//!
 //! Source: Brent and Zimmermann, 'Modern Computer Arithmetic' (2010), sections 1.3, 3.4 and 4.2.
 
 use std::cmp::Ordering;

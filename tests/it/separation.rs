@@ -121,11 +121,23 @@ impl Scene {
 }
 
 /// 95 % intervals of the emissivities hold what was drawn from the prior: 40 cubes of 3 materials and 24 bands. Bands of a material
-/// err together, some four ways each: 480 chances know 0.95 to 0.01, and the seed is fixed.
+/// err together, some four ways each: 480 chances know 0.95 to 0.01, and the seed is fixed. The magnitude alone: 120 values know
+/// their rms to 6 %; three of these.
 #[test]
+#[ignore = "19 s of processor time: .ci/evidence runs it"]
 fn stated_errors_of_a_library_hold() {
+    library_errors_hold(40, [8.0, 0.02, 0.2]);
+}
+
+/// The same of 8 cubes, which know half as much.
+#[test]
+fn stated_errors_of_a_library_hold_in_few_cubes() {
+    library_errors_hold(8, [3.0, 0.045, 0.45]);
+}
+
+fn library_errors_hold(cubes: u64, [most_mixed, off_share, off_rms]: [f64; 3]) {
     let (mut held, mut all, mut magnitudes, mut clusters, mut mixed) = (0, 0, 0.0, 0, 0);
-    for seed in 0..40 {
+    for seed in 0..cubes {
         let scene = Scene::new(100 + seed, 1e5, true);
         let found = scene.library([MATERIALS; 2]);
         let (of, right) = scene.materials_of(&found);
@@ -147,12 +159,11 @@ fn stated_errors_of_a_library_hold() {
             assert!((0.8..1.2).contains(&one.chi_square_reduced), "{}", one.chi_square_reduced);
         }
     }
-    assert!(mixed <= 8, "{mixed}");
+    assert!(f64::from(mixed) <= most_mixed, "{mixed}");
     let share = held as f64 / all as f64;
-    assert!((0.93..=0.97).contains(&share), "{share}");
-    // The magnitude alone: 120 values know their rms to 6 %; three of these.
+    assert!((share - 0.95).abs() <= off_share, "{share}");
     let rms = f64::sqrt(magnitudes / f64::from(clusters));
-    assert!((rms - 1.0).abs() < 0.2, "{rms}");
+    assert!((rms - 1.0).abs() < off_rms, "{rms}");
 }
 
 /// Without noise the emissivities and temperatures come back, and a range of counts finds how many there are.

@@ -7,13 +7,12 @@ use super::folder::{Folder, Held};
 use super::html;
 use super::manifest::Provenance;
 use super::parquet;
-use super::plot::{Figure, render, render_svg};
+use super::plot::{Drawn, Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
 use hadar::error::Result;
 use hadar_study::Warning;
 use rayon::prelude::*;
-use std::borrow::Cow;
 use std::path::PathBuf;
 
 const ANSWER: &str = "answer.txt";
@@ -23,7 +22,8 @@ const ANSWER: &str = "answer.txt";
 pub struct Bundle {
     title: Option<String>,
     files: Vec<(String, Content)>,
-    figures: Vec<Figure>,
+    /// Figures with the names of their files, without ending.
+    figures: Vec<(String, Figure)>,
     tables: Vec<(String, Table)>,
     warnings: Vec<Warning>,
     /// What was asked, as a file that asks it again.
@@ -100,17 +100,19 @@ impl Bundle {
         Ok(())
     }
 
-    /// Adds SVG, PNG and CSV of every plot.
+    /// Adds PNG and CSV of every plot, and SVG of those that are no images.
     ///
     /// # Errors
     /// A table that cannot be written.
     pub fn add_plots(&mut self, plots: &[Plot]) -> Result<()> {
         for plot in plots {
             let figure = self.figures.len();
-            self.files.push((format!("{}.svg", plot.name), Content::Svg(figure)));
+            if !plot.figure.is_image() {
+                self.files.push((format!("{}.svg", plot.name), Content::Svg(figure)));
+            }
             self.files.push((format!("{}.png", plot.name), Content::Png(figure)));
             self.add(format!("{}.csv", plot.name), plot.table.to_csv()?);
-            self.figures.push(plot.figure.clone());
+            self.figures.push((plot.name.clone().into_owned(), plot.figure.clone()));
         }
         Ok(())
     }
@@ -151,11 +153,7 @@ impl Bundle {
     /// # Errors
     /// A figure that cannot be drawn.
     pub fn drawings(&self) -> Result<Vec<(String, String)>> {
-        let figures = self.files.iter().filter_map(|(name, content)| match content {
-            Content::Svg(figure) => Some((name.trim_end_matches(".svg"), self.figures.get(*figure)?)),
-            _ => None,
-        });
-        figures.map(|(name, figure)| Ok((name.to_owned(), render_svg(figure)?))).collect()
+        self.figures.par_iter().map(|(name, figure)| Ok((name.clone(), render_svg(figure)?))).collect()
     }
 
     /// Writes all files into a folder, which is made if it is not there, with the answer as text and everything on one page;
@@ -164,12 +162,9 @@ impl Bundle {
     /// # Errors
     /// A figure that cannot be drawn; a folder that cannot be written to. Then none of the files is there.
     pub fn write_report(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
-        let mut files = self.drawn()?;
-        let svgs = files.iter().filter_map(|(name, held)| match held {
-            Held::Bytes(svg) if name.ends_with(".svg") => Some((name.as_str(), String::from_utf8_lossy(svg))),
-            _ => None,
-        });
-        let page = self.page_of(svgs, about);
+        let drawn = self.drawn(|_| true)?;
+        let page = self.page_of(drawn.iter().map(|drawn| drawn.svg.as_str()), about);
+        let mut files = self.files_with(&drawn);
         if self.names().all(|name| name != ANSWER) {
             files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes().into()));
         }
@@ -184,13 +179,12 @@ impl Bundle {
     /// A figure that cannot be drawn.
     pub fn page(&self, about: &About<'_>) -> Result<String> {
         let drawn = self.drawings()?;
-        let svgs = drawn.iter().map(|(name, svg)| (name.as_str(), Cow::Borrowed(svg.as_str())));
-        Ok(self.page_of(svgs, about))
+        Ok(self.page_of(drawn.iter().map(|(_, svg)| svg.as_str()), about))
     }
 
-    fn page_of<'a>(&self, svgs: impl Iterator<Item = (&'a str, Cow<'a, str>)>, about: &About<'_>) -> String {
-        let drawings = svgs.zip(&self.figures).map(|((name, svg), figure)| html::Drawing {
-            name: name.trim_end_matches(".svg"),
+    fn page_of<'a>(&'a self, svgs: impl Iterator<Item = &'a str>, about: &About<'_>) -> String {
+        let drawings = svgs.zip(&self.figures).map(|(svg, (name, figure))| html::Drawing {
+            name,
             svg,
             said: figure.subtitle(),
         });
@@ -210,23 +204,24 @@ impl Bundle {
     /// # Errors
     /// As [`Bundle::write_report`].
     pub fn write_files(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
-        let files = self.drawn()?;
+        let drawn = self.drawn(|figure| !figure.is_image())?;
+        let files = self.files_with(&drawn);
         folder.write(&files, about.provenance, about.inputs)?;
         Ok(files.len() + 1)
     }
 
+    /// Every figure drawn, as SVG those that are `wanted` so.
+    fn drawn(&self, wanted: impl Fn(&Figure) -> bool + Sync) -> Result<Vec<Drawn>> {
+        self.figures.par_iter().map(|(_, figure)| render(figure, wanted(figure))).collect()
+    }
+
     /// Every file with its content.
-    fn drawn(&self) -> Result<Vec<(String, Held)>> {
-        let drawn: Vec<(Vec<u8>, Vec<u8>)> = self
-            .figures
-            .par_iter()
-            .map(|figure| render(figure).map(|(svg, png)| (svg.into_bytes(), png)))
-            .collect::<Result<_>>()?;
+    fn files_with(&self, drawn: &[Drawn]) -> Vec<(String, Held)> {
         let content = |content: &Content| match content {
             Content::Held(held) => held.clone(),
-            Content::Svg(figure) => drawn[*figure].0.clone().into(),
-            Content::Png(figure) => drawn[*figure].1.clone().into(),
+            Content::Svg(figure) => drawn[*figure].svg.clone().into_bytes().into(),
+            Content::Png(figure) => drawn[*figure].png.clone().into(),
         };
-        Ok(self.files.iter().map(|(name, kind)| (name.clone(), content(kind))).collect())
+        self.files.iter().map(|(name, kind)| (name.clone(), content(kind))).collect()
     }
 }

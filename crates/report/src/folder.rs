@@ -10,6 +10,7 @@
 //! `hadar.json` goes first and comes last, so that a folder with it is whole, and one without it is completed by the next run that
 //! names it. Of a computer that loses its power no more is promised than its file system does.
 
+mod disk;
 mod staging;
 
 use self::staging::{Staging, clear, is_staging};
@@ -58,15 +59,31 @@ impl Held {
     /// Files on the same disk take no room twice.
     fn write(&self, path: &Path) -> io::Result<()> {
         match self {
-            Self::Bytes(bytes) => fs::write(path, &**bytes),
-            Self::File(own) => fs::hard_link(own, path).or_else(|_| fs::copy(own, path).map(drop)),
+            Self::Bytes(bytes) => disk::write(path, bytes),
+            Self::File(own) => disk::link_or_copy(own, path),
         }
     }
 }
 
 /// Room for files of a report that are too large to be kept until it is written. It goes with what is left in it.
 #[derive(Debug)]
-pub struct Scratch(Staging);
+pub struct Scratch {
+    // Gone before the folders that it is in.
+    staging: Staging,
+    _above: Above,
+}
+
+/// Folders that were made for a [`Scratch`], the innermost first. They go with it if nothing else is in them.
+#[derive(Debug)]
+struct Above(Vec<PathBuf>);
+
+impl Drop for Above {
+    fn drop(&mut self) {
+        for folder in &self.0 {
+            let _ = disk::remove_dir(folder);
+        }
+    }
+}
 
 impl Scratch {
     /// Where temporary files of this machine are, for work without a report.
@@ -75,8 +92,8 @@ impl Scratch {
     /// A folder that cannot be written to.
     pub fn temporary() -> Result<Self> {
         let home = std::env::temp_dir();
-        let made = clear(&home, &|_| Ok(())).and_then(|()| Staging::in_folder(&home));
-        made.map(Self).map_err(|error| {
+        let made = clear(&home, None).and_then(|()| Staging::in_folder(&home));
+        made.map(|staging| Self { staging, _above: Above(Vec::new()) }).map_err(|error| {
             let reason = format!("{error}; name another folder by TMPDIR, or a report by --out");
             Error::file("keep the maps in", &home, reason)
         })
@@ -85,7 +102,7 @@ impl Scratch {
     /// A folder for them.
     #[must_use]
     pub fn place(&self) -> PathBuf {
-        self.0.new_report()
+        self.staging.new_report()
     }
 }
 
@@ -141,12 +158,18 @@ impl Folder {
     /// As [`Folder::check`].
     pub fn scratch(&self) -> Result<Scratch> {
         let place = self.place()?;
-        let homes = [place.parent().and_then(nearest_folder), nearest_folder(&place)];
-        let mut made = Err(io::ErrorKind::NotFound.into());
-        for home in homes.into_iter().flatten() {
-            made = made.or_else(|_: io::Error| Staging::in_folder(&home));
-        }
-        made.map(Scratch).map_err(|error| self.refused(&error))
+        // No further up: a run that finds the parent there does not look above it for what this one leaves.
+        let beside = place.parent().map_or(Err(io::ErrorKind::NotFound.into()), |parent| {
+            let missing = parent.ancestors().take_while(|part| !part.exists());
+            let above = Above(missing.map(Path::to_owned).collect());
+            disk::create_dir_all(parent)?;
+            Ok(Scratch { staging: Staging::in_folder(parent)?, _above: above })
+        });
+        let within = |_: io::Error| {
+            let home = nearest_folder(&place).unwrap_or_else(|| PathBuf::from("."));
+            Ok(Scratch { staging: Staging::in_folder(&home)?, _above: Above(Vec::new()) })
+        };
+        beside.or_else(within).map_err(|error| self.refused(&error))
     }
 
     /// Makes sure that none of the `inputs` is where the report, or what it replaces, has a file of these names.
@@ -203,10 +226,13 @@ impl Folder {
         let fill = |report: &Path| -> io::Result<()> {
             files.iter().try_for_each(|(name, held)| {
                 let path = report.join(name);
-                path.parent().map_or(Ok(()), fs::create_dir_all)?;
+                path.parent().map_or(Ok(()), disk::create_dir_all)?;
                 held.write(&path)
             })?;
-            fs::write(report.join(manifest::NAME), manifest.to_json().map_err(io::Error::other)?)
+            disk::write(
+                &report.join(manifest::NAME),
+                manifest.to_json().map_err(io::Error::other)?.as_bytes(),
+            )
         };
         let whole = match place.parent().filter(|_| content.alone) {
             Some(parent) => exchanged(&place, parent, content.manifest.as_ref(), &fill),
@@ -244,9 +270,10 @@ impl Folder {
 
     /// Clears what dead processes have left here and beside, and finishes what they had complete.
     fn recover(&self, place: &Path) -> Result<()> {
-        let nothing = |_: &Path| Ok(());
-        let beside = place.parent().map_or(Ok(()), |parent| clear(parent, &nothing));
-        let within = beside.and_then(|()| clear(place, &|ready| publish(ready, place)));
+        // Where the parent is still to be made, runs have begun above it.
+        let home = place.parent().and_then(nearest_folder);
+        let beside = home.map_or(Ok(()), |home| clear(&home, None));
+        let within = beside.and_then(|()| clear(place, Some(&|ready| publish(ready, place))));
         within.map_err(|error| self.refused(&error))
     }
 
@@ -317,7 +344,7 @@ fn exchanged(
         return Ok(false);
     }
     if !there {
-        fs::create_dir_all(parent)?;
+        disk::create_dir_all(parent)?;
     }
     let staging = match Staging::in_folder(parent) {
         Ok(staging) => staging,
@@ -327,9 +354,9 @@ fn exchanged(
     let new = staging.new_report();
     fill(&new)?;
     if !there {
-        return fs::rename(new, place).map(|()| true);
+        return disk::rename(&new, place).map(|()| true);
     }
-    if !same_owner(place, &new) || swap(&new, place).is_err() {
+    if !same_owner(place, &new) || disk::exchange(&new, place).is_err() {
         return Ok(false);
     }
     // What came into the old folder at the last moment is not the report's: it goes where it was meant to go.
@@ -337,7 +364,7 @@ fn exchanged(
         let name = entry.file_name();
         let own = old.is_some_and(|old| old.lists(&name.to_string_lossy()));
         if !own && !place.join(&name).exists() {
-            let _ = fs::rename(entry.path(), place.join(&name));
+            let _ = disk::rename(&entry.path(), &place.join(&name));
         }
     }
     Ok(true)
@@ -345,7 +372,7 @@ fn exchanged(
 
 /// Makes a report within its folder, and moves its files one by one.
 fn moved(place: &Path, fill: &dyn Fn(&Path) -> io::Result<()>) -> io::Result<()> {
-    fs::create_dir_all(place)?;
+    disk::create_dir_all(place)?;
     let mut staging = Staging::in_folder(place)?;
     fill(&staging.new_report())?;
     let ready = staging.commit()?;
@@ -360,40 +387,21 @@ fn publish(ready: &Path, place: &Path) -> io::Result<()> {
     // From here on the folder is no whole report, and says so.
     let old = ready.with_file_name("old");
     if Manifest::in_folder(place).is_some() {
-        fs::create_dir_all(&old)?;
-        rename(place.join(manifest::NAME), old.join(manifest::NAME))?;
+        disk::create_dir_all(&old)?;
+        disk::rename(&place.join(manifest::NAME), &old.join(manifest::NAME))?;
     }
     if let Some(old) = Manifest::in_folder(&old) {
         let obsolete = old.files.iter().map(|file| &file.name).filter(|name| !new.lists(name));
         obsolete
             .filter(|name| old.owns(place, name))
-            .try_for_each(|name| fs::remove_file(place.join(name)))?;
+            .try_for_each(|name| disk::remove_file(&place.join(name)))?;
     }
     let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
     names.filter(|name| ready.join(name).exists()).try_for_each(|name| {
         let path = place.join(name);
-        path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        rename(ready.join(name), path)
+        path.parent().map_or(Ok(()), disk::create_dir_all)?;
+        disk::rename(&ready.join(name), &path)
     })
-}
-
-#[cfg(not(test))]
-use fs::rename;
-
-#[cfg(test)]
-use tests::rename;
-
-/// Exchanges two folders in one step.
-#[cfg(any(target_vendor = "apple", target_os = "linux", target_os = "android"))]
-fn swap(a: &Path, b: &Path) -> io::Result<()> {
-    use rustix::fs::{CWD, RenameFlags, renameat_with};
-    fs::set_permissions(a, b.metadata()?.permissions())?;
-    Ok(renameat_with(CWD, a, CWD, b, RenameFlags::EXCHANGE)?)
-}
-
-#[cfg(not(any(target_vendor = "apple", target_os = "linux", target_os = "android")))]
-fn swap(_: &Path, _: &Path) -> io::Result<()> {
-    Err(io::ErrorKind::Unsupported.into())
 }
 
 /// Whether two paths belong to the same user and group.

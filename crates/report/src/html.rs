@@ -13,7 +13,6 @@ use crate::manifest::{Provenance, VERSION};
 use crate::table::Table;
 use hadar_study::Warning;
 use hadar_study::warning::Code;
-use std::borrow::Cow;
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("html/style.css");
@@ -22,7 +21,7 @@ const STYLE: &str = include_str!("html/style.css");
 pub(crate) struct Drawing<'a> {
     /// Of its files, without ending.
     pub(crate) name: &'a str,
-    pub(crate) svg: Cow<'a, str>,
+    pub(crate) svg: &'a str,
     /// What is said of it beside its title; nothing where empty.
     pub(crate) said: &'a str,
 }

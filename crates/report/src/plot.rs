@@ -2,7 +2,7 @@
 //!
 //! A [`Figure`] is plain data: titles, axes, numbers. [`render_svg`] and [`render_png`] lay it out
 //! once (text measured with the embedded font, so that nothing is clipped or overlaps) into a list of
-//! marks, which two painters draw through the backends of `plotters`. White background, one font
+//! marks, which two painters draw. White background, one font
 //! (DejaVu Sans), colours that the colour-blind can tell apart (Okabe and Ito, *Color Universal
 //! Design*, 2008), legends outside the data.
 //!
@@ -21,10 +21,11 @@
 //! ```
 
 mod axis;
-mod backend;
+mod canvas;
 mod colour;
 mod contour;
 mod dots;
+mod encode;
 mod figure;
 mod frame;
 mod geometry;
@@ -63,7 +64,8 @@ pub fn categorical(index: usize) -> Rgb {
 }
 
 /// A number as it is written in pictures: three digits, powers of ten with superscripts.
-pub(crate) fn number(value: f64) -> String {
+#[must_use]
+pub fn number(value: f64) -> String {
     ticks::label(value)
 }
 
@@ -83,6 +85,16 @@ pub enum Figure {
 }
 
 impl Figure {
+    /// Whether it is made of images, which no curves, letters or cells describe: it has no file of its own as SVG.
+    #[must_use]
+    pub fn is_image(&self) -> bool {
+        match self {
+            Self::Pictures(_) => true,
+            Self::Matrix(matrix) => grid::is_image(matrix),
+            Self::Line(_) | Self::HeatMap(_) | Self::Named(_) => false,
+        }
+    }
+
     /// The small print under the title; nothing where empty.
     #[must_use]
     pub fn subtitle(&self) -> &str {
@@ -135,7 +147,7 @@ pub fn render_svg(figure: &Figure) -> Result<String> {
     svg::paint(&scene(figure)?)
 }
 
-/// The figure as a PNG file, 2400 pixels wide.
+/// The figure as a PNG file, 1200 pixels wide.
 ///
 /// # Errors
 /// As [`render_svg`].
@@ -155,15 +167,23 @@ pub fn image_png(
     png::by_rows(to, size, paint)
 }
 
+/// A figure in both forms.
+pub(crate) struct Drawn {
+    /// Empty where it is not wanted.
+    pub(crate) svg: String,
+    pub(crate) png: Vec<u8>,
+}
+
 /// Both, laid out once.
 ///
 /// # Errors
 /// As [`render_svg`].
-pub(crate) fn render(figure: &Figure) -> Result<(String, Vec<u8>)> {
+pub(crate) fn render(figure: &Figure, with_svg: bool) -> Result<Drawn> {
     let scene = scene(figure)?;
     // The longer one first; rasters of the other are shared out.
-    let (png, svg) = rayon::join(|| png::paint(&scene), || svg::paint(&scene));
-    Ok((svg?, png?))
+    let svg = || if with_svg { svg::paint(&scene) } else { Ok(String::new()) };
+    let (png, svg) = rayon::join(|| png::paint(&scene), svg);
+    Ok(Drawn { svg: svg?, png: png? })
 }
 
 fn scene(figure: &Figure) -> Result<scene::Scene> {

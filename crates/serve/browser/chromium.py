@@ -91,8 +91,8 @@ class Page:
             raise RuntimeError(f"{expression}: {result['exceptionDetails']}")
         return result["result"].get("value")
 
-    def until(self, expression, seconds=20):
-        """Waits until an expression is true."""
+    def until(self, expression, seconds=300):
+        """Waits until an expression is true; the limit only ends a check that hangs."""
         end = time.monotonic() + seconds
         while not self.js(expression):
             if time.monotonic() > end:

@@ -88,5 +88,5 @@ pub use size::{
 pub use surface::Surface;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+#[doc = include_str!("../../../docs/src/reference/programs.md")]
+struct Guide;

@@ -3,19 +3,29 @@
 use hadar::error::{Error, Result};
 use std::sync::{Condvar, Mutex, PoisonError};
 
-/// Bytes that works under way have been promised.
-static PROMISED: Mutex<u64> = Mutex::new(0);
-static RETURNED: Condvar = Condvar::new();
+/// The memory of this process.
+static MEMORY: Memory = Memory { promised: Mutex::new(0), returned: Condvar::new() };
+
+/// Memory that several works share.
+#[derive(Debug)]
+struct Memory {
+    /// Bytes that works under way have been promised.
+    promised: Mutex<u64>,
+    returned: Condvar,
+}
 
 /// Memory that a work may take until this is dropped.
 #[derive(Debug)]
-pub(super) struct Promised(u64);
+pub(super) struct Promised<'a> {
+    bytes: u64,
+    memory: &'a Memory,
+}
 
-impl Drop for Promised {
+impl Drop for Promised<'_> {
     fn drop(&mut self) {
-        let mut promised = PROMISED.lock().unwrap_or_else(PoisonError::into_inner);
-        *promised = promised.saturating_sub(self.0);
-        RETURNED.notify_all();
+        let mut promised = self.memory.promised.lock().unwrap_or_else(PoisonError::into_inner);
+        *promised = promised.saturating_sub(self.bytes);
+        self.memory.returned.notify_all();
     }
 }
 
@@ -25,16 +35,23 @@ impl Drop for Promised {
 ///
 /// # Errors
 /// More bytes than are free where nobody else is at work.
-pub(super) fn promise(bytes: u64, what: &str, instead: &str) -> Result<Promised> {
-    let mut promised = PROMISED.lock().unwrap_or_else(PoisonError::into_inner);
-    loop {
-        let free = free().unwrap_or(u64::MAX);
-        if fits_beside(*promised, bytes, free) {
-            within(bytes, free, what, instead)?;
-            *promised += bytes;
-            return Ok(Promised(bytes));
+pub(super) fn promise(bytes: u64, what: &str, instead: &str) -> Result<Promised<'static>> {
+    MEMORY.promise(bytes, &|| free().unwrap_or(u64::MAX), what, instead)
+}
+
+impl Memory {
+    /// See [`promise`]; `free` says how many bytes are free.
+    fn promise(&self, bytes: u64, free: &dyn Fn() -> u64, what: &str, instead: &str) -> Result<Promised<'_>> {
+        let mut promised = self.promised.lock().unwrap_or_else(PoisonError::into_inner);
+        loop {
+            let free = free();
+            if fits_beside(*promised, bytes, free) {
+                within(bytes, free, what, instead)?;
+                *promised += bytes;
+                return Ok(Promised { bytes, memory: self });
+            }
+            promised = self.returned.wait(promised).unwrap_or_else(PoisonError::into_inner);
         }
-        promised = RETURNED.wait(promised).unwrap_or_else(PoisonError::into_inner);
     }
 }
 
@@ -67,7 +84,8 @@ fn free() -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+    use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
+    use std::sync::mpsc;
 
     #[test]
     fn what_fits_is_not_refused() {
@@ -82,20 +100,25 @@ mod tests {
 
     #[test]
     fn works_that_do_not_fit_together_wait_for_each_other() {
-        let Some(free) = free() else { return };
-        let (at_work, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let work = || {
-            let held = promise(free / 10 * 6, "this", "that").unwrap();
-            most.fetch_max(at_work.fetch_add(1, Relaxed) + 1, Relaxed);
-            std::thread::sleep(std::time::Duration::from_millis(30));
-            at_work.fetch_sub(1, Relaxed);
-            drop(held);
-        };
+        let memory = Memory { promised: Mutex::new(0), returned: Condvar::new() };
+        let first = memory.promise(6, &|| 10, "this", "that").unwrap();
+        let returned = AtomicBool::new(false);
+        let (asking, asked) = mpsc::channel();
         std::thread::scope(|scope| {
-            for _ in 0..3 {
-                scope.spawn(work);
-            }
+            scope.spawn(|| {
+                // Asked with the lock held, which is given back only to wait.
+                let free = || {
+                    let _ = asking.send(());
+                    10
+                };
+                let second = memory.promise(6, &free, "this", "that").unwrap();
+                assert!(returned.load(SeqCst), "both at work");
+                drop(second);
+            });
+            asked.recv().unwrap();
+            returned.store(true, SeqCst);
+            drop(first);
         });
-        assert_eq!(most.into_inner(), 1);
+        assert_eq!(*memory.promised.lock().unwrap(), 0);
     }
 }

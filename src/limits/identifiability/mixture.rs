@@ -50,6 +50,7 @@ pub struct Mixtures<'m> {
 
 /// The least distance found, and what is proved.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct MixtureDistance {
     /// Distance of the two mixtures, every part in the same lighting.
     pub distance: f64,

@@ -5,6 +5,9 @@
 //! is at hand, or to where they leave it; weights at 0 come back where the slope asks for them. There are at most eight
 //! weights, so the number of faces is small and every one is left at most once downwards.
 //!
+//! Kept beside the solver in a box of `hadar`, without allocation: a step of two unknowns takes 20 ns, of three 0.25 µs, there 0.54 and
+//! 0.65 µs. Its steps differ from those in the twelfth digit, and directions without information have no answer there.
+//!
 //! Directions along which there is no information (a black target does not scatter) are not taken, and said so. They are found
 //! after each column was scaled to 1, so no unit matters.
 

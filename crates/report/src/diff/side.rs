@@ -96,7 +96,7 @@ impl Side {
             let text = String::from_utf8_lossy(&bytes);
             match name {
                 _ if end == "csv" && name != "warnings.csv" => {
-                    let drawn = names.contains(name.replace(".csv", ".svg").as_str());
+                    let drawn = names.contains(name.replace(".csv", ".png").as_str());
                     let table = table(&text, name, drawn).map_err(|error| error.in_file(&path))?;
                     side.figures.extend(table);
                     side.parts.insert(name.to_owned());

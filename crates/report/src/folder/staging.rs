@@ -4,12 +4,17 @@
 //! `.hadar-XXXXXXXXXXXX/` holds `new/`, the report, and `lock`, which stays locked as long as the process lives, whatever its number
 //! and wherever it runs. It is made exclusively and open to its owner alone, so that no link planted before is followed. Once `new/`
 //! is complete and must be moved file by file, it is called `ready/`: then whoever finds it without its process finishes the work.
+//!
+//! A process can be killed between any two calls. The lock has the name `unlocked` until it is locked, it is removed after everything
+//! else, and the folder after it. A dead process thus leaves one of three states, each of which is recognised: a `lock` that can be
+//! had, an `unlocked` that can be had, or an empty folder. The latter two are also those of a process that has only begun: it makes
+//! another folder if it finds the first one cleared away by somebody else.
 
-use std::fs::{self, File, TryLockError};
+use super::disk;
+use std::fs::{File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use tempfile::TempDir;
 
 const PREFIX: &str = ".hadar-";
 /// Random characters of the name.
@@ -20,81 +25,149 @@ const NEW: &str = "new";
 const READY: &str = "ready";
 /// A folder without a lock that can be asked is left alone so long: its process may only just have made it.
 const DEAD_AFTER: Duration = Duration::from_secs(24 * 3600);
+/// Folders that are made until one is not taken for that of a dead process.
+const ATTEMPTS: usize = 100;
+
+/// What finishes a complete report that must be moved.
+pub(super) type Finish<'a> = &'a dyn Fn(&Path) -> io::Result<()>;
 
 /// A folder of this process.
 #[derive(Debug)]
 pub(super) struct Staging {
-    // Given back first: not every system removes a file that is open.
-    _lock: File,
-    folder: TempDir,
+    folder: PathBuf,
+    /// `None` once it is given back.
+    lock: Option<File>,
+    /// Whether it stays for the next run.
+    kept: bool,
 }
 
 impl Staging {
     /// A new one in `home`, which must be there.
     pub(super) fn in_folder(home: &Path) -> io::Result<Self> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(PREFIX).rand_bytes(RANDOM);
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o700));
-        let folder = builder.tempdir_in(home)?;
+        let mut taken = io::Error::from(io::ErrorKind::NotFound);
+        for _ in 0..ATTEMPTS {
+            let mut staging =
+                Self { folder: disk::private_folder(home, PREFIX, RANDOM)?, lock: None, kept: false };
+            match staging.begin() {
+                Ok(()) => return Ok(staging),
+                // Cleared away, or about to be.
+                Err(error)
+                    if [io::ErrorKind::NotFound, io::ErrorKind::WouldBlock].contains(&error.kind()) =>
+                {
+                    taken = error;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Err(taken)
+    }
+
+    /// Locks the folder and makes what it holds.
+    fn begin(&mut self) -> io::Result<()> {
         // Under its own name only once it is locked: a lock that is free is one of the dead.
-        let (unlocked, locked) = (folder.path().join(UNLOCKED), folder.path().join(LOCK));
-        let lock = File::create_new(&unlocked)?;
+        let unlocked = self.folder.join(UNLOCKED);
+        let lock = self.lock.insert(disk::create_new(&unlocked)?);
         // Without locks the folder is known by its age.
-        let _ = lock.try_lock();
-        fs::rename(unlocked, locked)?;
-        fs::create_dir(folder.path().join(NEW))?;
-        Ok(Self { folder, _lock: lock })
+        if let Err(TryLockError::WouldBlock) = disk::try_lock(lock) {
+            return Err(io::ErrorKind::WouldBlock.into());
+        }
+        disk::rename(&unlocked, &self.folder.join(LOCK))?;
+        disk::create_dir(&self.new_report())
     }
 
     /// Where the report is made.
     pub(super) fn new_report(&self) -> PathBuf {
-        self.folder.path().join(NEW)
+        self.folder.join(NEW)
     }
 
     /// From now on the report is moved into its folder, by this process or by the next; where it is.
     pub(super) fn commit(&mut self) -> io::Result<PathBuf> {
-        let ready = self.folder.path().join(READY);
-        fs::rename(self.new_report(), &ready)?;
-        self.folder.disable_cleanup(true);
+        let ready = self.folder.join(READY);
+        disk::rename(&self.new_report(), &ready)?;
+        self.kept = true;
         Ok(ready)
     }
 
     /// The work is done, or was undone.
     pub(super) fn done(&mut self) {
-        self.folder.disable_cleanup(false);
+        self.kept = false;
     }
 }
 
-/// Staging folders in `home` whose processes are dead: those that were complete are handed to `finish`, all are removed.
-/// What cannot be removed stays, as what may still be in use.
-pub(super) fn clear(home: &Path, finish: &dyn Fn(&Path) -> io::Result<()>) -> io::Result<()> {
-    let Ok(entries) = fs::read_dir(home) else { return Ok(()) };
-    for folder in entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| is_staging(path)) {
-        let lock = folder.join(LOCK);
-        if !lock.symlink_metadata().is_ok_and(|found| found.is_file()) {
-            // Its process ended within the first instructions, and left nothing in it.
-            if is_old(&folder) {
-                let _ = fs::remove_file(folder.join(UNLOCKED));
-                let _ = fs::remove_dir(&folder);
-            }
-            continue;
+impl Drop for Staging {
+    fn drop(&mut self) {
+        if !self.kept {
+            remove(&self.folder, &mut self.lock);
         }
-        let Ok(lock) = File::options().read(true).write(true).open(lock) else { continue };
-        let dead = match lock.try_lock() {
-            Ok(()) => true,
-            Err(TryLockError::WouldBlock) => false,
-            Err(TryLockError::Error(_)) => is_old(&folder),
+    }
+}
+
+/// Removes a staging folder: its lock after everything else, so that whoever is killed meanwhile leaves what [`clear`] removes. What
+/// cannot be removed stays.
+fn remove(folder: &Path, lock: &mut Option<File>) {
+    let is_lock = |name: &std::ffi::OsStr| name == LOCK || name == UNLOCKED;
+    let mut empty = true;
+    for entry in disk::entries(folder).into_iter().flatten().filter(|entry| !is_lock(&entry.file_name())) {
+        let is_folder = entry.file_type().is_ok_and(|found| found.is_dir());
+        let removed =
+            if is_folder { disk::remove_dir_all(&entry.path()) } else { disk::remove_file(&entry.path()) };
+        empty &= removed.is_ok();
+    }
+    if empty {
+        // Given back first: not every system removes a file that is open.
+        drop(lock.take());
+        let _ = disk::remove_file(&folder.join(LOCK));
+        let _ = disk::remove_file(&folder.join(UNLOCKED));
+        let _ = disk::remove_dir(folder);
+    }
+}
+
+/// Removes the staging folders in `home` whose processes are dead. Reports in them that were complete are handed to `finish` before;
+/// without it their folders stay, for the run that names `home`. What cannot be removed stays, as what may still be in use.
+pub(super) fn clear(home: &Path, finish: Option<Finish<'_>>) -> io::Result<()> {
+    let Ok(entries) = disk::entries(home) else { return Ok(()) };
+    for folder in entries.iter().map(std::fs::DirEntry::path).filter(|path| is_staging(path)) {
+        let Ok(lock) = disk::open_lock(&folder.join(LOCK)) else { continue };
+        let Some(lock) = lock else {
+            clear_begun(&folder);
+            continue;
         };
-        if dead {
+        if is_dead(&folder, &lock) {
             let ready = folder.join(READY);
-            if ready.is_dir() {
+            if ready.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+                let Some(finish) = finish else { continue };
                 finish(&ready)?;
             }
-            let _ = fs::remove_dir_all(&folder);
+            remove(&folder, &mut Some(lock));
         }
     }
     Ok(())
+}
+
+/// Removes a staging folder that has no lock yet, or none any more. Nothing but an empty file and an empty folder is ever removed.
+fn clear_begun(folder: &Path) {
+    if !disk::is_private(folder) && !is_old(folder) {
+        return;
+    }
+    match disk::open_lock(&folder.join(UNLOCKED)) {
+        Ok(Some(lock)) if is_dead(folder, &lock) && lock.metadata().is_ok_and(|found| found.len() == 0) => {
+            // As long as it is held here, its process cannot give it its name.
+            let _ = disk::remove_file(&folder.join(UNLOCKED));
+            let _ = disk::remove_dir(folder);
+        }
+        // Its process makes another one if it was about to go on.
+        Ok(None) => drop(disk::remove_dir(folder)),
+        _ => {}
+    }
+}
+
+/// Whether the process that made a folder is dead: its lock can be had, and is held by `lock` from now on.
+fn is_dead(folder: &Path, lock: &File) -> bool {
+    match disk::try_lock(lock) {
+        Ok(()) => true,
+        Err(TryLockError::WouldBlock) => false,
+        Err(TryLockError::Error(_)) => is_old(folder),
+    }
 }
 
 /// Whether a path is a staging folder of someone, dead or alive.

@@ -1,21 +1,8 @@
 use super::*;
-use std::cell::Cell;
 use std::collections::BTreeMap;
 
-thread_local! {
-    /// Files that may still be moved before the process is taken to be killed.
-    static MOVES_LEFT: Cell<usize> = const { Cell::new(usize::MAX) };
-}
-
-/// Moves a file, unless the process is dead by then.
-pub(super) fn rename(from: impl AsRef<Path>, to: impl AsRef<Path>) -> io::Result<()> {
-    let left = MOVES_LEFT.get();
-    if left == 0 {
-        return Err(io::Error::other("killed"));
-    }
-    MOVES_LEFT.set(left - 1);
-    fs::rename(from, to)
-}
+pub(super) mod calls;
+mod killed;
 
 fn files(names: &[&str], content: &str) -> Vec<(String, Held)> {
     names.iter().map(|name| ((*name).to_owned(), format!("{name} {content}").into_bytes().into())).collect()
@@ -144,26 +131,13 @@ fn what_is_no_folder_is_refused() {
     assert!(!home.path().join("out").exists());
 }
 
-/// Killed before any of the moves, a report that must be moved file by file is finished by the next run that looks at the folder.
-#[test]
-fn a_report_half_moved_is_finished_by_the_next_run() {
-    let (old, new) = (["a.csv", "b.csv", "c.csv"], ["a.csv", "d.csv"]);
-    for killed_after in 0..5 {
-        let home = tempfile::tempdir().unwrap();
-        let folder = Folder::new(home.path(), Strangers::KeepBesides);
-        fs::write(home.path().join("mine"), "").unwrap();
-        write(&folder, &old, "1").unwrap();
-        MOVES_LEFT.set(killed_after);
-        let result = write(&folder, &new, "2");
-        MOVES_LEFT.set(usize::MAX);
-        assert_eq!(result.is_ok(), killed_after >= 4, "{killed_after}");
-        // Whole, or without a manifest that says so.
-        assert!(killed_after == 0 || killed_after >= 4 || Manifest::in_folder(home.path()).is_none());
-        folder.check().unwrap();
-        let mut expected = of(&new, "2");
-        expected.insert("mine".into(), String::new());
-        assert_eq!(content(home.path()), expected, "{killed_after}");
-        assert_eq!(fs::read_dir(home.path()).unwrap().count(), 4, "{killed_after}");
+/// A folder as a process makes it, or open to others as well.
+fn made(path: &Path, private: bool) {
+    fs::create_dir(path).unwrap();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        fs::set_permissions(path, fs::Permissions::from_mode(if private { 0o700 } else { 0o755 })).unwrap();
     }
 }
 
@@ -172,16 +146,16 @@ fn folders_of_the_dead_are_cleared_and_those_of_the_living_are_not() {
     let home = tempfile::tempdir().unwrap();
     let place = home.path().join("out");
     let alive = Staging::in_folder(home.path()).unwrap();
-    let dead = home.path().join(".hadar-0123456789ab");
-    fs::create_dir_all(dead.join("new")).unwrap();
+    let [dead, begun, only_made] =
+        ["0123456789ab", "0123456789ac", "0123456789ad"].map(|end| home.path().join(format!(".hadar-{end}")));
+    [&dead, &begun, &only_made].into_iter().for_each(|path| made(path, true));
+    fs::create_dir(dead.join("new")).unwrap();
     fs::write(dead.join("lock"), "").unwrap();
     fs::write(dead.join("new/x.csv"), "").unwrap();
-    // Of someone else who likes the name, and of a process that has made no more of it yet.
-    let others = [".hadar-notes", ".hadar-ba9876543210"].map(|name| home.path().join(name));
-    others.iter().for_each(|path| fs::create_dir(path).unwrap());
+    fs::write(begun.join("unlocked"), "").unwrap();
     Folder::new(&place, Strangers::Refuse).check().unwrap();
-    assert!(!dead.exists());
-    assert!(alive.new_report().exists() && others.iter().all(|path| path.exists()));
+    assert!(!dead.exists() && !begun.exists() && !only_made.exists());
+    assert!(alive.new_report().exists());
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt as _;
@@ -189,12 +163,72 @@ fn folders_of_the_dead_are_cleared_and_those_of_the_living_are_not() {
         assert_eq!(staging.permissions().mode() & 0o777, 0o700);
         // The report itself is as open as any other folder that is made here.
         let mode = |path: &Path| path.metadata().unwrap().permissions().mode() & 0o777;
+        let plain = home.path().join("plain");
+        fs::create_dir(&plain).unwrap();
         write(&Folder::new(&place, Strangers::Refuse), &["x.csv"], "1").unwrap();
-        assert_eq!(mode(&place), mode(&others[0]));
+        assert_eq!(mode(&place), mode(&plain));
         fs::set_permissions(&place, fs::Permissions::from_mode(0o750)).unwrap();
         write(&Folder::new(&place, Strangers::Refuse), &["x.csv"], "2").unwrap();
         assert_eq!(mode(&place), 0o750);
     }
+}
+
+/// Whoever likes the name keeps what is in the folder, and no link is followed.
+#[test]
+#[cfg(unix)]
+fn what_only_has_the_name_of_a_staging_folder_stays() {
+    let home = tempfile::tempdir().unwrap();
+    let place = home.path().join("out");
+    let at = |name: &str| home.path().join(name);
+    let [name, open, full, written, linked, link] = [
+        ".hadar-notes",
+        ".hadar-00000000000a",
+        ".hadar-00000000000b",
+        ".hadar-00000000000c",
+        ".hadar-00000000000d",
+        ".hadar-00000000000e",
+    ]
+    .map(at);
+    made(&name, true);
+    made(&open, false);
+    made(&full, true);
+    fs::write(full.join("mine"), "mine").unwrap();
+    made(&written, true);
+    fs::write(written.join("unlocked"), "mine").unwrap();
+    // Links to an empty file and to a folder that a dead process could have left.
+    fs::write(at("empty"), "").unwrap();
+    made(&at("private"), true);
+    made(&linked, true);
+    std::os::unix::fs::symlink(at("empty"), linked.join("unlocked")).unwrap();
+    std::os::unix::fs::symlink(at("private"), &link).unwrap();
+    let folder = Folder::new(&place, Strangers::Refuse);
+    folder.check().unwrap();
+    write(&folder, &["x.csv"], "1").unwrap();
+    assert!(name.is_dir() && open.is_dir() && link.is_symlink());
+    assert_eq!(fs::read_to_string(full.join("mine")).unwrap(), "mine");
+    assert_eq!(fs::read_to_string(written.join("unlocked")).unwrap(), "mine");
+    assert!(linked.join("unlocked").is_symlink() && at("empty").is_file() && at("private").is_dir());
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 9);
+}
+
+/// A run into a folder within a report that was half moved leaves it to the run that names it.
+#[test]
+fn a_report_half_moved_is_left_to_the_run_that_names_it() {
+    let home = tempfile::tempdir().unwrap();
+    let folder = Folder::new(home.path(), Strangers::KeepBesides);
+    fs::write(home.path().join("mine"), "mine").unwrap();
+    write(&folder, &["a.csv", "b.csv"], "1").unwrap();
+    let whole = |folder: &Path| Manifest::in_folder(folder).is_some();
+    let half = (0..).find(|call| {
+        calls::killed(*call, || write(&folder, &["a.csv", "c.csv"], "2")) && !whole(home.path())
+    });
+    assert!(half.is_some());
+    write(&Folder::new(home.path().join("below"), Strangers::Refuse), &["x.csv"], "1").unwrap();
+    assert!(!whole(home.path()));
+    folder.check().unwrap();
+    let mut expected = of(&["a.csv", "c.csv"], "2");
+    expected.insert("mine".into(), "mine".into());
+    assert!(whole(home.path()) && content(home.path()) == expected);
 }
 
 #[test]

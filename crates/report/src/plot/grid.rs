@@ -31,17 +31,16 @@ const NUMBER: f64 = 10.0;
 /// Patches without value that are hatched; more of them are plain grey.
 const MOST_HATCHED: usize = 500;
 /// Edges of cells stand at whole pixels of the PNG, so that the cells are all alike.
-const PIXELS: f64 = 3.0;
+const PIXELS: f64 = super::png::SCALE;
 /// Size below which cells are pixels of one image: nothing separates or marks them.
-const FINE: f64 = 12.0 / PIXELS;
+const FINE: f64 = 4.0;
 /// Fraction of the colour scale above which colours are light.
 const LIGHT: f64 = 0.55;
 
 pub(super) fn scene(matrix: &Matrix) -> Result<Scene> {
     matrix.check()?;
     let known = || matrix.cells().map(|cell| cell.2);
-    let colours = Ruler::fit(matrix.colour.scale, matrix.colour.range, known(), 0.0);
-    let grid = Grid::new(matrix, colours);
+    let grid = Grid::new(matrix, colours(matrix));
 
     let mut scene = Scene::new(&matrix.title, frame::WIDTH);
     let title = title_room(&matrix.column_title);
@@ -83,6 +82,19 @@ pub(super) fn scene(matrix: &Matrix) -> Result<Scene> {
     let end = legend.draw_below(&mut scene, area.left.min(240.0), frame::WIDTH - EDGE, below);
     scene.height = (end + 10.0).ceil();
     Ok(scene)
+}
+
+fn colours(matrix: &Matrix) -> Ruler {
+    let values = matrix.cells().map(|cell| cell.2);
+    Ruler::fit(matrix.colour.scale, matrix.colour.range, values, 0.0)
+}
+
+/// Whether the cells are so many that they are pixels of one image.
+pub(super) fn is_image(matrix: &Matrix) -> bool {
+    // Only many are laid out to find out.
+    let many = (frame::WIDTH.max(TALL) / FINE) as usize / 2;
+    let many = matrix.rows.len().max(matrix.columns.len()) > many;
+    many && matrix.check().is_ok() && Grid::new(matrix, colours(matrix)).gap == 0.0
 }
 
 /// Room that the title of a side needs.
@@ -139,11 +151,7 @@ impl Grid {
         let bar_height = height.clamp(BAR_HEIGHT.start, BAR_HEIGHT.end);
         let bar = Vertical::new(&matrix.colour, colours, bar_height);
         let left = snapped(EDGE + title + rows.room + NAME_GAP + 2.0, f64::ceil);
-        let gap = match cell.0.min(cell.1) {
-            ..FINE => 0.0,
-            ..16.0 => 1.0,
-            _ => 2.0,
-        } / PIXELS;
+        let gap = if cell.0.min(cell.1) < FINE { 0.0 } else { 1.0 / PIXELS };
         Self { rows, columns, bar, bar_height, left, cell, gap }
     }
 
@@ -280,7 +288,7 @@ mod tests {
             Mark::Image { columns, pixels, .. } => Some((*columns, pixels)),
             _ => None,
         });
-        let (columns, pixels) = images.next_back().unwrap();
+        let (columns, pixels) = images.next().unwrap();
         assert_eq!((columns, pixels.len()), (1000, 1_000_000));
         assert_eq!(pixels[5], heat::shade(5.0 / 999.0).rgb);
         assert_eq!(pixels[999_005], heat::shade(5.0 / 999.0).rgb);

@@ -15,8 +15,8 @@ use hadar::Result;
 
 const HEIGHT: f64 = 420.0;
 const BAR: f64 = 18.0;
-/// Pixels of the raster in a logical one.
-const FINE: f64 = 1.5;
+/// Pixels of the raster in a logical one: those of the PNG.
+const FINE: f64 = super::png::SCALE;
 /// Steps of colour: no eye sees more, and a palette of a file holds them.
 const SHADES: f64 = 200.0;
 /// Patches without value that are hatched; more of them are plain grey.
@@ -237,12 +237,8 @@ pub(super) fn draw_bar(
     colour_of: &dyn Fn(f64) -> Colour,
 ) {
     const STRIPS: u16 = 96;
-    for i in (0..STRIPS).rev() {
-        let part = |i: u16| f64::from(i) / f64::from(STRIPS);
-        let colour = colour_of(part(i) + 0.5 / f64::from(STRIPS));
-        // From its own upper edge down to the end: the next ones are painted over it without a seam.
-        scene.fill(Rect { top: bar.at(0.0, part(i + 1)).1, ..*bar }, colour);
-    }
+    let strips = (0..STRIPS).rev().map(|i| colour_of((f64::from(i) + 0.5) / f64::from(STRIPS)).rgb);
+    scene.marks.push(Mark::Image { area: *bar, columns: 1, pixels: strips.collect() });
     scene.outline(*bar, 0.9, INK);
     // A tip at an end of the bar: there are values beyond it.
     let (mut least, mut most) = (0.0f64, 1.0f64);

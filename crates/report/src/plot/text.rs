@@ -44,25 +44,20 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 
 /// Calls `paint` for each pixel that a line of text covers, with its place relative to the start of the
 /// baseline and the part of it that is covered.
-pub(super) fn rasterise(
-    text: &str,
-    size: f64,
-    mut paint: impl FnMut((i32, i32), f64) -> Result<()>,
-) -> Result<()> {
+pub(super) fn rasterise(text: &str, size: f64, mut paint: impl FnMut((i32, i32), f64)) -> Result<()> {
     let font = font().ok_or_else(|| {
         Error::malformed("the embedded font cannot be read", "build hadar again from clean sources")
     })?;
-    let mut outcome = Ok(());
     for outline in set(font, text, size).0.into_iter().filter_map(|glyph| font.outline_glyph(glyph)) {
         let corner = outline.px_bounds().min;
         outline.draw(|x, y, part| {
             let pixel = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
-            if outcome.is_ok() && part > 0.0 {
-                outcome = paint(pixel, f64::from(part.min(1.0)));
+            if part > 0.0 {
+                paint(pixel, f64::from(part.min(1.0)));
             }
         });
     }
-    outcome
+    Ok(())
 }
 
 /// Text without characters that no picture can show.

@@ -128,7 +128,7 @@ proptest! {
 
 /// Vertical places of the lines of text that are one of these names, in the order of the document.
 fn baselines(svg: &str, name: &str) -> Vec<f64> {
-    let texts = svg.split("<text ").skip(1).filter(|text| text.contains(&format!("\n{name}\n")));
+    let texts = svg.split("<text ").skip(1).filter(|text| text.contains(&format!(">{name}</text>")));
     texts
         .map(|text| text.split(" y=\"").nth(1).and_then(|rest| rest.split('"').next()?.parse().ok()))
         .map(|y| y.expect("a text has a place"))
@@ -150,8 +150,11 @@ fn named_values_show_every_name_from_the_top_and_a_symbol_for_every_value() {
     assert!(places.windows(2).all(|pair| pair[0] < pair[1]));
     // The outer disc of every symbol that has a place on the axis, and that of the legend; the three zeros
     // are arrows, explained by one more.
-    let blue = |mark: &str| svg.lines().filter(|l| l.starts_with(mark) && l.contains("\"#0072B2\"")).count();
-    assert_eq!((blue("<circle "), blue("<polygon ")), (60 - 3 + 1, 3 + 1));
+    let blue = |kind: &str, part: &str| -> usize {
+        let start = format!("<path {kind}=\"#0072B2\"");
+        svg.lines().filter(|line| line.starts_with(&start)).map(|path| path.matches(part).count()).sum()
+    };
+    assert_eq!((blue("stroke", "h0"), blue("fill", "z")), (60 - 3 + 1, 3 + 1));
     assert_eq!(baselines(&svg, "0").len(), 1);
     for words in ["required: 6.3×10⁻⁴", "too alike for the camera"] {
         assert_eq!(baselines(&svg, words).len(), 1, "{words}");

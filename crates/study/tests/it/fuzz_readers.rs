@@ -12,14 +12,17 @@ use hadar_testing::repository;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::process::Command;
+use std::time::Duration;
 
 /// Files that are made where nothing is said, for all readers together.
 const INPUTS: u64 = 40_000;
-/// A file of at most a megabyte takes milliseconds; this leaves room for a machine that has other work.
+/// Processor time that a file of at most a megabyte may take, where the system states it (Linux). Some milliseconds are usual.
 const LONGEST: Duration = Duration::from_secs(10);
-/// Memory that the process may have had at most, bytes.
+/// Memory that the process of one reader may have had at most, bytes.
 const MOST_MEMORY: u64 = 1 << 30;
+/// Set in the process of one reader.
+const ALONE: &str = "HADAR_TEST_ALONE";
 
 fn seeds(name: &str) -> Vec<(String, Vec<u8>)> {
     let folder = repository().join("fuzz/seeds").join(name);
@@ -34,19 +37,40 @@ fn seeds(name: &str) -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
+/// Does the work of the test of this name in a process of its own, whose memory is that of no other test.
+fn alone(name: &str, work: impl FnOnce()) {
+    if std::env::var_os(ALONE).is_some() {
+        work();
+        return memory();
+    }
+    let test = format!("{}::{name}", module_path!().split_once("::").map_or("", |(_, module)| module));
+    let arguments = [&test, "--exact", "--nocapture", "--test-threads=1"];
+    let output =
+        Command::new(std::env::current_exe().unwrap()).args(arguments).env(ALONE, "1").output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{}\n{said}{}", output.status, String::from_utf8_lossy(&output.stderr));
+    assert!(said.contains("1 passed"), "{test} is no test: {said}");
+}
+
+/// Processor time that this thread has had, where the system states it.
+fn processor_time() -> Option<Duration> {
+    let nanoseconds = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(Duration::from_nanos(nanoseconds.split(' ').next()?.parse().ok()?))
+}
+
 /// Checks one file; one that fails is kept and said.
 fn check(reader: &Reader, what: &str, bytes: &[u8]) {
-    let start = Instant::now();
+    let start = processor_time();
     let outcome = catch_unwind(AssertUnwindSafe(|| reader.check(bytes)));
-    let elapsed = start.elapsed();
-    if outcome.is_ok() && elapsed < LONGEST {
+    let taken = processor_time().zip(start).map(|(end, start)| end.saturating_sub(start));
+    if outcome.is_ok() && taken.is_none_or(|taken| taken < LONGEST) {
         return;
     }
     let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}-{what}", reader.name));
     std::fs::write(&kept, bytes).unwrap();
     let shown: String =
         bytes.iter().take(2000).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
-    panic!("{} {what}, after {elapsed:?}, kept as {}:\n{shown}", reader.name, kept.display());
+    panic!("{} {what}, after {taken:?}, kept as {}:\n{shown}", reader.name, kept.display());
 }
 
 fn run(name: &str) {
@@ -59,7 +83,6 @@ fn run(name: &str) {
     for number in 0..inputs.div_ceil(READERS.len() as u64) {
         check(reader, &number.to_string(), &mutated(&files, name, number));
     }
-    memory();
 }
 
 /// Where the system says how much memory the process has had at most, that it was not too much.
@@ -75,7 +98,7 @@ macro_rules! readers {
     ($($name:ident),* $(,)?) => {
         $(#[test]
         fn $name() {
-            run(stringify!($name));
+            alone(stringify!($name), || run(stringify!($name)));
         })*
 
         #[test]
@@ -101,6 +124,10 @@ readers! {
 /// Files that are long, wide or deep, which no change of a seed makes.
 #[test]
 fn long_wide_and_deep_files_take_neither_long_nor_much() {
+    alone("long_wide_and_deep_files_take_neither_long_nor_much", long_wide_and_deep);
+}
+
+fn long_wide_and_deep() {
     let most = 1 << 19;
     let times = |text: &str| text.repeat(most / text.len());
     let rows =
@@ -200,7 +227,6 @@ fn long_wide_and_deep_files_take_neither_long_nor_much() {
             check(reader, &format!("large-{number}"), bytes);
         }
     }
-    memory();
 }
 
 /// A MATLAB file of 200 kB with a packed array of bytes that would be 1.6 GB of doubles.

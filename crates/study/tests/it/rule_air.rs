@@ -110,9 +110,8 @@ fn ranges_of_nearly_one_distance_are_judged() {
     let table = "wavenumber_cm1,tau_10m,tau_100m,tau_1km,tau_10km\n690,1,0.5,0.5,0.1\n800,0.9,0.2,0.2,0\n\
                  850,0.99,0.98,0.98,0.97\n900,0.99999,0.3,0.3,0.3\n1000,0.5,0.1,0.1,0\n1001,0.99,0.98,0.97,0.5\n\
                  1300,0.9,0.9,0.9,0.9\n";
-    let folder = std::env::temp_dir().join(format!("hadar-plateau-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("plateau.csv");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plateau.csv");
     std::fs::write(&path, table).unwrap();
     for nearest in ["99.99998583970157 m", "99.9999999 m", "99.99999999999 m", "99.999 m"] {
         let text = rule("skin", "\"pmma\"", [nearest, "100 m"], 0.3, "")
@@ -120,5 +119,4 @@ fn ranges_of_nearly_one_distance_are_judged() {
         let verdict = answered(&text);
         assert_eq!(verdict.certificate.kind, Proof::BranchAndBound, "{nearest}: {verdict:?}");
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }

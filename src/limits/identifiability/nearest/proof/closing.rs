@@ -16,7 +16,7 @@
 
 use super::amplitudes::{Amplitudes, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
-use super::orthogonal::{add, inner, reduce};
+use super::orthogonal::{add, back_substitute, inner, reduce};
 use super::sources::{Sources, Spectrum};
 use super::vectors::{Weights, add_root_into, add_size_into, add_square_into, product_into, weights_into};
 use crate::sum::dot;
@@ -342,11 +342,7 @@ impl Columns<'_> {
                 reduce(&mut used.iter().map(|&i| columns[i].clone()).collect::<Vec<_>>(), &[&rest]);
             let n = used.len();
             let mut multipliers = along[0][..n].to_vec();
-            for k in (0..n).rev() {
-                let later: f64 = (k + 1..n).map(|j| triangle[j][k] * multipliers[j]).sum();
-                let pivot = triangle[k][k];
-                multipliers[k] = if pivot > 0.0 { (multipliers[k] - later) / pivot } else { 0.0 };
-            }
+            back_substitute(|row, column| triangle[column][row], &mut multipliers);
             let negative = (0..n).filter(|&k| !limits[used[k]].both && multipliers[k] < 0.0);
             if let Some(worst) = negative.min_by(|&a, &b| multipliers[a].total_cmp(&multipliers[b])) {
                 used.remove(worst);
@@ -366,11 +362,7 @@ impl Columns<'_> {
     fn along_amplitudes(&self, bent: &[f64], rest: &[f64]) -> f64 {
         let n = self.lit.len();
         let mut w = bent[..n].to_vec();
-        for k in (0..n).rev() {
-            let later: f64 = (k + 1..n).map(|j| self.triangle[j][k] * w[j]).sum();
-            let pivot = self.triangle[k][k];
-            w[k] = if pivot > 0.0 { (w[k] - later) / pivot } else { 0.0 };
-        }
+        back_substitute(|row, column| self.triangle[column][row], &mut w);
         // The amplitudes' columns of F are those of R but for √(1 − η) ≤ 1.
         let gradient = (0..n).map(|k| inner(&self.triangle[k][..=k], &rest[..=k]));
         gradient.zip(&w).map(|(g, w)| g * w).sum()

@@ -18,6 +18,15 @@ pub(super) fn add(to: &mut [f64], factor: f64, x: &[f64]) {
     to.iter_mut().zip(x).for_each(|(to, x)| *to += factor * x);
 }
 
+/// R⁻¹x in place, `entry` the rows and columns of R; 0 along what depends on earlier columns.
+pub(super) fn back_substitute(entry: impl Fn(usize, usize) -> f64, x: &mut [f64]) {
+    for k in (0..x.len()).rev() {
+        let later: f64 = (k + 1..x.len()).map(|j| entry(k, j) * x[j]).sum();
+        let pivot = entry(k, k);
+        x[k] = if pivot > 0.0 { (x[k] - later) / pivot } else { 0.0 };
+    }
+}
+
 /// Makes columns orthonormal (Gram and Schmidt, again where much cancels) and gives the triangle R of columns = QR, column by
 /// column, what depends on earlier columns left out, and for each of `others` Qᵀother followed by what is left of its length.
 ///

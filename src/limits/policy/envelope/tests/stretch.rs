@@ -57,12 +57,23 @@ fn known(distance: f64, worst: &WorstCase) -> LeastKnown<'_> {
 /// For every set of unknowns: no distance along a stretch is below what is proved, whatever it was told is attained; and
 /// along short stretches little is lost.
 #[test]
+#[ignore = "15 s of processor time: .ci/evidence runs it"]
 fn no_distance_along_a_stretch_is_below_its_bound() {
+    stretches(1, 5);
+}
+
+/// The same for every third set.
+#[test]
+fn no_distance_along_a_stretch_is_below_its_bound_in_some_sets() {
+    stretches(3, 1);
+}
+
+fn stretches(every: usize, least_short: u32) {
     let mut random = ChaCha8Rng::seed_from_u64(17);
     let pairs = [["0.95", "aluminium"], ["fabric", "kapton-tape"], ["silver", "0.4"], ["skin", "pmma"]];
     let airs = Atmosphere::names();
     let (mut short, mut tight, mut positive, mut all) = (0, 0, 0, 0);
-    for (case, (nuisances, objects, total)) in sets().into_iter().enumerate() {
+    for (case, (nuisances, objects, total)) in sets().into_iter().enumerate().step_by(every) {
         let camera = ["ideal-pnrd", "flir-a325sc"][case % 2];
         let mut path = Path::new(pairs[case % 4], objects, camera, airs[case % airs.len()]);
         path.setting.unknowns = Unknowns::new(nuisances).unwrap().lighting_total(total).unwrap();
@@ -97,7 +108,7 @@ fn no_distance_along_a_stretch_is_below_its_bound() {
         }
     }
     println!("{positive} of {all} positive, {tight} of {short} tight");
-    assert!(2 * positive > all && 2 * tight >= short && short > 5);
+    assert!(2 * positive > all && 2 * tight >= short && short > least_short);
 }
 
 #[test]
