@@ -34,7 +34,7 @@
 //! | base | [`error`], [`units`], [`statistics`] | errors with place and remedy; constants and quantities; laws of counts |
 //! | | [`sum`], [`root`], [`minimum`] | sums without growing error, crossings and minima in one dimension |
 //! | | [`lattice_points`], [`grid`] | points that fill the unit cube, files of numbers |
-//! | | [`cube`] | heat cubes, in memory or read by rows from files |
+//! | | [`cube`] | heat cubes, in memory or given by rows |
 //! | | [`demand`], [`allowed`], [`words`] | what a question needs and what of it was computed; ranges of figures; numbers in words |
 //! | physics | [`planck`] | photon radiance of a blackbody and its differences |
 //! | | [`spectrum`] | bands: grids, filters, integrals |
@@ -47,11 +47,6 @@
 //! | | [`identifiability`] | distances between materials: local, nearest, exact; many materials; bands that matter |
 //! | | [`ranging`] | precision of depth: windows, textures, diffraction, heat cubes |
 //! | | [`policy`] | requirements: solved for, traded off, proved over envelopes of scenes |
-//! | witness | [`simulate`] | counts drawn, classifiers, thermometry, stereo matching: each against its bound |
-//! | | [`decompose`] | heat cubes taken apart: material, temperature and lighting of every pixel |
-//! | | [`separation`] | temperature and emissivity told apart without a library, and a library out of a heat cube |
-//! | | [`segmentation`] | maps of materials as maps of categories and objects |
-//! | | [`render`] | stereo pairs of heat cubes of a scene |
 //!
 //! # Where an equation is computed
 //!
@@ -62,8 +57,8 @@
 //! |---|---|---|
 //! | 2 | identifiability, log₂ 2P | [`identifiability::detection`] |
 //! | 3 | depth error in a scattered signal that has to be reconstructed | [`ranging::depth`], [`ranging::reconstruction`] |
-//! | S1–S4 | heat signal; multiple scattering | [`scene`]; [`render`] |
-//! | S5, S6 | thermal lighting factors of surfaces | [`render`] |
+//! | S1–S4 | heat signal; multiple scattering | [`scene`]; `hadar_simulate::render` |
+//! | S5, S6 | thermal lighting factors of surfaces | `hadar_simulate::render` |
 //! | S7 | étendue of a pixel, counts | [`instrument::Camera::etendue_m2_sr`], [`instrument::view`] |
 //! | S8, S9 | filters, and the light that sensor and filters add | [`spectrum`], [`instrument::view`] |
 //! | S10, Table S2 | counts from what data sheets state | [`instrument::noise`], [`instrument::equivalents`] |
@@ -80,13 +75,13 @@
 //! | S35, S36 | depth from disparity, and its error δz | [`ranging::depth`] |
 //! | S37–S40, Tables S4, S5 | information of windows, four cells | [`ranging::information`], [`ranging::noise`] |
 //! | S41–S43 | two views, diffraction, the limit of δz | [`ranging::depth`], [`ranging::psf`] |
-//! | S44 | decomposition of a heat cube | [`decompose`] |
-//! | S45, Ext. Data Fig. 1b | texture of the sky's light alone | [`decompose::distil()`] |
-//! | S46, S47 | temperature and lighting by slopes along wavenumber, and their errors | [`decompose::Method`], [`decompose::inverse_error`] |
-//! | SV C | a library out of a heat cube | [`separation`]; its bound [`fisher::emissivity`] |
-//! | S48 | known total of the lighting factors | [`fisher`], [`scene`], [`decompose`] |
-//! | SIII E, Algorithm 4 | semantic segmentation by materials | [`segmentation`] |
-//! | Ext. Data Fig. 9 | thermometry | [`fisher::precision`], [`simulate::thermometry`] |
+//! | S44 | decomposition of a heat cube | `hadar_estimate::decompose` |
+//! | S45, Ext. Data Fig. 1b | texture of the sky's light alone | `hadar_estimate::decompose::distil` |
+//! | S46, S47 | temperature and lighting by slopes along wavenumber, and their errors | `hadar_estimate::decompose::Method`, `hadar_estimate::decompose::inverse_error` |
+//! | SV C | a library out of a heat cube | `hadar_estimate::separation`; its bound [`fisher::emissivity`] |
+//! | S48 | known total of the lighting factors | [`fisher`], [`scene`], `hadar_estimate::decompose` |
+//! | SIII E, Algorithm 4 | semantic segmentation by materials | `hadar_estimate::segmentation` |
+//! | Ext. Data Fig. 9 | thermometry | [`fisher::precision`], `hadar_simulate::thermometry` |
 //! | SII E, Fig. 3d, e | H = t A_p/((1 + γ)F²), motion, requirements | [`policy`] |
 //!
 //! [doi:10.1038/s41586-023-06174-6]: https://doi.org/10.1038/s41586-023-06174-6

@@ -12,7 +12,6 @@
 mod bands;
 mod filter;
 mod integrate;
-mod read;
 mod rows;
 
 pub use bands::{Band, Bands};

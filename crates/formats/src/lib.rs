@@ -1,6 +1,7 @@
 //! Files to values: what `hadar` computes with, read from the files of a user.
 //!
 //! * [`cube`]: heat cubes, NPY, NPZ, ENVI, MATLAB, HDF5 and NetCDF-4 (feature `hdf5`, which is a default);
+//! * [`bands`] and [`filters`]: where a camera's bands are, and what its filters transmit;
 //! * [`noise_variance`]: the electronic noise of a cube.
 //!
 //! ```no_run
@@ -11,7 +12,13 @@
 //! # Ok::<(), hadar::Error>(())
 //! ```
 
+mod bands;
 pub mod cube;
 mod noise_variance;
 
+pub use bands::{bands, filters};
 pub use noise_variance::noise_variance;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -19,8 +19,8 @@ pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
             }
             _ => Bands::uniform(start.number(), stop.number(), step.number()),
         },
-        BandSource::Rows(path) => return Bands::from_rows_file(path),
-        BandSource::Filters(path) => return Bands::from_filters_file(path),
+        BandSource::Rows(path) => return hadar_formats::bands(path),
+        BandSource::Filters(path) => return hadar_formats::filters(path),
         BandSource::Ranges(ranges) => {
             let edges: Vec<(f64, f64)> = ranges
                 .iter()

@@ -41,6 +41,12 @@ impl FilterCurve {
         Ok(Self { name, wavenumbers_cm1, transmittances, reflectances: Vec::new() })
     }
 
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
     /// The filter with its reflectance at rows (wavenumber in cm⁻¹, reflectance), those of its transmittance in any order.
     ///
     /// # Errors

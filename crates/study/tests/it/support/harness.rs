@@ -189,13 +189,13 @@ fn sound_bands(bands: &Bands) {
 }
 
 fn band_rows(folder: &Folder, bytes: &[u8]) {
-    if let Some(bands) = accepted(Bands::from_rows_file(&folder.put("bands.csv", bytes))) {
+    if let Some(bands) = accepted(hadar_formats::bands(&folder.put("bands.csv", bytes))) {
         sound_bands(&bands);
     }
 }
 
 fn filters(folder: &Folder, bytes: &[u8]) {
-    if let Some(bands) = accepted(Bands::from_filters_file(&folder.put("filters.csv", bytes))) {
+    if let Some(bands) = accepted(hadar_formats::filters(&folder.put("filters.csv", bytes))) {
         sound_bands(&bands);
     }
 }

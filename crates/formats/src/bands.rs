@@ -3,30 +3,34 @@
 //! Rows: `wavenumber_cm1` or `wavelength_um`, and optionally `width_cm1` or `width_um`, one band per row in
 //! any order. Filters: the same first column, then one column of transmittances per filter.
 
-use super::{Bands, FilterCurve};
-use crate::error::{Error, Result, check};
-use crate::grid::{Grid, text_of_file};
+use hadar::error::{Error, Result, check};
+use hadar::grid::{Grid, text_of_file};
+use hadar::spectrum::{Bands, FilterCurve};
 use std::path::Path;
 
-impl Bands {
-    /// Reads a file with one row per band.
-    ///
-    /// # Errors
-    /// A file that cannot be read, columns of another name, cells that are not numbers above 0, a centre
-    /// that comes twice; with file and line.
-    pub fn from_rows_file(path: &Path) -> Result<Self> {
-        let text = text_of_file(path, "read the bands")?;
-        rows(&text).map_err(|error| error.in_file(path))
-    }
+/// Reads a file with one row per band.
+///
+/// # Errors
+/// A file that cannot be read, columns of another name, cells that are not numbers above 0, a centre
+/// that comes twice; with file and line.
+///
+/// ```no_run
+/// let bands = hadar_formats::bands("my_bands.csv".as_ref())?;
+/// println!("{} bands from {} cm^-1", bands.len(), bands.nodes_cm1()[0]);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+pub fn bands(path: &Path) -> Result<Bands> {
+    let text = text_of_file(path, "read the bands")?;
+    rows(&text).map_err(|error| error.in_file(path))
+}
 
-    /// Reads a file with one column per filter.
-    ///
-    /// # Errors
-    /// As [`Bands::from_rows_file`], and a transmittance outside [0, 1].
-    pub fn from_filters_file(path: &Path) -> Result<Self> {
-        let text = text_of_file(path, "read the filters")?;
-        filters(&text).and_then(Self::from_filters).map_err(|error| error.in_file(path))
-    }
+/// Reads a file with one column per filter.
+///
+/// # Errors
+/// As [`bands`], and a transmittance outside [0, 1].
+pub fn filters(path: &Path) -> Result<Bands> {
+    let text = text_of_file(path, "read the filters")?;
+    curves(&text).and_then(Bands::from_filters).map_err(|error| error.in_file(path))
 }
 
 fn rows(text: &str) -> Result<Bands> {
@@ -81,7 +85,7 @@ fn rows(text: &str) -> Result<Bands> {
 /// A column of this ending is the reflectance of the filter before it.
 const REFLECTANCE: &str = ":reflectance";
 
-fn filters(text: &str) -> Result<Vec<FilterCurve>> {
+fn curves(text: &str) -> Result<Vec<FilterCurve>> {
     let grid = Grid::parse(text)?;
     let axis = grid.wavenumbers_cm1()?;
     let rows = |column: usize, what: &str| -> Result<Vec<(f64, f64)>> {
@@ -100,7 +104,7 @@ fn filters(text: &str) -> Result<Vec<FilterCurve>> {
             filters.push(FilterCurve::new(header.clone(), rows(column, "transmittance")?)?);
             continue;
         };
-        let Some(place) = filters.iter().position(|filter| filter.name == of) else {
+        let Some(place) = filters.iter().position(|filter| filter.name() == of) else {
             let found = format!("a reflectance of `{of}`, which is no filter before it");
             return Err(at_column(Error::malformed(found, format!("write a column `{of}` to its left"))));
         };
@@ -127,7 +131,7 @@ mod tests {
 
     #[test]
     fn filters_column_by_column_and_their_mistakes() {
-        let two = filters("wavelength_um,a,b\n8,0,1\n9,1,0\n10,0,0\n").unwrap();
+        let two = curves("wavelength_um,a,b\n8,0,1\n9,1,0\n10,0,0\n").unwrap();
         assert_eq!(two.len(), 2);
         for (text, found) in [
             (
@@ -140,7 +144,7 @@ mod tests {
                 "line 1: the first column has another name; name it wavenumber_cm1 or wavelength_um",
             ),
         ] {
-            assert_eq!(filters(text).unwrap_err().to_string(), found);
+            assert_eq!(curves(text).unwrap_err().to_string(), found);
         }
     }
 }
