@@ -9,15 +9,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Packages and storeys from the ground up; each uses only those before it.
-const PACKAGES: [(&str, &str); 6] = [
+const PACKAGES: [(&str, &str); 9] = [
     ("hadar", "."),
+    ("hadar-estimate", "crates/estimate"),
+    ("hadar-simulate", "crates/simulate"),
+    ("hadar-scenario", "crates/scenario"),
     ("hadar-study", "crates/study"),
     ("hadar-report", "crates/report"),
     ("hadar-serve", "crates/serve"),
     ("hadar-cli", "crates/cli"),
     ("hadar-evidence", "crates/evidence"),
 ];
-const STOREYS: [&str; 5] = ["base", "physics", "instrument", "limits", "witness"];
+const STOREYS: [&str; 4] = ["base", "physics", "instrument", "limits"];
 
 /// The files of a package by their module; the root has no name.
 #[derive(Default)]
