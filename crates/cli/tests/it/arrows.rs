@@ -9,8 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Packages and storeys from the ground up; each uses only those before it.
-const PACKAGES: [(&str, &str); 9] = [
+const PACKAGES: [(&str, &str); 10] = [
     ("hadar", "."),
+    ("hadar-formats", "crates/formats"),
     ("hadar-estimate", "crates/estimate"),
     ("hadar-simulate", "crates/simulate"),
     ("hadar-scenario", "crates/scenario"),
