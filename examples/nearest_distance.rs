@@ -8,7 +8,7 @@
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::detection::probability;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
-use hadar::material::{Library, Material};
+use hadar::material::Library;
 use hadar::policy::photons_required;
 use hadar::scene::{EnvironmentObject, Surroundings};
 use hadar::spectrum::Bands;
@@ -16,7 +16,10 @@ use hadar::spectrum::Bands;
 fn main() -> hadar::Result<()> {
     let files: Vec<String> = std::env::args().skip(1).collect();
     let (target, other) = match files.as_slice() {
-        [target, other] => (Material::from_file(target.as_ref())?, Material::from_file(other.as_ref())?),
+        [target, other] => (
+            hadar_formats::spectra::material(target.as_ref())?,
+            hadar_formats::spectra::material(other.as_ref())?,
+        ),
         _ => {
             let library = Library::embedded()?;
             (library.get("skin")?.clone(), library.get("aluminium")?.clone())

@@ -33,7 +33,7 @@
 //! |---|---|---|
 //! | base | [`error`], [`units`], [`statistics`] | errors with place and remedy; constants and quantities; laws of counts |
 //! | | [`sum`], [`root`], [`minimum`] | sums without growing error, crossings and minima in one dimension |
-//! | | [`lattice_points`], [`grid`] | points that fill the unit cube, files of numbers |
+//! | | [`lattice_points`], [`grid`] | points that fill the unit cube, text of tables |
 //! | | [`cube`] | heat cubes, in memory or given by rows |
 //! | | [`demand`], [`allowed`], [`words`] | what a question needs and what of it was computed; ranges of figures; numbers in words |
 //! | physics | [`planck`] | photon radiance of a blackbody and its differences |
@@ -93,8 +93,8 @@ mod physics;
 
 pub use base::error::{Error, Result};
 pub use base::{
-    allowed, correlation, cube, demand, envi_header, error, file, grid, inputs, lattice_points, minimum,
-    random, root, simd, spectral_unit, statistics, sum, units, words,
+    allowed, correlation, cube, demand, error, grid, inputs, lattice_points, minimum, random, root, simd,
+    statistics, sum, units, words,
 };
 pub(crate) use base::{best_first, box_least_squares, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};

@@ -7,6 +7,7 @@ use hadar::demand::{Reason, Skipping, Thing, Work, ledger_of};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
 use hadar::material::Library;
+use hadar_formats::ReadLibrary as _;
 use hadar_report::bundle::Bundle;
 use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::{

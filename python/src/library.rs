@@ -2,7 +2,7 @@
 
 use crate::array::{flat, list};
 use crate::error::raised;
-use hadar::material::{Library, Material};
+use hadar::material::Library;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -27,7 +27,8 @@ pub(crate) fn emissivity<'py>(
         Ok(name) if !name.contains(['/', '\\', '.']) => {
             Library::embedded().and_then(|library| library.get(&name)?.emissivity(&nu))
         }
-        _ => Material::from_file(&material.extract::<PathBuf>()?).and_then(|found| found.emissivity(&nu)),
+        _ => hadar_formats::spectra::material(&material.extract::<PathBuf>()?)
+            .and_then(|found| found.emissivity(&nu)),
     };
     Ok(flat(material.py(), found.map_err(raised)?))
 }

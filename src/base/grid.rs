@@ -1,18 +1,10 @@
-//! Files of numbers: CSV with comment lines, one header line, and rows as long as the header.
+//! Text of numbers: CSV with comment lines, one header line, and rows as long as the header.
 
 use crate::error::{Error, Result, check};
-use crate::file;
 use crate::units::decimal_comma;
-use std::path::Path;
 
 /// What a file should begin with, for messages.
 pub const EXAMPLE: &str = "begin the file with a line such as wavenumber_cm1,emissivity";
-
-/// What reading a material is called in messages.
-pub const READ_SPECTRUM: &str = "read the spectrum";
-
-/// The longest file that is taken for text, bytes.
-const LONGEST_FILE: u64 = 1 << 26;
 
 /// The header and the numbers, with the line (from 1) that each row stands on.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,34 +129,4 @@ pub fn number(cell: &str) -> Result<f64> {
             ))
         }
     }
-}
-
-/// Text of a file: UTF-16 where it begins with the mark of that, else UTF-8, else Latin-1.
-///
-/// # Errors
-/// As [`file::bytes`]; the message says what `action` could not be done.
-pub fn text_of_file(path: &Path, action: &str) -> Result<String> {
-    if action == READ_SPECTRUM && path.is_dir() {
-        return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
-    }
-    let bytes = file::bytes(path, action, LONGEST_FILE)?;
-    if let Some(text) = utf_16(&bytes) {
-        return Ok(text);
-    }
-    // Latin-1 is the first 256 code points
-    Ok(String::from_utf8(bytes)
-        .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))
-}
-
-/// Text that a byte-order mark says to be UTF-16, as Excel writes `Unicode text`.
-fn utf_16(bytes: &[u8]) -> Option<String> {
-    let (big, units) = match bytes {
-        [0xff, 0xfe, units @ ..] => (false, units),
-        [0xfe, 0xff, units @ ..] => (true, units),
-        _ => return None,
-    };
-    let (units, _) = units.as_chunks::<2>();
-    let units =
-        units.iter().map(|&unit| if big { u16::from_be_bytes(unit) } else { u16::from_le_bytes(unit) });
-    Some(char::decode_utf16(units).map(|char| char.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
 }

@@ -99,7 +99,7 @@ pub fn stream(name: &str, content: &[u8]) {
 }
 
 /// The files of a folder were looked for.
-pub(crate) fn folder(path: &Path) {
+pub fn folder(path: &Path) {
     OPEN.with_borrow_mut(|open| {
         if let Some(inputs) = open
             && !inputs.folders.iter().any(|known| known == path)

@@ -1,4 +1,4 @@
-//! Numbers in words: as short as they can be without losing what matters.
+//! Numbers in words: as short as they can be without losing what matters; names and titles in one form.
 
 /// Powers of ten within which a number is written plainly: from 0.001 to 99999.
 const PLAIN: std::ops::Range<i32> = -3..5;
@@ -69,6 +69,37 @@ pub fn share(share: f64) -> String {
     } else {
         format!("{percent:.0} %")
     }
+}
+
+/// A name in kebab-case: `tilePavement` → `tile-pavement`, `Fused silica` → `fused-silica`. Qualified
+/// names keep their `@`.
+#[must_use]
+pub fn kebab_case(name: &str) -> String {
+    let mut kebab = String::with_capacity(name.len() + 2);
+    let mut previous = ' ';
+    for character in name.chars() {
+        let boundary = !(character.is_alphanumeric() || character == '@');
+        let hump = character.is_uppercase() && previous.is_lowercase();
+        if (boundary || hump) && !kebab.is_empty() && !kebab.ends_with(['-', '@']) {
+            kebab.push('-');
+        }
+        if !boundary {
+            if character == '@' && kebab.ends_with('-') {
+                kebab.pop();
+            }
+            kebab.extend(character.to_lowercase());
+        }
+        previous = character;
+    }
+    kebab.truncate(kebab.trim_end_matches('-').len());
+    kebab
+}
+
+/// Text without line breaks and other control characters, nor more than one blank at a place.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    let words = text.split(|char: char| char.is_whitespace() || char.is_control());
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

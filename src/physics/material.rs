@@ -2,7 +2,7 @@
 //!
 //! A [`Material`] is a spectral emissivity e(ν) in [0, 1] with its [`Provenance`]. It is evaluated on
 //! whatever wavenumbers are asked for (cm⁻¹), from a constant, a table, or a model of optics; see
-//! [`Library`] for the embedded ones and [`read`] for files.
+//! [`Library`] for the embedded ones.
 //!
 //! Assumptions: normal incidence unless the note says otherwise, unpolarised, opaque unless it is a slab.
 //! Between rows of a table the tabulated quantity (emissivity, or n and k) is linear in wavenumber, and a
@@ -21,26 +21,27 @@ mod gaussian;
 mod library;
 #[cfg(feature = "library")]
 mod manifest;
-mod members;
 #[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
 mod model;
 mod oscillator;
 mod provenance;
-#[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
-pub mod read;
 mod table;
 mod write;
 
-pub use class::{ClassSpec, MaterialRef, Spread};
+pub use class::{ClassSpec, ENDINGS, MaterialRef, Spread, is_spectra};
+pub use dielectric::OpticalConstants;
 pub use library::Library;
-pub use members::{Class, Member};
+#[cfg(feature = "library")]
+pub use manifest::ManifestFiles;
 pub use provenance::{Basis, Provenance};
+pub use table::{Fault, Table, ascending};
 pub use write::Summary;
 
 use crate::error::{Error, Result, check};
+use dielectric::Dielectric;
 use model::{Model, inside};
 use std::sync::Arc;
-use table::{Table, same};
+use table::same;
 
 /// By how much rounding may take a computed emissivity out of [0, 1].
 const ROUNDING: f64 = 1e-9;
@@ -138,19 +139,47 @@ impl Material {
         }
     }
 
+    /// The surface of a table of emissivities. One outside [0, 1] is an error where it is used.
+    #[must_use]
+    pub fn of_table(name: String, provenance: Provenance, table: Table<1>) -> Self {
+        Self::of(name, provenance, Model::Table(table))
+    }
+
+    /// The smooth opaque half-space of these optical constants.
+    #[must_use]
+    pub fn of_constants(name: String, provenance: Provenance, constants: OpticalConstants) -> Self {
+        Self::of(name, provenance, Model::HalfSpace(Dielectric::Constants(constants)))
+    }
+
     /// Says as what its file was read.
-    fn reading(mut self, read_as: impl Into<String>) -> Self {
+    #[must_use]
+    pub fn reading(mut self, read_as: impl Into<String>) -> Self {
         self.read_as = read_as.into();
         self
     }
 
+    /// As what the columns of its file were read; empty for what was not read from one.
+    #[must_use]
+    pub fn read_as(&self) -> &str {
+        &self.read_as
+    }
+
+    /// The number of the measured sample, in kebab-case; empty where none is known.
+    #[must_use]
+    pub fn sample(&self) -> &str {
+        &self.sample
+    }
+
     /// Says of which sample it is.
-    fn of_sample(mut self, sample: String) -> Self {
+    #[must_use]
+    pub fn of_sample(mut self, sample: String) -> Self {
         self.sample = sample;
         self
     }
 
-    pub(in crate::physics::material) fn warn(mut self, warnings: impl IntoIterator<Item = String>) -> Self {
+    /// Adds what a user should know.
+    #[must_use]
+    pub fn warn(mut self, warnings: impl IntoIterator<Item = String>) -> Self {
         self.warnings.extend(warnings);
         self
     }

@@ -8,6 +8,7 @@ use hadar::material::{Extrapolation, Library};
 use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
+use hadar_formats::ReadLibrary as _;
 use hadar_simulate::decision::{Balanced, DecisionScene};
 use hadar_simulate::sequential::Plan;
 use proptest::prelude::*;

@@ -15,7 +15,6 @@ mod exact_probability;
 mod inputs;
 mod likelihood;
 mod many_materials;
-mod materials;
 mod nearest_extremes;
 mod nearest_minimum;
 mod nearest_search;
@@ -27,7 +26,6 @@ mod ranging_reference;
 mod segmentation;
 mod selection;
 mod separation;
-mod spectra;
 
 mod support {
     pub(crate) mod scenes;

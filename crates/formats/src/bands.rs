@@ -3,8 +3,9 @@
 //! Rows: `wavenumber_cm1` or `wavelength_um`, and optionally `width_cm1` or `width_um`, one band per row in
 //! any order. Filters: the same first column, then one column of transmittances per filter.
 
+use crate::file::text_of_file;
 use hadar::error::{Error, Result, check};
-use hadar::grid::{Grid, text_of_file};
+use hadar::grid::Grid;
 use hadar::spectrum::{Bands, FilterCurve};
 use std::path::Path;
 

@@ -1,6 +1,8 @@
 //! Files to values: what `hadar` computes with, read from the files of a user.
 //!
 //! * [`cube`]: heat cubes, NPY, NPZ, ENVI, MATLAB, HDF5 and NetCDF-4 (feature `hdf5`, which is a default);
+//! * [`spectra`]: emissivities, in CSV and other text, ECOSTRESS, JCAMP-DX and ENVI files; [`ReadLibrary`] adds those of a file, a
+//!   folder or a manifest to a library, [`members`] reads those of a class;
 //! * [`bands`] and [`filters`]: where a camera's bands are, and what its filters transmit;
 //! * [`noise_variance`]: the electronic noise of a cube.
 //!
@@ -14,9 +16,17 @@
 
 mod bands;
 pub mod cube;
+pub mod envi_header;
+pub mod file;
+mod library;
+mod members;
 mod noise_variance;
+pub mod spectra;
+pub mod spectral_unit;
 
 pub use bands::{bands, filters};
+pub use library::ReadLibrary;
+pub use members::{Class, Member, members};
 pub use noise_variance::noise_variance;
 
 #[cfg(doctest)]

@@ -4,9 +4,10 @@
 //! falling, and then turned round); one row per band, bands counted in rising wavenumber. An NPY or MATLAB file has one variance per sample.
 
 use crate::cube::{is_cube, open};
+use crate::file::text_of_file;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result, check};
-use hadar::grid::{Grid, text_of_file};
+use hadar::grid::Grid;
 use hadar::ranging::noise::NoiseVariance;
 use std::path::Path;
 

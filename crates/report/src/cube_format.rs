@@ -2,9 +2,9 @@
 
 use crate::bundle::Bundle;
 use hadar::cube::{Sample, Shape};
-use hadar::envi_header::Interleave;
 use hadar::error::Result;
 use hadar_formats::cube::{EnviBands, envi_files, write_npy_to};
+use hadar_formats::envi_header::Interleave;
 
 /// As what cubes are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::MaterialRef;
 use super::section::{Entry, Section};
 use hadar::error::{Error, Result};
-use hadar::material::read::is_spectra;
+use hadar::material::is_spectra;
 use hadar_formats::cube::Axes;
 
 /// How file paths are written.

@@ -4,7 +4,7 @@ use super::setting::Setting;
 use super::source::Source;
 use super::stated_camera::StatedCamera;
 use hadar::error::{Error, Result};
-use hadar::file;
+use hadar_formats::file;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use super::surface::Surface;
 use hadar::atmosphere::Atmosphere;
 use hadar::error::{Error, Result};
-use hadar::grid::text_of_file;
+use hadar_formats::file::text_of_file;
 use hadar_scenario::{AtmosphereSource, Scenario};
 
 /// What is behind the target, on the nodes of the bands.

@@ -1,10 +1,11 @@
 //! The camera of a scenario: a preset with what the scenario overrides.
 
 use hadar::error::{Error, Place, Result};
-use hadar::grid::{Grid, text_of_file};
+use hadar::grid::Grid;
 use hadar::instrument::figures::{Kind, Part, TABLE};
 use hadar::instrument::presets::{self, Preset};
 use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, REFERENCE_K};
+use hadar_formats::file::text_of_file;
 use hadar_scenario::{CameraSpec, Efficiency, Source};
 use std::path::Path;
 

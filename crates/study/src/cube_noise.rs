@@ -6,8 +6,9 @@
 //! as by temperatures of blackbodies: bands do not average it down, so that it is kept apart.
 
 use hadar::error::{Error, Result, check};
-use hadar::grid::{Grid, text_of_file};
+use hadar::grid::Grid;
 use hadar::words::significant;
+use hadar_formats::file::text_of_file;
 use hadar_scenario::decompose::{CubeNoise, CubeUnit};
 use std::path::Path;
 

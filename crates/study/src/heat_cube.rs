@@ -6,14 +6,15 @@ use super::cube_unit::check_light;
 use super::{Warning, bands, camera, camera_bands};
 use hadar::cube::{Cube, Rows, Sample};
 use hadar::error::{Error, Result};
-use hadar::grid::{Grid, READ_SPECTRUM, text_of_file};
+use hadar::grid::Grid;
 use hadar::instrument::View;
-use hadar::material::{Library, Material};
+use hadar::material::Library;
 use hadar::planck;
 use hadar::spectrum::{Bands, interpolated};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
+use hadar_formats::file::{READ_SPECTRUM, text_of_file};
 use hadar_scenario::decompose::{CubeUnit, HeatCube, LightSource};
 use hadar_scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use std::path::Path;
@@ -203,7 +204,7 @@ fn lit(light: &LightSource, cube: &Cube, bands: &Bands, library: &Library, unit:
             let emissivity = match material {
                 None => return Ok(Light::Radiance(radiance)),
                 Some(MaterialRef::Name(name)) => library.get(name)?.emissivity(nodes)?,
-                Some(MaterialRef::File(path)) => Material::from_file(path)?.emissivity(nodes)?,
+                Some(MaterialRef::File(path)) => hadar_formats::spectra::material(path)?.emissivity(nodes)?,
             };
             radiance.iter_mut().zip(&emissivity).for_each(|(radiance, e)| *radiance *= e);
             Ok(Light::Radiance(radiance))

@@ -5,7 +5,7 @@
 use super::heat_cube::spectrum;
 use hadar::error::{Error, Place, Result};
 use hadar::instrument::Camera;
-use hadar::material::{Library, Material};
+use hadar::material::Library;
 use hadar::planck;
 use hadar::spectrum::Bands;
 use hadar_scenario::MaterialRef;
@@ -41,7 +41,9 @@ pub(super) fn staged(spec: &SceneSpec, bands: &Bands, library: &Library, place: 
         let nodes = bands.nodes_cm1();
         let emissivity = match material {
             MaterialRef::Name(name) => library.get(name).and_then(|found| found.emissivity(nodes)),
-            MaterialRef::File(path) => Material::from_file(path).and_then(|read| read.emissivity(nodes)),
+            MaterialRef::File(path) => {
+                hadar_formats::spectra::material(path).and_then(|read| read.emissivity(nodes))
+            }
         };
         Ok(Emissivity::Spectrum(emissivity.map_err(|error| error.at(place(key)))?))
     };

@@ -13,6 +13,17 @@
 use crate::error::{Error, Result, check};
 use std::path::PathBuf;
 
+/// Endings of files of spectra.
+pub const ENDINGS: [&str; 11] =
+    [".csv", ".txt", ".tsv", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli"];
+
+/// Whether a file is called as files of spectra are ([`ENDINGS`], in any case).
+#[must_use]
+pub fn is_spectra(name: &str) -> bool {
+    let ending = name.rfind('.').and_then(|dot| name.get(dot..));
+    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
 /// A material by name in a library, or files with spectra.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MaterialRef {

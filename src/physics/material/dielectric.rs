@@ -25,12 +25,14 @@ pub(super) enum Dielectric {
 
 /// A table of refractive index n > 0 and extinction index k ≥ 0.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct OpticalConstants(Table<2>);
+pub struct OpticalConstants(Table<2>);
 
 impl OpticalConstants {
+    /// The constants of rows (wavenumber in cm⁻¹, [n, k]) in any order.
+    ///
     /// # Errors
     /// Rows that are no table (see [`Table::new`]), n ≤ 0 or k < 0.
-    pub(super) fn new(rows: &[(f64, [f64; 2])]) -> Result<Self> {
+    pub fn new(rows: &[(f64, [f64; 2])]) -> Result<Self> {
         for (_, [n, k]) in rows {
             check::positive("refractive index n", *n, "")?;
             check::non_negative("extinction index k", *k, "")?;

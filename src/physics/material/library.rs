@@ -1,4 +1,4 @@
-//! Named materials: the embedded ones, and a user's own from a directory or file.
+//! Named materials: the embedded ones, and a user's own.
 //!
 //! A user's material replaces one of the same name, with a warning. Where several files of one
 //! directory define the same name, each is kept as `NAME@FILE`, and the bare name is an error that lists them.
@@ -11,16 +11,11 @@ use super::Material;
 use super::class::ClassSpec;
 #[cfg(feature = "library")]
 use super::manifest::Deferred;
-use super::read::{self, Origin, qualified};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
 #[cfg(feature = "library")]
 use std::sync::Arc;
-
-/// The name of a manifest within a directory.
-const MANIFEST: &str = "manifest.toml";
 
 /// Materials by name.
 ///
@@ -82,61 +77,9 @@ impl Library {
     }
 
     /// Whether a folder is refused for any file in it that is no spectrum.
-    pub(super) fn is_strict(&self) -> bool {
+    #[must_use]
+    pub fn is_strict(&self) -> bool {
         self.strict
-    }
-
-    /// Adds the materials of a directory: those of its `manifest.toml` if it has one, else those of all its
-    /// files of spectra ([`read::is_spectra`]). Of these, what cannot be read or holds no emissivity is passed over with a warning,
-    /// unless the library is [`strict`](Self::strict).
-    ///
-    /// # Errors
-    /// A directory that cannot be read or holds no material; in a strict library a file that is wrong (see [`read::from_file`]).
-    pub fn add_directory(&mut self, directory: &Path) -> Result<()> {
-        let path = directory.join(MANIFEST);
-        if path.is_file() {
-            return self.add_manifest(&path, directory);
-        }
-        let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
-        for file in read::spectra_in(directory)? {
-            match read::from_file(&file) {
-                Ok(materials) => sources.push((file, materials)),
-                Err(error) if self.strict => return Err(error),
-                Err(error) => passed_over.push(error),
-            }
-        }
-        if sources.is_empty() {
-            let found = match passed_over.first() {
-                None => "the directory holds no spectra".to_owned(),
-                Some(first) => format!("none of its {} files is a spectrum: {first}", passed_over.len()),
-            };
-            let instead = "put .csv, .txt, .jdx or .sli spectra or a manifest.toml into it";
-            return Err(Error::malformed(found, instead).in_file(directory));
-        }
-        self.warnings.extend(passed_over.iter().map(|error| format!("passed over: {error}")));
-        self.add_sources(sources);
-        Ok(())
-    }
-
-    /// Adds the materials of one file: a spectrum, a table of materials, or a manifest (`.toml`).
-    ///
-    /// # Errors
-    /// As [`read::from_file`].
-    pub fn add_file(&mut self, path: &Path) -> Result<()> {
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
-            return self.add_manifest(path, path.parent().unwrap_or(Path::new("")));
-        }
-        let materials = read::from_file(path)?;
-        self.add_sources(vec![(path.to_owned(), materials)]);
-        Ok(())
-    }
-
-    /// Adds a directory or a file, whichever it is.
-    ///
-    /// # Errors
-    /// As [`Library::add_directory`] and [`Library::add_file`].
-    pub fn add_path(&mut self, path: &Path) -> Result<()> {
-        if path.is_dir() { self.add_directory(path) } else { self.add_file(path) }
     }
 
     /// Adds one material. It replaces one of the same name, with a warning.
@@ -215,26 +158,23 @@ impl Library {
         self.materials.keys().map(String::as_str)
     }
 
+    /// Notes what was passed over while adding.
+    pub fn warn(&mut self, warnings: impl IntoIterator<Item = String>) {
+        self.warnings.extend(warnings);
+    }
+
     /// What was replaced or passed over while adding.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Adds the materials of files; names that several of them define are qualified with what tells them apart.
-    fn add_sources(&mut self, sources: Vec<(PathBuf, Vec<Material>)>) {
-        let of = |(file, materials): (PathBuf, Vec<Material>)| {
-            materials.into_iter().map(move |material| {
-                let (name, sample) = (material.name.clone(), material.sample.clone());
-                (material, Origin { name, sample, file: file.clone() })
-            })
-        };
-        let (materials, origins): (Vec<Material>, Vec<Origin>) = sources.into_iter().flat_map(of).unzip();
-        let names = qualified(&origins);
+    /// Adds materials by names that may differ from their own, which is then ambiguous: it is an error that lists those names.
+    pub fn add_qualified(&mut self, materials: impl IntoIterator<Item = (Material, String)>) {
         let mut ambiguous: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-        for ((material, origin), name) in materials.into_iter().zip(&origins).zip(names) {
-            if origin.name != name {
-                ambiguous.entry(origin.name.clone()).or_default().insert(name.clone());
+        for (material, name) in materials {
+            if material.name != name {
+                ambiguous.entry(material.name.clone()).or_default().insert(name.clone());
             }
             self.add(material.with_name(name));
         }
@@ -246,13 +186,5 @@ impl Library {
             }
             self.ambiguous.insert(name, qualified);
         }
-    }
-}
-
-#[cfg(not(feature = "library"))]
-impl Library {
-    fn add_manifest(&mut self, path: &Path, _: &Path) -> Result<()> {
-        let instead = "build the crate with its feature `library`, or name the spectra themselves";
-        Err(Error::malformed("this build reads no manifests", instead).in_file(path))
     }
 }

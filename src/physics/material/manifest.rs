@@ -42,10 +42,10 @@ use super::gaussian::Gaussian;
 use super::model::{Model, Polynomial};
 use super::oscillator::{Drude, Factorised, Lorentz};
 use super::provenance::{Basis, Provenance};
-use super::{Material, read};
+use super::{Material, OpticalConstants};
 use crate::error::{Error, Result};
+use crate::words::{kebab_case, one_line};
 use serde::Deserialize;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -144,10 +144,25 @@ enum Medium {
     Gaussian(Gaussian),
 }
 
+/// The files that a manifest names.
+pub trait ManifestFiles {
+    /// The one spectrum of a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or does not hold one spectrum.
+    fn spectrum(&self, file: &str) -> Result<Material>;
+
+    /// The optical constants of a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds no columns `n` and `k`.
+    fn constants(&self, file: &str) -> Result<OpticalConstants>;
+}
+
 /// Where a manifest's files and earlier materials come from.
 pub(super) struct Surroundings<'a> {
-    /// The text of a file named in the manifest.
-    pub(super) file: &'a dyn Fn(&str) -> Result<Cow<'static, str>>,
+    /// The files named in the manifest.
+    pub(super) files: &'a dyn ManifestFiles,
     /// The model of a material of a library added before.
     pub(super) known: &'a dyn Fn(&str) -> Result<Arc<Model>>,
 }
@@ -157,7 +172,7 @@ struct Around<'a> {
     /// The model of a material further up, if there is one of that name.
     earlier: &'a dyn Fn(&str) -> Option<Result<Arc<Model>>>,
     /// See [`Surroundings`].
-    file: &'a dyn Fn(&str) -> Result<Cow<'static, str>>,
+    files: &'a dyn ManifestFiles,
     /// See [`Surroundings`].
     known: &'a dyn Fn(&str) -> Result<Arc<Model>>,
 }
@@ -173,7 +188,7 @@ pub(super) fn parse(text: &str, path: &Path, around: &Surroundings<'_>) -> Resul
     for entry in entries(text, path)? {
         let name = entry.name.clone();
         let earlier = |name: &str| models.get(name).map(|model| Ok(model.clone()));
-        let around = Around { earlier: &earlier, file: around.file, known: around.known };
+        let around = Around { earlier: &earlier, files: around.files, known: around.known };
         let built = made(entry, path, &around)?;
         models.insert(name, built.model.clone());
         materials.push(built);
@@ -224,8 +239,8 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
 }
 
 fn build(entry: Entry, around: &Around<'_>) -> Result<Material> {
-    if entry.name != read::kebab_case(&entry.name) || entry.name.is_empty() {
-        let instead = match read::kebab_case(&entry.name) {
+    if entry.name != kebab_case(&entry.name) || entry.name.is_empty() {
+        let instead = match kebab_case(&entry.name) {
             kebab if kebab.is_empty() => "write letters and digits, such as `my-paint`".to_owned(),
             kebab => format!("write `{kebab}`"),
         };
@@ -241,7 +256,7 @@ fn build(entry: Entry, around: &Around<'_>) -> Result<Material> {
         model = Arc::new(Model::within(low, high, model)?);
     }
     // In TOML a text may have several lines; a list of materials has one for each.
-    let line = |text: String| read::one_line(&text);
+    let line = |text: String| one_line(&text);
     Ok(Material {
         name: entry.name,
         provenance: Provenance {
@@ -270,16 +285,7 @@ impl Builder<'_> {
             ModelEntry::Constant(emissivity) => Model::constant(emissivity)?,
             ModelEntry::Polynomial(polynomial) => Model::polynomial(polynomial)?,
             ModelEntry::Table(file) => {
-                let materials = read::from_text(&(self.around.file)(&file)?, Path::new(&file))?;
-                match materials.as_slice() {
-                    [one] => return Ok(one.model.clone()),
-                    many => {
-                        return Err(Error::malformed(
-                            format!("{file} holds {} materials", many.len()),
-                            "name a file with two columns",
-                        ));
-                    }
-                }
+                return self.around.files.spectrum(&file).map(|one| one.model);
             }
             ModelEntry::HalfSpace(medium) => Model::HalfSpace(self.medium(medium)?),
             ModelEntry::Film(FilmEntry { film, thickness_um, substrate }) => {
@@ -306,10 +312,7 @@ impl Builder<'_> {
 
     fn medium(&self, medium: Medium) -> Result<Dielectric> {
         Ok(match medium {
-            Medium::Nk(file) => {
-                let text = (self.around.file)(&file)?;
-                Dielectric::Constants(read::optical_constants(&text, Path::new(&file))?)
-            }
+            Medium::Nk(file) => Dielectric::Constants(self.around.files.constants(&file)?),
             Medium::Drude(drude) => Dielectric::Drude(drude),
             Medium::Lorentz(lorentz) => Dielectric::Lorentz(lorentz),
             Medium::Factorised(factorised) => Dielectric::Factorised(factorised),

@@ -59,7 +59,8 @@ impl Provenance {
     }
 
     /// Provenance of what a user's file holds.
-    pub(super) fn of_file(description: String, source: String, note: &str) -> Self {
+    #[must_use]
+    pub fn of_file(description: String, source: String, note: &str) -> Self {
         let (category, note) = ("user".to_owned(), note.to_owned());
         Self { description, category, basis: Basis::UserFile, source, licence: String::new(), note }
     }

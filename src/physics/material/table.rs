@@ -12,14 +12,14 @@ pub(super) const SAME: f64 = 1e-12;
 
 /// Rows in ascending wavenumber, each with `N` values.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Table<const N: usize> {
+pub struct Table<const N: usize> {
     wavenumbers_cm1: Vec<f64>,
     values: Vec<[f64; N]>,
 }
 
 /// What is wrong with a list of wavenumbers; rows are counted from 0 in the order given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fault {
+pub enum Fault {
     /// Fewer than two rows.
     TooFew,
     /// The same wavenumber in two rows, the earlier one first.
@@ -30,7 +30,7 @@ pub(super) enum Fault {
 ///
 /// # Errors
 /// A [`Fault`] if there are fewer than two rows or two are at the same wavenumber.
-pub(super) fn ascending(wavenumbers_cm1: &[f64]) -> std::result::Result<Vec<usize>, Fault> {
+pub fn ascending(wavenumbers_cm1: &[f64]) -> std::result::Result<Vec<usize>, Fault> {
     if wavenumbers_cm1.len() < 2 {
         return Err(Fault::TooFew);
     }
@@ -65,7 +65,7 @@ impl<const N: usize> Table<N> {
     ///
     /// # Errors
     /// Fewer than two rows, a wavenumber that is not above 0, or one that is there twice.
-    pub(super) fn new(rows: &[(f64, [f64; N])]) -> Result<Self> {
+    pub fn new(rows: &[(f64, [f64; N])]) -> Result<Self> {
         let given: Vec<f64> = rows.iter().map(|(wavenumber, _)| *wavenumber).collect();
         for &wavenumber in &given {
             check::positive("wavenumber", wavenumber, "cm^-1")?;
@@ -92,12 +92,12 @@ impl<const N: usize> Table<N> {
     }
 
     /// First and last wavenumber, cm⁻¹.
-    pub(super) fn range_cm1(&self) -> Option<(f64, f64)> {
+    pub fn range_cm1(&self) -> Option<(f64, f64)> {
         Some((*self.wavenumbers_cm1.first()?, *self.wavenumbers_cm1.last()?))
     }
 
     /// Values of all rows, in ascending wavenumber.
-    pub(super) fn rows(&self) -> impl Iterator<Item = (f64, [f64; N])> + '_ {
+    pub fn rows(&self) -> impl Iterator<Item = (f64, [f64; N])> + '_ {
         self.wavenumbers_cm1.iter().copied().zip(self.values.iter().copied())
     }
 

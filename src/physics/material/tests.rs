@@ -1,6 +1,5 @@
 use super::*;
 use proptest::prelude::*;
-use std::path::Path;
 
 fn sloped() -> Material {
     Material::from_table("slope", &[(800.0, 0.5), (900.0, 0.6), (1000.0, 0.9)]).unwrap()
@@ -54,22 +53,6 @@ fn kinks_are_listed_between_the_limits() {
     assert_eq!(sloped().breakpoints_cm1(800.0, 1000.0), [900.0]);
     assert_eq!(sloped().breakpoints_cm1(0.0, 2000.0), [800.0, 900.0, 1000.0]);
     assert!(Material::constant("x", 0.5).unwrap().breakpoints_cm1(0.0, 1e4).is_empty());
-}
-
-#[test]
-fn a_written_material_reads_back_to_the_last_bit() {
-    let library = Library::embedded().unwrap();
-    let grid: Vec<f64> = (0..50).map(|i| 701.0 + f64::from(i) * 13.0 / 3.0).collect();
-    let quartz = library.get("quartz").unwrap();
-    let text = quartz.to_csv(&grid).unwrap();
-    assert!(
-        text.starts_with("# material: quartz\n") && text.contains("# basis: published model\n"),
-        "{text}"
-    );
-    let again = &read::from_text(&text, Path::new("quartz.csv")).unwrap()[0];
-    assert_eq!(again.emissivity(&grid).unwrap(), quartz.emissivity(&grid).unwrap());
-    let summary = again.summary();
-    assert_eq!((summary.name.as_str(), summary.rows), ("quartz", 50));
 }
 
 #[test]

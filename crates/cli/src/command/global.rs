@@ -10,6 +10,7 @@ use hadar::error::{Error, Result};
 use hadar::inputs;
 use hadar::material::Library;
 use hadar::units::decimal_comma;
+use hadar_formats::ReadLibrary as _;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};

@@ -145,16 +145,13 @@ fn packages_depend_on_those_before() {
     }
 }
 
-/// Files of the numerical crate that open files: what the readers of spectra use.
-const OPEN_FILES: [&str; 2] = ["base::file", "physics::material::read"];
-
 #[test]
 fn no_files_in_the_numerical_crate() {
     let opens = |file: &File| file.used.iter().any(|(_, path, _)| path.starts_with("std::fs"));
     let files = Package::of(".").0;
     let found: Vec<&str> =
         files.iter().filter(|(_, file)| opens(file)).map(|(module, _)| module.as_str()).collect();
-    assert_eq!(found, OPEN_FILES);
+    assert!(found.is_empty(), "{found:?}");
 }
 
 #[test]

@@ -4,8 +4,8 @@
 //! (or several of them) with a unit behind it, as in `wavelengths_um`. A unit is not guessed: of a list without one it is only
 //! said that there is one.
 
+use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
-use hadar::spectral_unit::SpectralUnit;
 
 /// Names of lists, the longer ones first, and what they count.
 const NAMES: [(&str, &str); 4] = [

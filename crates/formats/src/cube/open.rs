@@ -5,10 +5,10 @@ use super::found::{Found, Opened};
 #[cfg(feature = "hdf5")]
 use super::hdf5;
 use super::{READ_CUBE, envi, mat, npy, npz};
+use crate::envi_header;
+use crate::file;
 use hadar::cube::Cube;
-use hadar::envi_header;
 use hadar::error::{Error, Result};
-use hadar::file;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! Cubes that other programs have written (`tests/data/cubes/make.py`): every sample is 100 row + 10 column + band.
 
 use hadar::cube::{Cube, Rows, Sample, Shape};
-use hadar::envi_header::Interleave;
 use hadar_formats::cube::{Axes, EnviBands, Opened, envi_files};
+use hadar_formats::envi_header::Interleave;
 use std::path::PathBuf;
 
 fn path(name: &str) -> PathBuf {

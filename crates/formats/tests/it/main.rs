@@ -1,3 +1,5 @@
 //! Tests of the readers of files, seen from outside.
 
 mod cubes;
+mod materials;
+mod spectra;

@@ -5,7 +5,7 @@
 
 use crate::manifest::{Manifest, sha256};
 use hadar::error::{Error, Result};
-use hadar::file;
+use hadar_formats::file;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

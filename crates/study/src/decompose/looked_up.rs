@@ -183,7 +183,9 @@ fn listed(
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Listed>> {
     let name = match reference {
-        MaterialRef::File(path) => return Ok(vec![Listed::alone(entry, Material::from_file(path)?)]),
+        MaterialRef::File(path) => {
+            return Ok(vec![Listed::alone(entry, hadar_formats::spectra::material(path)?)]);
+        }
         MaterialRef::Name(name) => name,
     };
     let Some(spec) = scenario.classes.get(name).or_else(|| library.class(name)) else {
@@ -203,13 +205,13 @@ fn listed(
         let found = format!("mixtures of the class `{name}`");
         return Err(Error::malformed(found, "leave mixtures out: a pixel is taken to be of one member"));
     }
-    let class = spec.read(library)?;
+    let class = hadar_formats::members(&spec, library)?;
     let remark = |reason: &String| Warning::Material {
         material: name.clone(),
         remark: format!("passed over: {reason}"),
     };
     warnings.extend(class.passed_over.iter().map(remark));
-    let member = |member: hadar::material::Member| {
+    let member = |member: hadar_formats::Member| {
         let own = format!("{name}/{}", member.material.name());
         let material = member.material.with_name(own);
         Listed { material, entry, weight: member.weight, class: Some(name.clone()) }

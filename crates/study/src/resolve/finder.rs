@@ -31,7 +31,8 @@ impl<'a> Finder<'a> {
             MaterialRef::Name(name) => self.library.get(name).map(Cow::Borrowed),
             // A file's own mistakes are told with the file's place, not the scenario's.
             MaterialRef::File(path) => {
-                return Material::from_file(path).map(|m| self.accept(Cow::Owned(m), extrapolate));
+                return hadar_formats::spectra::material(path)
+                    .map(|m| self.accept(Cow::Owned(m), extrapolate));
             }
         };
         found
@@ -65,7 +66,7 @@ impl<'a> Finder<'a> {
             let material = self.find(key, reference, extrapolate)?;
             return Ok(Group::of_one(material, key));
         };
-        let class = spec.read(self.library).map_err(|error| match &error {
+        let class = hadar_formats::members(&spec, self.library).map_err(|error| match &error {
             // A file's own mistakes are told with the file's place.
             Error::At { place, .. } if place.path.is_some() => error,
             _ => error.at(self.scenario.place(&format!("class.{name}"))),

@@ -3,8 +3,8 @@
 use super::{PhotonLaw, SimulationPlan};
 use crate::Study;
 use hadar::error::{Error, Result, check};
-use hadar::grid::text_of_file;
 use hadar::units::Dimension;
+use hadar_formats::file::text_of_file;
 use hadar_simulate::classifier::{Method, SavedModel};
 use hadar_simulate::experiment::Design;
 use hadar_simulate::spectra::Parts;

@@ -3,7 +3,7 @@
 //! Commas stand between cells; where the header has none, semicolons or tabs, as spreadsheets write them in some languages.
 
 use hadar::error::{Error, Result};
-use hadar::file;
+use hadar_formats::file;
 use std::path::Path;
 
 /// The longest table of cases, bytes.

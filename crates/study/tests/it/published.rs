@@ -13,6 +13,7 @@ use hadar::material::Library;
 use hadar::policy;
 use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::spectrum::Bands;
+use hadar_formats::ReadLibrary as _;
 use hadar_scenario::Scenario;
 use hadar_study::{PairResult, Study};
 

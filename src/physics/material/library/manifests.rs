@@ -2,10 +2,8 @@
 
 use super::{Library, Stored};
 use crate::error::{Error, Result};
-use crate::grid::text_of_file;
-use crate::material::manifest::{self, Deferred, Surroundings};
-use crate::material::{Material, embedded};
-use std::borrow::Cow;
+use crate::material::embedded;
+use crate::material::manifest::{self, Deferred, ManifestFiles, Surroundings};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -15,14 +13,8 @@ impl Library {
     /// # Errors
     /// None that a release can have: the embedded data are tested.
     pub fn embedded() -> Result<Self> {
-        let file = |name: &str| {
-            let text = embedded::FILES.iter().find(|(path, _)| *path == name).map(|(_, text)| *text);
-            text.map(Cow::Borrowed).ok_or_else(|| {
-                Error::unknown_name("embedded file", name, embedded::FILES.iter().map(|(path, _)| *path))
-            })
-        };
         let path = Path::new("spectra/manifest.toml");
-        let manifest = Arc::new(Deferred::parse(embedded::MANIFEST, path, file)?);
+        let manifest = Arc::new(Deferred::parse(embedded::MANIFEST, path)?);
         let stored =
             |(index, name): (usize, &str)| (name.to_owned(), Stored::Embedded(Arc::clone(&manifest), index));
         Ok(Self {
@@ -32,14 +24,23 @@ impl Library {
         })
     }
 
-    pub(super) fn add_manifest(&mut self, path: &Path, directory: &Path) -> Result<()> {
-        let text = text_of_file(path, "read the manifest")?;
-        let file =
-            |name: &str| text_of_file(&directory.join(name), "read a file of the manifest").map(Cow::Owned);
-        for material in self.manifest(&text, path, &file)? {
+    /// Adds the materials and classes of a manifest: its text, the path that errors call it by, the directory that paths in it are
+    /// relative to, and the files that it names.
+    ///
+    /// # Errors
+    /// A manifest that is wrong, or files of it; a class of the name of a material.
+    pub fn add_manifest(
+        &mut self,
+        text: &str,
+        path: &Path,
+        directory: &Path,
+        files: &dyn ManifestFiles,
+    ) -> Result<()> {
+        let known = |name: &str| self.get(name).map(|material| material.model.clone());
+        for material in manifest::parse(text, path, &Surroundings { files, known: &known })? {
             self.add(material);
         }
-        for (name, class) in manifest::classes(&text, path, directory)? {
+        for (name, class) in manifest::classes(text, path, directory)? {
             if self.contains(&name) {
                 let found = format!("`{name}` is a class and a material");
                 let error = Error::malformed(found, "call one of them otherwise");
@@ -50,15 +51,5 @@ impl Library {
             }
         }
         Ok(())
-    }
-
-    fn manifest(
-        &self,
-        text: &str,
-        path: &Path,
-        file: &dyn Fn(&str) -> Result<Cow<'static, str>>,
-    ) -> Result<Vec<Material>> {
-        let known = |name: &str| self.get(name).map(|material| material.model.clone());
-        manifest::parse(text, path, &Surroundings { file, known: &known })
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::material::class::{ClassSpec, MaterialRef, Spread};
-use crate::material::read;
+use crate::material::is_spectra;
+use crate::words::kebab_case;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -48,12 +49,12 @@ pub(super) fn of(
 
 impl ClassEntry {
     fn spec(self, name: &str, directory: &Path) -> Result<ClassSpec> {
-        if name != read::kebab_case(name) || name.is_empty() {
+        if name != kebab_case(name) || name.is_empty() {
             let found = format!("the name `{name}` is not in kebab-case");
             return Err(Error::malformed(found, "write small letters, digits and hyphens"));
         }
         let reference = |text: String| {
-            let is_path = text.contains(['/', '\\']) || read::is_spectra(&text);
+            let is_path = text.contains(['/', '\\']) || is_spectra(&text);
             if is_path { MaterialRef::File(directory.join(text)) } else { MaterialRef::Name(text) }
         };
         Ok(ClassSpec {

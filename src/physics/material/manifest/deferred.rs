@@ -5,19 +5,15 @@ use crate::error::Result;
 use crate::inputs;
 use crate::material::Material;
 use crate::material::class::ClassSpec;
-use std::borrow::Cow;
+use crate::material::embedded::{self, Embedded};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
-
-/// The text of a file that a manifest names.
-type File = fn(&str) -> Result<Cow<'static, str>>;
 
 /// The entries of a manifest, and the materials that were made of them so far.
 #[derive(Debug)]
 pub(in crate::physics::material) struct Deferred {
     text: &'static str,
     path: &'static Path,
-    file: File,
     entries: Vec<Entry>,
     classes: Vec<(String, ClassSpec)>,
     made: Vec<OnceLock<Material>>,
@@ -28,15 +24,11 @@ impl Deferred {
     ///
     /// # Errors
     /// TOML or keys that are wrong, or another version.
-    pub(in crate::physics::material) fn parse(
-        text: &'static str,
-        path: &'static Path,
-        file: File,
-    ) -> Result<Self> {
+    pub(in crate::physics::material) fn parse(text: &'static str, path: &'static Path) -> Result<Self> {
         let read = manifest(text, path)?;
         let classes = classes::of(read.class, path, Path::new(""))?;
         let made = read.material.iter().map(|_| OnceLock::new()).collect();
-        Ok(Self { text, path, file, entries: read.material, classes, made })
+        Ok(Self { text, path, entries: read.material, classes, made })
     }
 
     /// Names of the materials, in the order of the entries.
@@ -73,7 +65,7 @@ impl Deferred {
         };
         let known = |name: &str| Err(crate::Error::unknown_name("material", name, self.names()));
         let material =
-            made(entry.clone(), self.path, &Around { earlier: &earlier, file: &self.file, known: &known })?;
+            made(entry.clone(), self.path, &Around { earlier: &earlier, files: &Embedded, known: &known })?;
         Ok(slot.get_or_init(|| material))
     }
 
@@ -97,7 +89,7 @@ impl Deferred {
         let mut definition: String = lines.flat_map(|line| [line, "\n"]).collect();
         let quoted: Vec<&str> = entry.split('"').skip(1).step_by(2).collect();
         for name in quoted.iter().filter(|name| name.ends_with(".csv")) {
-            definition.push_str(&(self.file)(name).unwrap_or_default());
+            definition.push_str(embedded::text(name).unwrap_or_default());
         }
         let made_of = |name: &str| entry.contains(&format!("material = \"{name}\""));
         for (earlier, _) in self.names().take(index).enumerate().filter(|(_, name)| made_of(name)) {

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use hadar::error::Result;
-use hadar::material::{Library, Material, read};
+use hadar::material::{Library, Material};
 use std::path::Path;
 
 /// Where materials are drawn and shown: the paper's bands, cm⁻¹.
@@ -20,22 +20,22 @@ impl Columns {
     /// All materials of a file.
     pub(super) fn read(&self, file: &Path) -> Result<Vec<Material>> {
         if self.columns.is_empty() {
-            read::from_file(file)
+            hadar_formats::spectra::from_file(file)
         } else {
-            read::from_file_with_columns(file, &self.columns)
+            hadar_formats::spectra::from_file_with_columns(file, &self.columns)
         }
     }
 
     /// The material of a name, or the one of a file.
     pub(super) fn find(&self, library: &Library, name: &str) -> Result<Material> {
         if library.contains(name)
-            || !(name.contains(['/', '\\']) || read::is_spectra(name) || Path::new(name).is_file())
+            || !(name.contains(['/', '\\']) || hadar::material::is_spectra(name) || Path::new(name).is_file())
         {
             return library.get(name).cloned();
         }
         match self.columns.is_empty() {
-            true => Material::from_file(Path::new(name)),
-            false => Material::the_one(self.read(Path::new(name))?, Path::new(name)),
+            true => hadar_formats::spectra::material(Path::new(name)),
+            false => hadar_formats::spectra::the_one(self.read(Path::new(name))?, Path::new(name)),
         }
     }
 }

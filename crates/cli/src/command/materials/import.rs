@@ -7,7 +7,7 @@ use super::super::global::Global;
 use super::files::{Columns, SHOWN_CM1};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::material::{Material, Summary, read};
+use hadar::material::{Material, Summary};
 use hadar_report::bundle::Bundle;
 use hadar_report::text::significant;
 use hadar_study::Warning;
@@ -33,7 +33,7 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
     };
     let of: Vec<(&Material, &Path)> =
         found.materials.iter().map(|(material, file)| (material, file.as_path())).collect();
-    let names = read::unique_names(&of);
+    let names = hadar_formats::spectra::unique_names(&of);
     let mut summaries = Vec::new();
     let mut out = String::new();
     for ((material, file), name) in found.materials.iter().zip(names) {
@@ -44,7 +44,7 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
                 |(known, content): &(String, Vec<u8>)| *known == csv && !holds_line(content, &source);
             bundle.names().any(|known| known == csv) || own.iter().any(of_another)
         };
-        let tagged = read::tagged_name(material, file);
+        let tagged = hadar_formats::spectra::tagged_name(material, file);
         let numbered = (2_usize..).map(|number| format!("{tagged}-{number}"));
         let mut names = [name, tagged.clone()].into_iter().chain(numbered);
         let material = material.clone().with_name(names.find(|name| !is_anothers(name)).unwrap_or(tagged));
@@ -94,7 +94,11 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
 fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Found> {
     let mut files = Vec::new();
     for path in named {
-        if path.is_dir() { files.extend(read::spectra_in(path)?) } else { files.push(path.clone()) }
+        if path.is_dir() {
+            files.extend(hadar_formats::spectra::spectra_in(path)?)
+        } else {
+            files.push(path.clone())
+        }
     }
     // One that is named twice, or itself and with its folder, is one.
     let mut seen = BTreeSet::new();
@@ -119,7 +123,10 @@ fn nothing(named: &[PathBuf], passed_over: &[Error]) -> Error {
         [] => {
             let folders: Vec<String> = named.iter().map(|path| path.display().to_string()).collect();
             let found = format!("there is no file of spectra in {}", folders.join(", "));
-            Error::malformed(found, format!("{INSTEAD}, or folders that hold {}", read::ENDINGS.join(", ")))
+            Error::malformed(
+                found,
+                format!("{INSTEAD}, or folders that hold {}", hadar::material::ENDINGS.join(", ")),
+            )
         }
         [first, others @ ..] => {
             let found = format!("none of {} files is a spectrum: {first}", passed_over.len());

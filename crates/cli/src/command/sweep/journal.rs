@@ -7,7 +7,7 @@
 use super::super::global::as_json;
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
-use hadar::material::read::is_spectra;
+use hadar::material::is_spectra;
 use hadar_report::manifest::{Input, sha256, sha256_of_file};
 use hadar_study::sweep::{Cell, Record};
 use serde::{Deserialize, Serialize};

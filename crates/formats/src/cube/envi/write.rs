@@ -2,8 +2,8 @@
 //!
 //! Source: NV5 Geospatial, ENVI Header Files (documentation of ENVI).
 
+use crate::envi_header::Interleave;
 use hadar::cube::{Sample, Shape};
-use hadar::envi_header::Interleave;
 use hadar::error::{Error, Result};
 use std::fmt::Write as _;
 
@@ -24,7 +24,7 @@ pub struct EnviBands<'a> {
 /// ```
 /// use hadar::cube::Shape;
 /// use hadar_formats::cube::envi_files;
-/// use hadar::envi_header::Interleave;
+/// use hadar_formats::envi_header::Interleave;
 /// let shape = Shape::new(1, 2, 2)?;
 /// let (header, data) = envi_files(shape, &[10.0_f32, 11.0, 20.0, 21.0], Interleave::Bsq, None)?;
 /// assert!(header.starts_with("ENVI\nsamples = 2\nlines = 1\nbands = 2\n"));

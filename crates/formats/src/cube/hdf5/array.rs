@@ -3,9 +3,9 @@
 use super::sound::{damaged, sound};
 use crate::cube::stored::{Stored, decode};
 use crate::cube::values::{ALL_VALID, Values};
+use crate::spectral_unit::SpectralUnit;
 use hadar::cube::Sample;
 use hadar::error::{Error, Result};
-use hadar::spectral_unit::SpectralUnit;
 use hdf5_pure::{AttrValue, Dataset, Datatype, DatatypeByteOrder, File, Group};
 use std::collections::HashMap;
 

@@ -7,10 +7,11 @@
 
 use hadar::Error;
 use hadar::cube::{Cube, Rows, Sample, Shape, first_invalid, panchromatic};
-use hadar::material::{Library, Material, read};
+use hadar::material::{Library, Material};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::spectrum::Bands;
 use hadar::units::{Dimension, Spectral};
+use hadar_formats::ReadLibrary as _;
 use hadar_formats::cube::Axes;
 use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
 use hadar_simulate::classifier::{Classifier, SavedModel};
@@ -140,7 +141,7 @@ fn spectral_library(folder: &Folder, bytes: &[u8]) {
 }
 
 fn sound_materials(path: &Path) {
-    let Some(materials) = accepted(read::from_file(path)) else { return };
+    let Some(materials) = accepted(hadar_formats::spectra::from_file(path)) else { return };
     assert!(!materials.is_empty());
     for (index, material) in materials.iter().take(100).enumerate() {
         sound(material);

@@ -3,9 +3,9 @@
 //! `wavelength (um)`, `Wavelength [µm]`, `nm`, `wavenumber_cm1`, `cm-1`, `λ / µm`, `frequency (THz)`; `emissivity`, `Reflectance (%)`,
 //! `%R`, `skin_reflectance`. What is not stated is taken only where nothing else is possible ([`unit_of_range`]).
 
-use super::content::kebab_case;
-use crate::error::{Error, Result};
 use crate::spectral_unit::SpectralUnit;
+use hadar::error::{Error, Result};
+use hadar::words::kebab_case;
 
 /// Names of an axis and what they count, without blanks and signs.
 const AXES: &[(&str, &[&str])] = &[

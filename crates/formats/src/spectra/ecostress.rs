@@ -10,14 +10,14 @@
 //! Source: Meerdink et al., Remote Sens. Environ. 230, 111196 (2019), doi:10.1016/j.rse.2019.05.015; Baldridge et al.,
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
-use super::content::{Content, kebab_case, of_all, one_line, short_name, stem, warnings};
+use super::content::{Content, of_all, short_name, stem, warnings};
 use super::header::Quantity;
-use crate::error::{Error, Result, check};
-use crate::grid;
-use crate::material::Material;
-use crate::material::model::Model;
-use crate::material::provenance::Provenance;
-use crate::material::table::{Fault, Table, ascending};
+use hadar::error::{Error, Result, check};
+use hadar::grid;
+use hadar::material::Material;
+use hadar::material::Provenance;
+use hadar::material::{Fault, Table, ascending};
+use hadar::words::{kebab_case, one_line};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -90,7 +90,7 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     let note = joined(&[measurement, Quantity::Reflectance.note()], "; ");
     let category = one_line(&value("type").to_lowercase());
     let provenance = Provenance { category, ..Provenance::of_file(description, source, &note) };
-    let material = Material::of(name, provenance, Model::Table(table)).warn(warnings);
+    let material = Material::of_table(name, provenance, table).warn(warnings);
     let sample = kebab_case(value("sample no."));
     let read_as = "ECOSTRESS, wavelength in um, reflectance in percent";
     Ok(Content::Materials(vec![material.reading(read_as).of_sample(sample)]))

@@ -5,17 +5,17 @@
 //! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are left out at the ends of a spectrum; between
 //! others they are no number: an error once a band needs them, as values below 0 or above 1 are.
 
-use super::content::{Content, kebab_case, of_all, one_line, stem, warnings};
+use super::content::{Content, of_all, stem, warnings};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use crate::envi_header::{EnviHeader, Layout, data_of, header_of};
-use crate::error::{Error, Result, check};
 use crate::file;
-use crate::grid::READ_SPECTRUM;
-use crate::material::Material;
-use crate::material::model::Model;
-use crate::material::provenance::Provenance;
-use crate::material::table::Table;
+use crate::file::READ_SPECTRUM;
 use crate::spectral_unit::SpectralUnit;
+use hadar::error::{Error, Result, check};
+use hadar::material::Material;
+use hadar::material::Provenance;
+use hadar::material::Table;
+use hadar::words::{kebab_case, one_line};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -183,7 +183,7 @@ impl Library<'_> {
         );
         let source = self.source.display().to_string();
         let provenance = Provenance::of_file(one_line(name), source, quantity.note());
-        let material = Material::of(kebab_case(name), provenance, Model::Table(table));
+        let material = Material::of_table(kebab_case(name), provenance, table);
         Ok(Some(material.reading(read_as).warn(said)))
     }
 

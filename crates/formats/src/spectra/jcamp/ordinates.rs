@@ -5,7 +5,7 @@
 //! are 1 to 9, how often the last number stands (DUP). After a line that ends with a difference the first ordinate repeats the last one,
 //! as a check.
 
-use crate::error::{Error, Result};
+use hadar::error::{Error, Result};
 
 /// The x that a line begins with.
 #[derive(Debug, Clone, Copy, PartialEq)]

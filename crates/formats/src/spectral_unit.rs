@@ -2,7 +2,7 @@
 //!
 //! Wavelength λ and frequency f become ν = 1/λ and ν = f/c, in cm⁻¹; wavelengths are those in vacuum.
 
-use crate::units::{SPEED_OF_LIGHT_M_S, with_plain_micro};
+use hadar::units::{SPEED_OF_LIGHT_M_S, with_plain_micro};
 
 /// What the numbers of a spectral axis are counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -65,7 +65,7 @@ impl SpectralUnit {
     /// The unit of a spelling: `um`, `µm`, `Micrometers`, `[cm^-1]`, `1/CM`, `cm⁻¹`, `THz`, …
     ///
     /// ```
-    /// use hadar::spectral_unit::SpectralUnit;
+    /// use hadar_formats::spectral_unit::SpectralUnit;
     /// assert_eq!(SpectralUnit::spelt("(µm)"), Some(SpectralUnit::Micrometre));
     /// assert_eq!(SpectralUnit::spelt("[cm^-1]"), Some(SpectralUnit::PerCentimetre));
     /// assert_eq!(SpectralUnit::spelt("furlong"), None);

@@ -12,9 +12,10 @@ mod layout;
 pub use beside::{data_of, header_of};
 pub use layout::{ByteOrder, DataType, Interleave, Layout};
 
-use crate::error::{Error, Result};
-use crate::grid::{number, text_of_file};
+use crate::file::text_of_file;
 use crate::spectral_unit::SpectralUnit;
+use hadar::error::{Error, Result};
+use hadar::grid::number;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -23,7 +24,7 @@ const MAGIC: &str = "ENVI";
 /// A header, its values still text.
 ///
 /// ```
-/// use hadar::envi_header::{EnviHeader, Interleave};
+/// use hadar_formats::envi_header::{EnviHeader, Interleave};
 /// let text = "ENVI\nsamples = 640\nlines = 480\nbands = 3\ndata type = 4\ninterleave = bil\nbyte order = 0\n\
 ///             wavelength units = Micrometers\nwavelength = {8.0,\n 9.5, 11.0}\n";
 /// let header = EnviHeader::parse(text)?;

@@ -1,9 +1,9 @@
 //! What the readers of all formats share: what a file holds, and how names are written.
 
-use crate::error::{Error, Result};
-use crate::material::Material;
-use crate::material::table::Table;
-use crate::words::significant;
+use hadar::error::{Error, Result};
+use hadar::material::Material;
+use hadar::material::Table;
+use hadar::words::{kebab_case, significant};
 use std::path::Path;
 
 /// The part of the long-wave infrared that most cameras see, cm⁻¹ (13 to 8 µm).
@@ -14,7 +14,7 @@ const THERMAL_CM1: (f64, f64) = (500.0, 1e4 / 3.0);
 const LONGEST_NAME: usize = 40;
 
 /// What a file turned out to hold.
-pub(in crate::physics::material) enum Content {
+pub(crate) enum Content {
     /// One or more materials.
     Materials(Vec<Material>),
     /// A file of a known format that has no emissivity in it, and why.
@@ -34,7 +34,7 @@ impl Content {
                     significant(1e4 / low, 3),
                     significant(low, 3),
                     significant(high, 3),
-                    material.read_as,
+                    material.read_as(),
                 );
                 material.warn([remark])
             }
@@ -54,37 +54,8 @@ impl Content {
     }
 }
 
-/// A name in kebab-case: `tilePavement` → `tile-pavement`, `Fused silica` → `fused-silica`. Qualified
-/// names keep their `@`.
-pub(in crate::physics::material) fn kebab_case(name: &str) -> String {
-    let mut kebab = String::with_capacity(name.len() + 2);
-    let mut previous = ' ';
-    for character in name.chars() {
-        let boundary = !(character.is_alphanumeric() || character == '@');
-        let hump = character.is_uppercase() && previous.is_lowercase();
-        if (boundary || hump) && !kebab.is_empty() && !kebab.ends_with(['-', '@']) {
-            kebab.push('-');
-        }
-        if !boundary {
-            if character == '@' && kebab.ends_with('-') {
-                kebab.pop();
-            }
-            kebab.extend(character.to_lowercase());
-        }
-        previous = character;
-    }
-    kebab.truncate(kebab.trim_end_matches('-').len());
-    kebab
-}
-
-/// Text without line breaks and other control characters, nor more than one blank at a place.
-pub(in crate::physics::material) fn one_line(text: &str) -> String {
-    let words = text.split(|char: char| char.is_whitespace() || char.is_control());
-    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
-}
-
 /// The file's name without folders and extension, in kebab-case.
-pub(in crate::physics::material) fn stem(path: &Path) -> String {
+pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| kebab_case(&stem.to_string_lossy())).unwrap_or_default();
     if stem.is_empty() { "unnamed".to_owned() } else { stem }
 }

@@ -21,28 +21,16 @@ mod layout;
 mod names;
 
 use self::content::Content;
-pub(super) use self::content::{kebab_case, one_line, stem};
-pub(super) use self::names::{Origin, differing, qualified};
+pub(crate) use self::content::stem;
+pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::names::{tagged_name, unique_names};
 
-use super::Material;
-use super::dielectric::OpticalConstants;
-use crate::error::{Error, Result};
-use crate::grid::text_of_file;
-use crate::inputs;
+use crate::file::text_of_file;
+use hadar::error::{Error, Result};
+use hadar::inputs;
+use hadar::material::{Material, OpticalConstants, is_spectra};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
-
-/// Endings of files of spectra.
-pub const ENDINGS: [&str; 11] =
-    [".csv", ".txt", ".tsv", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli"];
-
-/// Whether a file is called as files of spectra are ([`ENDINGS`], in any case).
-#[must_use]
-pub fn is_spectra(name: &str) -> bool {
-    let ending = name.rfind('.').and_then(|dot| name.get(dot..));
-    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
-}
 
 /// The files of a directory that are called as spectra are ([`is_spectra`]), in the order of their names.
 ///
@@ -95,7 +83,7 @@ pub fn from_file_with_columns(path: &Path, columns: &[String]) -> Result<Vec<Mat
 /// ```
 /// use std::path::{Path, PathBuf};
 /// let text = "wavelength_um,reflectance\n8,0.1\n12.5,0.3\n";
-/// let materials = hadar::material::read::from_text(text, Path::new("Roof tile.csv"))?;
+/// let materials = hadar_formats::spectra::from_text(text, Path::new("Roof tile.csv"))?;
 /// assert_eq!(materials[0].name(), "roof-tile");
 /// assert_eq!(materials[0].emissivity(&[800.0])?, [0.7]);
 /// # Ok::<(), hadar::Error>(())
@@ -111,7 +99,7 @@ fn content_of_file(path: &Path) -> Result<Content> {
 fn content_with_columns(path: &Path, columns: Option<&[String]>) -> Result<Content> {
     match envi::files(path)? {
         Some((header, data)) => envi::read(&header, &data, columns).map(Content::noticed),
-        None => content(&text_of_file(path, crate::grid::READ_SPECTRUM)?, path, columns),
+        None => content(&text_of_file(path, crate::file::READ_SPECTRUM)?, path, columns),
     }
 }
 
@@ -144,34 +132,32 @@ fn lines_of(text: &str) -> Cow<'_, str> {
 }
 
 /// Reads the columns `n` and `k`.
-pub(super) fn optical_constants(text: &str, source: &Path) -> Result<OpticalConstants> {
+pub(crate) fn optical_constants(text: &str, source: &Path) -> Result<OpticalConstants> {
     layout::read(&lines_of(text), None)
         .and_then(|sheet| columns::optical_constants(&sheet))
         .map_err(|error| error.in_file(source))
 }
 
-impl Material {
-    /// The one material of a file in any format that [`read`](self) knows.
-    ///
-    /// # Errors
-    /// As [`from_file`]; also a table of several materials, which must be added to a [`Library`](super::Library).
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::the_one(from_file(path)?, path)
-    }
+/// The one material of a file in any format that is read here.
+///
+/// # Errors
+/// As [`from_file`]; also a table of several materials, which must be added to a [`Library`](hadar::material::Library).
+pub fn material(path: &Path) -> Result<Material> {
+    the_one(from_file(path)?, path)
+}
 
-    /// The one material that was read from a file.
-    ///
-    /// # Errors
-    /// Several, with their names.
-    pub fn the_one(mut read: Vec<Self>, path: &Path) -> Result<Self> {
-        if read.len() > 1 {
-            let names: Vec<&str> = read.iter().map(Self::name).collect();
-            let found = format!("a table of {} materials where one is needed", names.len());
-            let instead = format!("give the file to --library and name one of them: {}", names.join(", "));
-            return Err(Error::malformed(found, instead).in_file(path));
-        }
-        read.pop().ok_or_else(|| Error::malformed("the file has no rows", crate::grid::EXAMPLE).in_file(path))
+/// The one material that was read from a file.
+///
+/// # Errors
+/// Several, with their names.
+pub fn the_one(mut read: Vec<Material>, path: &Path) -> Result<Material> {
+    if read.len() > 1 {
+        let names: Vec<&str> = read.iter().map(Material::name).collect();
+        let found = format!("a table of {} materials where one is needed", names.len());
+        let instead = format!("give the file to --library and name one of them: {}", names.join(", "));
+        return Err(Error::malformed(found, instead).in_file(path));
     }
+    read.pop().ok_or_else(|| Error::malformed("the file has no rows", hadar::grid::EXAMPLE).in_file(path))
 }
 
 #[cfg(test)]

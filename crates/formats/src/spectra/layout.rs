@@ -6,9 +6,9 @@
 //! comment too, as NumPy writes it; a line of units may follow it.
 
 use super::header;
-use crate::error::{Error, Result};
-use crate::grid::{EXAMPLE, Grid, number};
 use crate::spectral_unit::SpectralUnit;
+use hadar::error::{Error, Result};
+use hadar::grid::{EXAMPLE, Grid, number};
 use std::borrow::Cow;
 
 /// Lines that are tried to tell the form, from the start and from the middle.

@@ -3,8 +3,9 @@
 //! The tag is the number of the measured sample; where that is missing or the same, what the file's name has that the others' have not;
 //! where that is the same too, what its path has. It depends on which files share the name, not on their order.
 
-use super::content::{kebab_case, stem};
-use crate::material::Material;
+use super::content::stem;
+use hadar::material::Material;
+use hadar::words::kebab_case;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -13,19 +14,19 @@ const SHORT: usize = 24;
 
 /// What tells a material from others of its name.
 #[derive(Debug, Clone)]
-pub(in crate::physics::material) struct Origin {
+pub(crate) struct Origin {
     /// Its own name.
-    pub(in crate::physics::material) name: String,
+    pub(crate) name: String,
     /// Number of the sample, if there is one.
-    pub(in crate::physics::material) sample: String,
+    pub(crate) sample: String,
     /// Its file.
-    pub(in crate::physics::material) file: PathBuf,
+    pub(crate) file: PathBuf,
 }
 
 /// Names of materials with the files they were read from, each only once.
 ///
 /// ```
-/// use hadar::material::read::{from_text, unique_names};
+/// use hadar_formats::spectra::{from_text, unique_names};
 /// use std::path::Path;
 /// let file = |sample: &str| {
 ///     let text = format!(
@@ -42,8 +43,8 @@ pub(in crate::physics::material) struct Origin {
 #[must_use]
 pub fn unique_names(materials: &[(&Material, &Path)]) -> Vec<String> {
     let origin = |(material, file): &(&Material, &Path)| Origin {
-        name: material.name.clone(),
-        sample: material.sample.clone(),
+        name: material.name().to_owned(),
+        sample: material.sample().to_owned(),
         file: file.to_path_buf(),
     };
     qualified(&materials.iter().map(origin).collect::<Vec<_>>())
@@ -52,12 +53,12 @@ pub fn unique_names(materials: &[(&Material, &Path)]) -> Vec<String> {
 /// The name of a material that stands beside others of its name, `NAME@TAG`; the tag is its sample's number, else its file's name.
 #[must_use]
 pub fn tagged_name(material: &Material, file: &Path) -> String {
-    let tag = if material.sample.is_empty() { stem(file) } else { material.sample.clone() };
-    format!("{}@{tag}", material.name)
+    let tag = if material.sample().is_empty() { stem(file) } else { material.sample().to_owned() };
+    format!("{}@{tag}", material.name())
 }
 
 /// The names, those that several have with what tells them apart; a number does where nothing else does.
-pub(in crate::physics::material) fn qualified(origins: &[Origin]) -> Vec<String> {
+pub(crate) fn qualified(origins: &[Origin]) -> Vec<String> {
     let mut places: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (at, origin) in origins.iter().enumerate() {
         places.entry(&origin.name).or_default().push(at);
@@ -103,7 +104,7 @@ fn all_differ(texts: &[String]) -> bool {
 }
 
 /// What each stem has between the parts that all begin and end with.
-pub(in crate::physics::material) fn differing(stems: &[String]) -> Vec<String> {
+pub(crate) fn differing(stems: &[String]) -> Vec<String> {
     let parts: Vec<Vec<&str>> =
         stems.iter().map(|stem| stem.split('-').filter(|part| !part.is_empty()).collect()).collect();
     let shortest = parts.iter().map(Vec::len).min().unwrap_or(0);

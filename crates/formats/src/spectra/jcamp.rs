@@ -12,15 +12,15 @@
 
 mod ordinates;
 
-use super::content::{Content, kebab_case, of_all, one_line, short_name, stem, warnings};
+use super::content::{Content, of_all, short_name, stem, warnings};
 use super::header::{self, Meaning, Values};
-use crate::error::{Error, Result, check};
-use crate::grid::number;
-use crate::material::Material;
-use crate::material::model::Model;
-use crate::material::provenance::Provenance;
-use crate::material::table::Table;
 use crate::spectral_unit::SpectralUnit;
+use hadar::error::{Error, Result, check};
+use hadar::grid::number;
+use hadar::material::Material;
+use hadar::material::Provenance;
+use hadar::material::Table;
+use hadar::words::{kebab_case, one_line};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -229,7 +229,7 @@ impl Block<'_> {
         let source = source.trim_end_matches("; ").to_owned();
         let provenance = Provenance::of_file(said(&["TITLE", "SAMPLEDESCRIPTION"]), source, quantity.note());
         let read_as = format!("JCAMP-DX, {} in {}, {}{share}", unit.quantity(), unit.name(), quantity.name());
-        Ok(Ok(Material::of(name, provenance, Model::Table(table)).reading(read_as).warn(warnings)))
+        Ok(Ok(Material::of_table(name, provenance, table).reading(read_as).warn(warnings)))
     }
 
     /// `(XY..XY)`: pairs with a comma between them, and blanks or semicolons between pairs.

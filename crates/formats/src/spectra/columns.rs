@@ -1,16 +1,16 @@
 //! What the columns of a table are: axis, then emissivity, reflectance, n and k, or materials.
 
-use super::content::{of_all, one_line, stem};
+use super::content::{of_all, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use super::layout::{Sheet, is_index};
-use crate::error::{Error, Result, check};
-use crate::grid::Grid;
-use crate::material::Material;
-use crate::material::dielectric::{Dielectric, OpticalConstants};
-use crate::material::model::Model;
-use crate::material::provenance::Provenance;
-use crate::material::table::{Fault, Table, ascending};
 use crate::spectral_unit::SpectralUnit;
+use hadar::error::{Error, Result, check};
+use hadar::grid::Grid;
+use hadar::material::Material;
+use hadar::material::OpticalConstants;
+use hadar::material::Provenance;
+use hadar::material::{Fault, Table, ascending};
+use hadar::words::one_line;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -42,10 +42,10 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
     let own = stem(source);
     let source = source.display().to_string();
     if columns.headers() == ["n", "k"] {
-        let model = Model::HalfSpace(Dielectric::Constants(columns.optical_constants(&wavenumbers)?));
+        let constants = columns.optical_constants(&wavenumbers)?;
         let note = "smooth opaque half-space at normal incidence";
         let provenance = Provenance::of_file(format!("spectrum of {own}"), source, note);
-        let material = Material::of(own, provenance, model);
+        let material = Material::of_constants(own, provenance, constants);
         return Ok(vec![material.reading(columns.read_as("n and k", sheet))]);
     }
     let (told, left_out) = columns.told()?;
@@ -81,7 +81,7 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         }
         let provenance = Provenance::of_file(description, source.clone(), quantity.note());
         let read_as = columns.read_as(&format!("{}{share}", quantity.name()), sheet);
-        let material = Material::of(name.clone(), provenance, Model::Table(table));
+        let material = Material::of_table(name.clone(), provenance, table);
         materials.push(material.reading(read_as).warn(warnings));
     }
     if materials.is_empty() {

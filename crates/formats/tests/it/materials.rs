@@ -1,7 +1,8 @@
 //! The embedded library and the readers against independently computed and published spectra.
 
 use hadar::Error;
-use hadar::material::{Basis, Library, Material, read};
+use hadar::material::{Basis, Library};
+use hadar_formats::ReadLibrary as _;
 use hadar_testing::shared;
 use std::path::Path;
 
@@ -78,12 +79,12 @@ fn measured_spectra_are_taken_or_refused_for_a_reason() {
         let cells: Vec<&str> = line.split('\t').collect();
         let path = directory.join(cells[0]);
         if cells[2] == "T" {
-            let message = read::from_file(&path).unwrap_err().to_string();
+            let message = hadar_formats::spectra::from_file(&path).unwrap_err().to_string();
             assert!(message.contains(cells[0]) && message.contains("this is transmittance"), "{message}");
             transmittance += 1;
             continue;
         }
-        let material = Material::from_file(&path).unwrap();
+        let material = hadar_formats::spectra::material(&path).unwrap();
         taken += 1;
         assert_eq!(material.rows().to_string(), cells[6], "{}", cells[0]);
         let (low, high) = material.range_cm1().unwrap();
@@ -113,7 +114,7 @@ fn measured_spectra_are_taken_or_refused_for_a_reason() {
     for entry in std::fs::read_dir(&directory).unwrap() {
         let path = entry.unwrap().path();
         if path.to_string_lossy().ends_with("ancillary.txt") {
-            let message = read::from_file(&path).unwrap_err().to_string();
+            let message = hadar_formats::spectra::from_file(&path).unwrap_err().to_string();
             assert!(message.contains("`Y Units:`"), "{message}");
             notes += 1;
         }
@@ -146,7 +147,7 @@ fn the_published_tables_are_read_exactly() {
         let rows: Vec<Vec<f64>> =
             lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
         let grid: Vec<f64> = rows.iter().map(|row| row[0]).collect();
-        let materials = read::from_file(&directory.join(format!("{file}.csv"))).unwrap();
+        let materials = hadar_formats::spectra::from_file(&directory.join(format!("{file}.csv"))).unwrap();
         assert_eq!(materials.len(), columns);
         for (column, material) in materials.iter().enumerate() {
             let expected: Vec<f64> = rows.iter().map(|row| row[column + 1]).collect();
@@ -314,4 +315,20 @@ fn computed_water_ice_and_glass_are_near_measured_ones() {
         let rms = (squares / rows.len() as f64).sqrt();
         assert!(rms < bound, "{computed}: {rms}");
     }
+}
+
+#[test]
+fn a_written_material_reads_back_to_the_last_bit() {
+    let library = Library::embedded().unwrap();
+    let grid: Vec<f64> = (0..50).map(|i| 701.0 + f64::from(i) * 13.0 / 3.0).collect();
+    let quartz = library.get("quartz").unwrap();
+    let text = quartz.to_csv(&grid).unwrap();
+    assert!(
+        text.starts_with("# material: quartz\n") && text.contains("# basis: published model\n"),
+        "{text}"
+    );
+    let again = &hadar_formats::spectra::from_text(&text, std::path::Path::new("quartz.csv")).unwrap()[0];
+    assert_eq!(again.emissivity(&grid).unwrap(), quartz.emissivity(&grid).unwrap());
+    let summary = again.summary();
+    assert_eq!((summary.name.as_str(), summary.rows), ("quartz", 50));
 }

@@ -177,7 +177,7 @@ fn a_spectral_library_file_becomes_an_emissivity() {
     let path = directory.path().join("latin1.spectrum.txt");
     let latin: Vec<u8> = text.chars().map(|c| u8::try_from(u32::from(c)).unwrap()).collect();
     std::fs::write(&path, latin).unwrap();
-    let material = Material::from_file(&path).unwrap();
+    let material = material(&path).unwrap();
     assert_eq!(material.name(), "test-paint");
     let emissivity = material.emissivity(&[1250.0, 1000.0]).unwrap();
     assert!((emissivity[0] - 0.9448).abs() < 2e-16 && (emissivity[1] - 0.9).abs() < 2e-16, "{emissivity:?}");
@@ -291,8 +291,8 @@ fn names_become_kebab_case() {
         ("al@emissivity_54", "al@emissivity-54"),
         ("---", ""),
     ] {
-        assert_eq!(kebab_case(name), kebab);
-        assert_eq!(kebab_case(kebab), kebab);
+        assert_eq!(hadar::words::kebab_case(name), kebab);
+        assert_eq!(hadar::words::kebab_case(kebab), kebab);
     }
 }
 

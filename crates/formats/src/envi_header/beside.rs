@@ -1,6 +1,6 @@
 //! Which header belongs to which data file: those of one name in one folder, as ENVI and GDAL look for them.
 
-use crate::error::{Error, Result};
+use hadar::error::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Endings of data files; the first is none.

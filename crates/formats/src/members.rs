@@ -2,10 +2,9 @@
 //!
 //! Names are unique in a class: where several files define the same, it is told by what tells the files' names apart.
 
-use super::class::{ClassSpec, MaterialRef, Spread};
-use super::read;
-use super::{Library, Material};
-use crate::error::{Error, Result, check};
+use crate::spectra as read;
+use hadar::error::{Error, Result, check};
+use hadar::material::{ClassSpec, Library, Material, MaterialRef, Spread};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -28,99 +27,93 @@ pub struct Class {
     pub passed_over: Vec<String>,
 }
 
-impl ClassSpec {
-    /// Reads the members, names in `library`.
-    ///
-    /// # Errors
-    /// No members, as many weights as there are not materials, weights of nothing, an unknown name, a file that cannot be used.
-    pub fn read(&self, library: &Library) -> Result<Class> {
-        if self.materials.is_empty() {
-            return Err(Error::malformed("the class has no members", "write materials = [\"my_skin.csv\"]"));
-        }
-        let weights = self.weights.clone().unwrap_or_else(|| vec![1.0; self.materials.len()]);
-        if weights.len() != self.materials.len() {
-            let found = format!("{} weights for {} materials", weights.len(), self.materials.len());
-            return Err(Error::malformed(found, "write one for each"));
-        }
-        weights
-            .iter()
-            .try_for_each(|weight| check::non_negative("weight of a class", *weight, "").map(drop))?;
-        let (mut found, mut passed_over, mut known) = (Vec::new(), Vec::new(), BTreeSet::new());
-        for (reference, weight) in self.materials.iter().zip(weights) {
-            let mut own = Vec::new();
-            match reference {
-                MaterialRef::Name(pattern) if pattern.contains(['*', '?']) => {
-                    let names = library.names().filter(|name| matches(pattern.as_bytes(), name.as_bytes()));
-                    for name in names {
-                        let material = library.get(name)?;
-                        // A sky is no surface, whatever it is called.
-                        if material.provenance().category != "sky" {
-                            own.push((material.clone(), None));
-                        }
-                    }
-                    if own.is_empty() {
-                        let found = format!("no material of the library is called like `{pattern}`");
-                        return Err(Error::malformed(
-                            found,
-                            "correct the pattern, or add spectra with --library",
-                        ));
+/// Reads the members of a class, names in `library`.
+///
+/// # Errors
+/// No members, as many weights as there are not materials, weights of nothing, an unknown name, a file that cannot be used.
+pub fn members(class: &ClassSpec, library: &Library) -> Result<Class> {
+    if class.materials.is_empty() {
+        return Err(Error::malformed("the class has no members", "write materials = [\"my_skin.csv\"]"));
+    }
+    let weights = class.weights.clone().unwrap_or_else(|| vec![1.0; class.materials.len()]);
+    if weights.len() != class.materials.len() {
+        let found = format!("{} weights for {} materials", weights.len(), class.materials.len());
+        return Err(Error::malformed(found, "write one for each"));
+    }
+    weights.iter().try_for_each(|weight| check::non_negative("weight of a class", *weight, "").map(drop))?;
+    let (mut found, mut passed_over, mut known) = (Vec::new(), Vec::new(), BTreeSet::new());
+    for (reference, weight) in class.materials.iter().zip(weights) {
+        let mut own = Vec::new();
+        match reference {
+            MaterialRef::Name(pattern) if pattern.contains(['*', '?']) => {
+                let names = library.names().filter(|name| matches(pattern.as_bytes(), name.as_bytes()));
+                for name in names {
+                    let material = library.get(name)?;
+                    // A sky is no surface, whatever it is called.
+                    if material.provenance().category != "sky" {
+                        own.push((material.clone(), None));
                     }
                 }
-                MaterialRef::Name(name) if library.class(name).is_some() => {
-                    let found = format!("`{name}` is a class itself");
-                    return Err(Error::malformed(found, "name its members"));
+                if own.is_empty() {
+                    let found = format!("no material of the library is called like `{pattern}`");
+                    return Err(Error::malformed(
+                        found,
+                        "correct the pattern, or add spectra with --library",
+                    ));
                 }
-                MaterialRef::Name(name) => own.push((library.get(name)?.clone(), None)),
-                MaterialRef::File(path) => {
-                    for file in files(path)? {
-                        if !known.insert(file.clone()) {
-                            let found = format!("`{}` is in the class twice", file.display());
-                            return Err(Error::malformed(found, "name every spectrum once"));
-                        }
-                        match read::from_file(&file) {
-                            Ok(all) => {
-                                own.extend(all.into_iter().map(|material| (material, Some(file.clone()))))
-                            }
-                            // A file that was named itself must hold a spectrum.
-                            Err(error) if file == *path || library.is_strict() => return Err(error),
-                            Err(error) => passed_over.push(error.to_string()),
-                        }
+            }
+            MaterialRef::Name(name) if library.class(name).is_some() => {
+                let found = format!("`{name}` is a class itself");
+                return Err(Error::malformed(found, "name its members"));
+            }
+            MaterialRef::Name(name) => own.push((library.get(name)?.clone(), None)),
+            MaterialRef::File(path) => {
+                for file in files(path)? {
+                    if !known.insert(file.clone()) {
+                        let found = format!("`{}` is in the class twice", file.display());
+                        return Err(Error::malformed(found, "name every spectrum once"));
+                    }
+                    match read::from_file(&file) {
+                        Ok(all) => own.extend(all.into_iter().map(|material| (material, Some(file.clone())))),
+                        // A file that was named itself must hold a spectrum.
+                        Err(error) if file == *path || library.is_strict() => return Err(error),
+                        Err(error) => passed_over.push(error.to_string()),
                     }
                 }
             }
-            let share = weight / own.len() as f64;
-            found.extend(own.into_iter().map(|(material, file)| (material, file, share)));
         }
-        let total: f64 = found.iter().map(|(.., weight)| weight).sum();
-        if found.is_empty() {
-            return Err(Error::malformed(
-                "the class has no members: none of its files holds a spectrum",
-                "name files of emissivity or reflectance",
-            ));
-        }
-        if !(total > 0.0 && total.is_finite()) {
-            return Err(Error::malformed(
-                "the weights of the class add up to nothing",
-                "write numbers of at least 0, one of them above",
-            ));
-        }
-        let names = unique_names(&found)?;
-        let members = found.into_iter().zip(names).map(|((material, _, weight), name)| Member {
-            material: material.with_name(name),
-            weight: weight / total,
-        });
-        let members: Vec<Member> = members.collect();
-        let squares: f64 = members.iter().map(|member| member.weight * member.weight).sum();
-        if self.spread == Some(Spread::Sample) && (members.len() < 2 || squares > 1.0 - 1e-9) {
-            let found = "the covariance of a sample of one spectrum";
-            return Err(Error::malformed(found, "add spectra, or state emissivity_error and correlation"));
-        }
-        if self.spread == Some(Spread::Sample) && self.mixtures {
-            let found = "mixtures of a class that stands as its mean";
-            return Err(Error::malformed(found, "keep mixtures or covariance"));
-        }
-        Ok(Class { members, passed_over })
+        let share = weight / own.len() as f64;
+        found.extend(own.into_iter().map(|(material, file)| (material, file, share)));
     }
+    let total: f64 = found.iter().map(|(.., weight)| weight).sum();
+    if found.is_empty() {
+        return Err(Error::malformed(
+            "the class has no members: none of its files holds a spectrum",
+            "name files of emissivity or reflectance",
+        ));
+    }
+    if !(total > 0.0 && total.is_finite()) {
+        return Err(Error::malformed(
+            "the weights of the class add up to nothing",
+            "write numbers of at least 0, one of them above",
+        ));
+    }
+    let names = unique_names(&found)?;
+    let members = found.into_iter().zip(names).map(|((material, _, weight), name)| Member {
+        material: material.with_name(name),
+        weight: weight / total,
+    });
+    let members: Vec<Member> = members.collect();
+    let squares: f64 = members.iter().map(|member| member.weight * member.weight).sum();
+    if class.spread == Some(Spread::Sample) && (members.len() < 2 || squares > 1.0 - 1e-9) {
+        let found = "the covariance of a sample of one spectrum";
+        return Err(Error::malformed(found, "add spectra, or state emissivity_error and correlation"));
+    }
+    if class.spread == Some(Spread::Sample) && class.mixtures {
+        let found = "mixtures of a class that stands as its mean";
+        return Err(Error::malformed(found, "keep mixtures or covariance"));
+    }
+    Ok(Class { members, passed_over })
 }
 
 /// The files of a path: of a folder all its spectra, of a pattern those that match, else the one.
@@ -243,7 +236,7 @@ mod tests {
             mixtures: false,
             spread: None,
         };
-        let class = named(&["gold", "iron"], Some(vec![3.0, 1.0])).read(&library).unwrap();
+        let class = members(&named(&["gold", "iron"], Some(vec![3.0, 1.0])), &library).unwrap();
         assert_eq!(class.members.iter().map(|member| member.weight).collect::<Vec<_>>(), [0.75, 0.25]);
         for (spec, found) in [
             (named(&[], None), "no members"),
@@ -252,7 +245,7 @@ mod tests {
             (named(&["gold", "gold"], None), "`gold` is in the class twice"),
             (named(&["golf"], None), "golf"),
         ] {
-            let error = spec.read(&library).unwrap_err().to_string();
+            let error = members(&spec, &library).unwrap_err().to_string();
             assert!(error.contains(found), "{error}");
         }
     }

@@ -1,7 +1,7 @@
 //! Size of the data of an ENVI file, and how samples are stored.
 
 use super::EnviHeader;
-use crate::error::{Error, Result};
+use hadar::error::{Error, Result};
 
 /// Order of the samples in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Spectra in the layouts that programs and people write: the same rows come out of all of them.
 
-use hadar::material::{Material, read};
+use hadar::material::Material;
 use hadar_testing::{repository, shared};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -54,41 +54,43 @@ fn files_of_other_programs_hold_the_same_spectrum() {
         ("numpy_semicolon.csv", "wavelength in um, reflectance, semicolons between columns"),
         ("jcamp_affn.jdx", "JCAMP-DX, wavenumber in cm^-1, reflectance"),
     ] {
-        let material = Material::from_file(&data(file)).unwrap_or_else(|error| panic!("{error}"));
+        let material =
+            hadar_formats::spectra::material(&data(file)).unwrap_or_else(|error| panic!("{error}"));
         check(file, &material);
         assert_eq!(material.summary().read_as, read_as, "{file}");
     }
-    let wide = read::from_file(&data("pandas_wide.csv")).unwrap();
+    let wide = hadar_formats::spectra::from_file(&data("pandas_wide.csv")).unwrap();
     assert_eq!(wide.iter().map(Material::name).collect::<Vec<_>>(), ["paint", "copper"]);
     wide.iter().for_each(|material| check("wide", material));
     for file in ["spectral_library.sli", "spectral_library.hdr"] {
-        let library = read::from_file(&data(file)).unwrap();
+        let library = hadar_formats::spectra::from_file(&data(file)).unwrap();
         assert_eq!(library.iter().map(Material::name).collect::<Vec<_>>(), ["roof-tile", "gray-paint"]);
         check(file, &library[0]);
         let gray = library[1].emissivity(&[1000.0]).unwrap()[0];
         assert!((gray - 0.8205 * 0.8205).abs() < 1e-6, "{gray}");
     }
     let bare = data("numpy_bare.dpt");
-    let message = read::from_file(&bare).unwrap_err().to_string();
+    let message = hadar_formats::spectra::from_file(&bare).unwrap_err().to_string();
     assert!(
         message.contains("numpy_bare.dpt:1: there is no header")
             && message.contains("--columns wavenumber_cm1,emissivity"),
         "{message}"
     );
     let columns = ["wavenumber_cm1", "emissivity"].map(str::to_owned);
-    check("bare", &read::from_file_with_columns(&bare, &columns).unwrap()[0]);
+    check("bare", &hadar_formats::spectra::from_file_with_columns(&bare, &columns).unwrap()[0]);
 }
 
 /// Real files in squeezed forms, against the values that the Python package `jcamp` 1.3.2 reads. As they are they hold absorbance and
 /// transmittance, which is refused; said to be reflectance in a smaller unit, their numbers are read.
 #[test]
 fn squeezed_files_of_spectrometers_hold_what_another_reader_finds() {
-    let message = read::from_file(&data("perkin_elmer_difdup.jdx")).unwrap_err().to_string();
+    let message =
+        hadar_formats::spectra::from_file(&data("perkin_elmer_difdup.jdx")).unwrap_err().to_string();
     assert!(message.contains(":10: YUNITS: `ABSORBANCE`, from which no emissivity follows"), "{message}");
     let text = std::fs::read_to_string(data("perkin_elmer_difdup.jdx")).unwrap();
     let tenth = [("ABSORBANCE", "REFLECTANCE"), (".0001", ".00001"), ("1.1663", ".11663")];
     let text = tenth.iter().fold(text, |text, (from, to)| text.replace(from, to));
-    let material = &read::from_text(&text, Path::new("a.jdx")).unwrap()[0];
+    let material = &hadar_formats::spectra::from_text(&text, Path::new("a.jdx")).unwrap()[0];
     let wavenumbers: Vec<f64> = (0..440).map(|i| 1e7 / (250.0 + 0.5 * f64::from(i))).collect();
     let reflectance: Vec<f64> =
         material.emissivity(&wavenumbers).unwrap().iter().map(|emissivity| 1.0 - emissivity).collect();
@@ -98,10 +100,12 @@ fn squeezed_files_of_spectrometers_hold_what_another_reader_finds() {
         assert!((reflectance[at] - due).abs() < 1e-9, "{at}: {}", reflectance[at]);
     }
 
-    let message = read::from_file(&data("specfile_sqzdup.dx")).unwrap_err().to_string();
+    let message = hadar_formats::spectra::from_file(&data("specfile_sqzdup.dx")).unwrap_err().to_string();
     assert!(message.contains("YUNITS: `TRANSMITTANCE`"), "{message}");
     let text = std::fs::read_to_string(data("specfile_sqzdup.dx")).unwrap();
-    let material = &read::from_text(&text.replace("TRANSMITTANCE", "%R"), Path::new("a.dx")).unwrap()[0];
+    let material =
+        &hadar_formats::spectra::from_text(&text.replace("TRANSMITTANCE", "%R"), Path::new("a.dx")).unwrap()
+            [0];
     assert_eq!((material.rows(), material.range_cm1()), (1801, Some((400.0, 4000.0))));
     let emissivity = material.emissivity(&[400.0, 2200.0, 4000.0]).unwrap();
     for (found, due) in emissivity.iter().zip([0.977_371_872_2, 0.945_746_973_6, 0.828_309_849_4]) {
@@ -130,7 +134,7 @@ fn channels_that_are_bad_or_not_known_are_left_out() {
     let spectra = [[nothing, 0.9, nothing, 0.8, 0.7, 0.6], [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]];
     let header = "bbl = {1, 1, 1, 1, 1, 0}\ndata ignore value = -1.2300000e+034";
     let folder = library_of(header, spectra);
-    let read = read::from_file(&folder.path().join("a.sli")).unwrap();
+    let read = hadar_formats::spectra::from_file(&folder.path().join("a.sli")).unwrap();
     let [one, two] = read.as_slice() else { panic!("{read:?}") };
     // At the ends they are outside of the range.
     assert_eq!(one.range_cm1(), Some((1e4 / 12.0, 1e4 / 9.0)));
@@ -146,11 +150,11 @@ fn channels_that_are_bad_or_not_known_are_left_out() {
     let known = one.emissivity(&[9.0, 11.0, 12.0].map(|um| 1e4 / um)).unwrap();
     assert!(known.iter().zip([0.9, 0.8, 0.7]).all(|(found, due)| (found - due).abs() < 1e-6), "{known:?}");
     let nowhere = library_of(header, [[nothing; 6], spectra[1]]);
-    let read = read::from_file(&nowhere.path().join("a.sli")).unwrap();
+    let read = hadar_formats::spectra::from_file(&nowhere.path().join("a.sli")).unwrap();
     assert_eq!(read.iter().map(Material::name).collect::<Vec<_>>(), ["two"]);
     assert!(read[0].warnings().iter().any(|said| said.contains("left out of the same file: of `one`")));
     let nowhere = library_of("bbl = {0, 0, 0, 0, 0, 1}", spectra);
-    let message = read::from_file(&nowhere.path().join("a.sli")).unwrap_err().to_string();
+    let message = hadar_formats::spectra::from_file(&nowhere.path().join("a.sli")).unwrap_err().to_string();
     assert!(message.contains("of `one`, `two` less than 2 channels"), "{message}");
 }
 
@@ -165,14 +169,14 @@ fn names_are_unique_where_names_of_files_are_not() {
         (["lib/a.csv", "lib/b.csv"], ["a@a", "a@b"]),
     ] {
         let of = [(&one, Path::new(files[0])), (&two, Path::new(files[1]))];
-        assert_eq!(read::unique_names(&of), due);
+        assert_eq!(hadar_formats::spectra::unique_names(&of), due);
         let backwards = [of[1], of[0]];
-        assert_eq!(read::unique_names(&backwards), [due[1], due[0]]);
+        assert_eq!(hadar_formats::spectra::unique_names(&backwards), [due[1], due[0]]);
     }
     // A name that another one has by itself.
     let own = three.clone().with_name("a@csv");
     let of = [(&one, Path::new("lib/a.csv")), (&two, Path::new("lib/a.txt")), (&own, Path::new("lib/c.csv"))];
-    assert_eq!(read::unique_names(&of), ["a@csv", "a@txt", "a@csv-2"]);
+    assert_eq!(hadar_formats::spectra::unique_names(&of), ["a@csv", "a@txt", "a@csv-2"]);
 }
 
 /// Customary layouts as people write them by hand, each with three rows of the same spectrum.
@@ -204,8 +208,8 @@ fn twenty_two_customary_layouts_are_read() {
     ];
     assert_eq!(layouts.len(), 22);
     for text in layouts {
-        let materials =
-            read::from_text(text, Path::new("My tile.csv")).unwrap_or_else(|error| panic!("{error}: {text}"));
+        let materials = hadar_formats::spectra::from_text(text, Path::new("My tile.csv"))
+            .unwrap_or_else(|error| panic!("{error}: {text}"));
         assert_eq!((materials.len(), materials[0].name()), (1, "my-tile"), "{text}");
         let emissivity = materials[0].emissivity(&[1_249.999_999, 1000.0, 800.000_001]).unwrap();
         for (found, due) in emissivity.iter().zip([0.9, 0.8, 0.7]) {
@@ -219,15 +223,17 @@ fn twenty_two_customary_layouts_are_read() {
 fn measured_samples_have_short_names_of_their_own() {
     let Some(directory) = shared("ecostress") else { return };
     let read_all = |backwards: bool| {
-        let mut files = read::spectra_in(&directory).unwrap();
+        let mut files = hadar_formats::spectra::spectra_in(&directory).unwrap();
         if backwards {
             files.reverse();
         }
-        let all: Vec<(Material, PathBuf)> =
-            files.into_iter().filter_map(|file| Some((Material::from_file(&file).ok()?, file))).collect();
+        let all: Vec<(Material, PathBuf)> = files
+            .into_iter()
+            .filter_map(|file| Some((hadar_formats::spectra::material(&file).ok()?, file)))
+            .collect();
         let of: Vec<(&Material, &Path)> =
             all.iter().map(|(material, file)| (material, file.as_path())).collect();
-        let mut names = read::unique_names(&of);
+        let mut names = hadar_formats::spectra::unique_names(&of);
         names.sort();
         names
     };
@@ -273,7 +279,7 @@ proptest! {
             let y = match quantity.1 { 0 => e, 1 => 100.0 * e, 2 => 1.0 - e, _ => 100.0 * (1.0 - e) };
             text.push_str(&format!("{}{delimiter}{}{newline}", written(x, decimal), written(y, decimal)));
         }
-        let materials = read::from_text(&text, Path::new("x.csv"));
+        let materials = hadar_formats::spectra::from_text(&text, Path::new("x.csv"));
         let materials = materials.unwrap_or_else(|error| panic!("{error}\n{text}"));
         prop_assert_eq!(materials.len(), 1);
         prop_assert_eq!(materials[0].rows(), rows.len());
