@@ -47,6 +47,7 @@ mod shortfall;
 mod sight;
 mod simulate;
 mod size;
+pub mod spoken;
 mod stage;
 mod surface;
 pub mod sweep;
