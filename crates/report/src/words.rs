@@ -1,6 +1,7 @@
 //! What the program says: every sentence of an answer, each in one place.
 
-use hadar_study::Warning;
+pub mod warnings;
+
 use hadar_study::spoken::Phrase;
 
 /// What is said in a sentence.
@@ -15,11 +16,5 @@ pub fn voice(phrase: Phrase<'_>) -> String {
     match phrase {
         Phrase::Warning(warning) => warning.say(),
         _ => String::new(),
-    }
-}
-
-impl Say for Warning {
-    fn say(&self) -> String {
-        self.to_string()
     }
 }

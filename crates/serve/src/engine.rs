@@ -13,6 +13,8 @@ use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
+use hadar_report::words::Say;
+use hadar_report::words::warnings::words;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
 use hadar_study::words::probability;
@@ -265,7 +267,7 @@ fn pair_shown(pair: &PairResult) -> Pair {
 
 fn said(warning: &Warning) -> Said {
     let code = warning.code();
-    Said { code: code.name(), message: warning.to_string(), remedy: code.remedy() }
+    Said { code: code.name(), message: warning.say(), remedy: words(code).remedy }
 }
 
 /// An error with its place apart.

@@ -6,6 +6,7 @@ use super::{measured, text};
 use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
+use crate::words::Say;
 use hadar_scenario::Units;
 use hadar_study::words::reliability;
 use hadar_study::{ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
@@ -64,7 +65,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     if !warned.is_empty() {
         out.push_str("## Warnings\n\n");
         warned.iter().for_each(|warning| {
-            let _ = writeln!(out, "- [{}] {warning}", warning.code().name());
+            let _ = writeln!(out, "- [{}] {}", warning.code().name(), warning.say());
         });
         out.push('\n');
     }

@@ -7,6 +7,7 @@ use crate::companion;
 use crate::size::rows::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
+use crate::words::warnings::say_the_same;
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
@@ -122,7 +123,7 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let lines: Vec<_> = answer.clauses.iter().flat_map(|clause| clause.lines()).collect();
     for camera in &lines {
         for warning in camera.warnings {
-            match said.iter_mut().find(|(known, _)| known.says_as(warning)) {
+            match said.iter_mut().find(|(known, _)| say_the_same(known, warning)) {
                 Some((_, names)) if names.contains(&camera.camera) => {}
                 Some((_, names)) => names.push(camera.camera),
                 None => said.push((warning, vec![camera.camera])),
