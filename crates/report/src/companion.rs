@@ -10,7 +10,7 @@ use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_study::Companion;
 use hadar_study::companion::{CompanionRow, Condition, Kind, Measure};
-use hadar_study::words::probability;
+use crate::words::probability::probability;
 use std::fmt::Write as _;
 
 /// The measures in their order, with what a line of them is called.

@@ -32,3 +32,4 @@ pub mod sweep;
 pub mod table;
 pub mod tables;
 pub mod text;
+pub mod words;

@@ -10,7 +10,7 @@ mod sources;
 mod stand_in;
 mod stop;
 mod text;
-mod words;
+mod columns;
 
 pub use check::check;
 pub use record::{agreement, parsed, record};
@@ -24,7 +24,7 @@ use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
-use super::text::shortfalls::no;
+use crate::words::shortfall::{codes, no};
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
@@ -129,7 +129,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
             let mut row = vec![
                 line.camera.to_owned(),
                 if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
-                words::codes(line.fails_by, " "),
+                codes(line.fails_by, " "),
                 line.provided.map(|proviso| proviso.to_string()).unwrap_or_default(),
                 of(&|camera| camera.bands.to_string()),
                 of(&|camera| camera.readout.name().into()),
@@ -248,7 +248,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
     let mut table = Table::new(["camera", "meets_the_rule", "fails_by", "margin", "margin_proved"]);
     for camera in &ranked {
         let own = verdict(camera);
-        let fails = own.map_or_else(|| camera.fails.join(", "), |own| words::codes(&own.fails_by, " "));
+        let fails = own.map_or_else(|| camera.fails.join(", "), |own| codes(&own.fails_by, " "));
         let proved = own.and_then(|own| Some(own.lower_bound? / only?.requirement.distance));
         table.push(vec![
             camera.name.clone(),

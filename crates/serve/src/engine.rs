@@ -14,7 +14,7 @@ use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
-use hadar_study::words::probability;
+use hadar_report::words::probability::probability;
 use hadar_study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
 use serde::{Deserialize, Serialize};
 use std::path::Path;

@@ -2,12 +2,11 @@
 //!
 //! Motion blur counts the frames one by one ([`hadar::policy::Motion`]): it takes them to be laid over each other before they are added.
 
+use crate::spoken::{self, Phrase};
 use hadar::instrument::Camera;
-use hadar::words::{length, quantity};
 use serde::{Serialize, Serializer};
-use std::fmt::{self, Display, Formatter};
 
-/// Frames that must be registered. Its `Display` completes 'yes, if '.
+/// Frames that must be registered. In JSON it completes 'yes, if '.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proviso {
     /// Frames that must be laid over each other.
@@ -33,15 +32,8 @@ impl Proviso {
     }
 }
 
-impl Display for Proviso {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (time, way) = (quantity(self.time_s, "s"), length(self.way_m));
-        write!(f, "its {} frames can be registered ({time}, a way of {way})", self.frames)
-    }
-}
-
 impl Serialize for Proviso {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
+        spoken::serialize(Phrase::Proviso(self), serializer)
     }
 }

@@ -12,7 +12,6 @@ mod subject;
 mod verdict;
 mod watched;
 mod witness;
-mod wording;
 
 pub use looked_up::RangeStudy;
 pub use results::{

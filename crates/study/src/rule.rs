@@ -17,14 +17,14 @@ mod ideal;
 mod resolution;
 mod results;
 mod search;
+mod said;
 mod stand_in;
 mod temperature;
 mod uncertainty;
-mod wording;
 
 pub use asked::{Extent, RuleAsked};
 pub use clauses::{
-    ApartAnswer, CameraAnswer, ClauseAnswer, Found, Line, Measure, MeasuredAnswer, MeasuredScene,
+    ApartAnswer, CameraAnswer, ClauseAnswer, Definition, Found, Line, Measure, MeasuredAnswer, MeasuredScene,
     MeasuredVerdict, RuleAnswer,
 };
 pub use expected::{TestCheck, TestResult, Told};

@@ -3,6 +3,7 @@
 use super::identify::{PairResult, PhotonsRequired};
 use super::{Check, ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
 use crate::proviso::Proviso;
+use crate::spoken::{self, Phrase};
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -17,13 +18,11 @@ mod curves;
 mod reach;
 pub(crate) mod sensitivity;
 mod trade_offs;
-mod wording;
 
 pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
-pub use wording::no_limit;
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -113,7 +112,7 @@ pub struct Verdict {
     pub margin: Option<f64>,
 }
 
-/// What there is to be said of a camera, target and alternative. Its `Display` is a sentence.
+/// What there is to be said of a camera, target and alternative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// Name of the camera; empty without one.
@@ -134,6 +133,12 @@ pub struct Finding {
     pub classes: Option<Box<ClassAnswer>>,
     /// What a 'yes' hangs on.
     pub provided: Option<Proviso>,
+}
+
+impl serde::Serialize for Finding {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        spoken::serialize(Phrase::Finding(self), serializer)
+    }
 }
 
 /// What was found.

@@ -7,7 +7,7 @@ use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
 use hadar_scenario::Units;
-use hadar_study::words::reliability;
+use crate::words::probability::reliability;
 use hadar_study::{ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
 use std::fmt::Write as _;
 

@@ -2,7 +2,7 @@
 
 use super::measured::{guarded, measure, measured_scene, undecided};
 use super::text::{fails_by, without_placeholders};
-use super::words::in_words;
+use crate::words::shortfall::in_words;
 use crate::text::significant;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;

@@ -1,7 +1,8 @@
 //! Clauses that demand a quantity, and how well margins are known, as text.
 
 use super::stop::{approach, metres};
-use super::words::{columns, in_words};
+use super::columns::columns;
+use crate::words::shortfall::in_words;
 use crate::text::numbers::{numbers, quantity, significant};
 use hadar::words::share;
 use hadar_scenario::Units;

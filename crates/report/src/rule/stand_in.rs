@@ -8,7 +8,7 @@ use crate::text::footing::warnings;
 use crate::text::significant;
 use hadar::error::Result;
 use hadar_study::warning::Code;
-use hadar_study::words::reliability;
+use crate::words::probability::reliability;
 use hadar_study::{StandIn, StandInAnswer};
 use std::fmt::Write as _;
 
@@ -44,7 +44,7 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
             },
         ]
     }));
-    out.push_str(&super::words::columns(&rows, &[3, 4, 5]));
+    out.push_str(&super::columns::columns(&rows, &[3, 4, 5]));
     out.push_str(
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
          as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \

@@ -2,7 +2,9 @@
 
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
-use super::words::{columns, in_words, in_words_of_kind};
+use super::columns::columns;
+use crate::words::rule::in_words_of_kind;
+use crate::words::shortfall::in_words;
 use crate::companion;
 use crate::size::rows::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
@@ -12,7 +14,7 @@ use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
-use hadar_study::words::{demanded, reliability};
+use crate::words::probability::{demanded, reliability};
 use hadar_study::{
     ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy,
     Shortfall, Warning,

@@ -4,7 +4,7 @@ use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
 use crate::text::numbers::significant;
 use hadar_scenario::Units;
-use hadar_study::words::percent;
+use crate::words::probability::percent;
 use hadar_study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
 

@@ -3,7 +3,7 @@
 use crate::text::numbers::{quantity, significant};
 use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Units;
-use hadar_study::words::probability;
+use crate::words::probability::probability;
 use hadar_study::{PairResult, Sizing, Study, no_limit};
 
 /// A number that is shown.

@@ -7,7 +7,7 @@ use crate::text::pairs::pair_table;
 use crate::{classes, companion};
 use hadar::words::share;
 use hadar_scenario::Units;
-use hadar_study::words::demanded_probability;
+use crate::words::probability::demanded_probability;
 use hadar_study::{PairResult, Sizing, Study};
 use std::fmt::Write as _;
 

@@ -6,7 +6,7 @@
 use crate::figures::Plot;
 use crate::plot::{self, Axis, Band, LineFigure, Marker, Rule, Series, Style};
 use crate::table::{Table, number, optional};
-use crate::text::shortfalls::no;
+use crate::words::shortfall::no;
 use crate::text::{quantity, significant};
 use hadar::policy::{CapCode, Quantity, TradeOff, trade_off::Point};
 use hadar_study::Sizing;

@@ -1,13 +1,14 @@
 //! What a study of ranging by air finds, as data.
 
 use crate::Warning;
+use crate::spoken::{self, Phrase};
 use hadar::demand::Work;
 use hadar::fisher::precision::Sight;
 use hadar::ranging::depth::Demand;
 use hadar_scenario::AirRangingScenario;
 use hadar_simulate::efficiency::{Errors, Verdict};
 use hadar_simulate::sequential::Interval;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The whole answer.
 #[derive(Debug, Clone, Serialize)]
@@ -56,7 +57,7 @@ pub struct AirRanging {
 pub struct AirVerdict {
     /// Whether what is demanded is met at the target's own distance; `None` where nothing is.
     pub met: Option<bool>,
-    /// In words.
+    /// What is said, in JSON a sentence.
     pub sentence: AirFinding,
 }
 
@@ -86,6 +87,12 @@ pub enum AirFinding {
         /// Which, and how.
         by: Vec<BlindChange>,
     },
+}
+
+impl Serialize for AirFinding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        spoken::serialize(Phrase::AirFinding(self), serializer)
+    }
 }
 
 /// How an unknown hides a change of the distance.

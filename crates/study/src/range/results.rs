@@ -1,13 +1,14 @@
 //! What a ranging study finds, as data.
 
 use crate::Warning;
+use crate::spoken::{self, Phrase};
 use hadar::cube::{Found, Shape};
 use hadar::demand::Work;
 use hadar::ranging::depth::DepthSolution;
 use hadar::ranging::metrics::DepthMetrics;
 use hadar_scenario::RangeScenario;
 use hadar_scenario::range::Demand;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::ops::Range;
 
 /// What depth is read from.
@@ -124,7 +125,7 @@ pub struct DepthVerdict {
     pub signal: Signal,
 }
 
-/// What there is to be said of depth. Its `Display` is a sentence.
+/// What there is to be said of depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DepthFinding {
     /// Windows were held against the demand.
@@ -149,6 +150,12 @@ pub enum DepthFinding {
     },
     /// No window has a bound.
     NoBound,
+}
+
+impl Serialize for DepthFinding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        spoken::serialize(Phrase::DepthFinding(self), serializer)
+    }
 }
 
 /// The pair of cameras.

@@ -12,8 +12,7 @@ use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use std::collections::BTreeMap;
 
-/// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence, and another one where
-/// placeholders decide.
+/// Names of the cameras that meet a rule, and of the others; in JSON a sentence.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WhoMeets {
     /// Those that do, each with what it hangs on.
@@ -63,7 +62,7 @@ pub struct RuleRequirement {
     pub quotable: Quotable,
 }
 
-/// What can be quoted of a rule. Its `Display` is a sentence or two.
+/// What can be quoted of a rule; in JSON a sentence or two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quotable {
     /// Where it is demanded.
@@ -156,7 +155,7 @@ pub struct CameraVerdict {
     pub warnings: Vec<Warning>,
 }
 
-/// How sure a worst case is. Its `Display` is the statement.
+/// How sure a worst case is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certified {
     /// How it is known.
@@ -285,7 +284,7 @@ pub struct NotIdentifiable {
     pub neighbourhood: Option<Neighbourhood>,
 }
 
-/// The camera that no other surpasses. Its `Display` says that it does not tell the pair.
+/// The camera that no other surpasses; in JSON that it does not tell the pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdealCamera {
     /// f-number.
@@ -322,7 +321,7 @@ pub enum LightTime {
     LongestIntegration,
 }
 
-/// Standard deviation of an emissivity in a band. Its `Display` says that it makes up more than the distance.
+/// Standard deviation of an emissivity in a band; in JSON that it makes up more than the distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EmissivityError(pub f64);
 
