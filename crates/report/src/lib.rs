@@ -18,6 +18,7 @@ pub mod figures;
 pub mod folder;
 mod html;
 pub mod identify;
+pub mod json;
 pub mod library;
 pub mod manifest;
 pub mod parquet;

@@ -4,13 +4,13 @@
 
 mod certificate;
 mod check;
+mod columns;
 mod measured;
 mod record;
 mod sources;
 mod stand_in;
 mod stop;
 mod text;
-mod columns;
 
 pub use check::check;
 pub use record::{agreement, parsed, record};
@@ -24,8 +24,9 @@ use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
-use crate::words::shortfall::{codes, no};
 use super::text::significant;
+use crate::words::Say;
+use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
 use hadar_scenario::rule::Verdict;
@@ -130,7 +131,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
                 line.camera.to_owned(),
                 if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
                 codes(line.fails_by, " "),
-                line.provided.map(|proviso| proviso.to_string()).unwrap_or_default(),
+                line.provided.map(|proviso| proviso.say()).unwrap_or_default(),
                 of(&|camera| camera.bands.to_string()),
                 of(&|camera| camera.readout.name().into()),
                 of(&|camera| number(camera.sweep_s)),

@@ -9,12 +9,13 @@ use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
 use hadar::policy::trade_off::POINTS;
 use hadar_report::bundle::About;
+use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
+use hadar_report::words::probability::probability;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
-use hadar_report::words::probability::probability;
 use hadar_study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -144,7 +145,7 @@ impl Engine {
             let camera: &Preset = camera;
             Named { name: &camera.name, about: &camera.description }
         };
-        json(&Start {
+        json::line(&Start {
             version: VERSION,
             scenario: &self.begin,
             materials: self.library.iter().map(of_material).chain(classes).collect(),
@@ -165,7 +166,7 @@ impl Engine {
             Err(error) => (None, Some(told(&error))),
         };
         let presets: Vec<String> = self.presets()?.map(|camera| camera.name.clone()).collect();
-        json(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
+        json::line(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
     }
 
     fn shown(&self, text: &str, ask: &Ask) -> Result<Answer> {
@@ -274,8 +275,4 @@ fn told(error: &Error) -> Told {
         _ => Default::default(),
     };
     Told { message: error.to_string(), line: place.line, key: place.key }
-}
-
-fn json(value: &impl Serialize) -> Result<String> {
-    serde_json::to_string(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }

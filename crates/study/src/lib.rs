@@ -67,11 +67,12 @@ pub use looked_up::Study;
 pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
-    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Definition, Drawn,
-    EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
-    Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
-    NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
-    StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer,
+    Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime,
+    LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
+    Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
+    StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
+    WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -2,9 +2,7 @@
 //!
 //! Motion blur counts the frames one by one ([`hadar::policy::Motion`]): it takes them to be laid over each other before they are added.
 
-use crate::spoken::{self, Phrase};
 use hadar::instrument::Camera;
-use serde::{Serialize, Serializer};
 
 /// Frames that must be registered. In JSON it completes 'yes, if '.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,11 +27,5 @@ impl Proviso {
     pub(crate) fn is_harder_than(&self, other: &Self) -> bool {
         let hard = |one: &Self| (one.way_m, one.time_s, one.frames);
         hard(self) > hard(other)
-    }
-}
-
-impl Serialize for Proviso {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        spoken::serialize(Phrase::Proviso(self), serializer)
     }
 }

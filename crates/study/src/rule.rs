@@ -17,7 +17,6 @@ mod ideal;
 mod resolution;
 mod results;
 mod search;
-mod said;
 mod stand_in;
 mod temperature;
 mod uncertainty;

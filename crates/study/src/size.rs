@@ -3,7 +3,6 @@
 use super::identify::{PairResult, PhotonsRequired};
 use super::{Check, ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
 use crate::proviso::Proviso;
-use crate::spoken::{self, Phrase};
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -133,12 +132,6 @@ pub struct Finding {
     pub classes: Option<Box<ClassAnswer>>,
     /// What a 'yes' hangs on.
     pub provided: Option<Proviso>,
-}
-
-impl serde::Serialize for Finding {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        spoken::serialize(Phrase::Finding(self), serializer)
-    }
 }
 
 /// What was found.

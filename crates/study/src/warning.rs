@@ -8,6 +8,7 @@ mod message;
 pub use catalogue::Code;
 
 use crate::proviso::Proviso;
+use crate::spoken::{Phrase, Spoken};
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar_simulate::classifier::Method;
@@ -414,7 +415,7 @@ impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut object = serializer.serialize_struct("Warning", 2)?;
         object.serialize_field("code", self.code().name())?;
-        object.serialize_field("message", &self.to_string())?;
+        object.serialize_field("message", &Spoken(Phrase::Warning(self)))?;
         object.end()
     }
 }

@@ -1,6 +1,6 @@
 //! `hadar accuracy`: run time against error, method by method.
 
-use super::global::{Global, as_json};
+use super::global::Global;
 use clap::Args;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
@@ -11,6 +11,7 @@ use hadar_proof::accuracy::{Chart, Continuum, Item, Order, continuum};
 use hadar_proof::vectors::{Topic, VERSION, topics};
 use hadar_report::accuracy as report;
 use hadar_report::bundle::Bundle;
+use hadar_report::json;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -159,7 +160,7 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let mut work = Work::default();
     work.compute(Thing::Sections, tasks.len() as u64);
     work.spare(Thing::Sections, Reason::NotAsked, (all().len() - tasks.len()) as u64);
-    global.answer_with(as_json(&output)?, &text, &work)?;
+    global.answer_with(json::value(&output)?, &text, &work)?;
     let failed = output.stress.is_some_and(|stress| stress.failures > 0)
         || output.brute_force.is_some_and(|found| found.failures > 0);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
@@ -201,7 +202,7 @@ fn vectors(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let mut work = Work::default();
     work.compute(Thing::Sections, 1);
     work.spare(Thing::Sections, Reason::NotAsked, all().len() as u64);
-    global.answer_with(as_json(&output)?, &report::vectors_text(&topics), &work)?;
+    global.answer_with(json::value(&output)?, &report::vectors_text(&topics), &work)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -2,8 +2,9 @@
 
 use super::measured::{guarded, measure, measured_scene, undecided};
 use super::text::{fails_by, without_placeholders};
-use crate::words::shortfall::in_words;
 use crate::text::significant;
+use crate::words::Say;
+use crate::words::shortfall::in_words;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
@@ -83,7 +84,8 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
                 format!("met, but searched and not proved: {least} where it is least{guarded}")
             }
         };
-        let proviso = camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {proviso}"));
+        let proviso =
+            camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {}", proviso.say()));
         known + &proviso
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;

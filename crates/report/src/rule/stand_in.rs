@@ -6,9 +6,9 @@ use crate::plot::{Axis, Figure, LineFigure, Series};
 use crate::table::{Table, number, optional};
 use crate::text::footing::warnings;
 use crate::text::significant;
+use crate::words::probability::reliability;
 use hadar::error::Result;
 use hadar_study::warning::Code;
-use crate::words::probability::reliability;
 use hadar_study::{StandIn, StandInAnswer};
 use std::fmt::Write as _;
 

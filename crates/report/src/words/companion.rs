@@ -36,7 +36,9 @@ impl Say for Caveat {
                 "the eye is in the factor of perception, which is a choice; differences below 0.2 degC are insignificant \
                  (ASTM E1213); a lens without aberrations; what is behind the target must differ by so much"
             }
-            Self::Limit => "no algorithm is right more often by one pixel; a limit, not a promise; material, not shape",
+            Self::Limit => {
+                "no algorithm is right more often by one pixel; a limit, not a promise; material, not shape"
+            }
             Self::AllAlike => {
                 "no algorithm is right more often by all pixels of a square target whose pixels are all in the state of the \
                  scenario, their noise independent; a limit, not a promise; material, not shape"

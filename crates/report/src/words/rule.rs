@@ -12,9 +12,10 @@ use hadar_study::{
 
 impl Say for WhoMeets {
     fn say(&self) -> String {
-        let mut out = self.idle.as_ref().map_or_else(String::new, |idle| {
-            format!("Nothing is demanded: {}. As if it did: ", idle.say())
-        });
+        let mut out = self
+            .idle
+            .as_ref()
+            .map_or_else(String::new, |idle| format!("Nothing is demanded: {}. As if it did: ", idle.say()));
         out += &which(self);
         let named = self.meet.len() + self.undecided.len() + self.fail.len() > 1;
         for (name, interval) in &self.undecided {
@@ -114,7 +115,9 @@ impl Say for Certified {
         let percent = 100.0 * self.gap.unwrap_or(0.0).max(0.0);
         match self.kind {
             Proof::Equilibrium => "proved: the envelope holds a scene in which nothing differs".into(),
-            Proof::DenseSearch => "searched, not proved: the best of a dense search and its refinements".into(),
+            Proof::DenseSearch => {
+                "searched, not proved: the best of a dense search and its refinements".into()
+            }
             Proof::BranchAndBound => format!("proved by branch and bound to {percent:.2} %"),
             Proof::Bounded => format!("searched; proved that no scene is more than {percent:.2} % below"),
             Proof::Counterexample => "proved by this scene; a worse one was not looked for".into(),
@@ -132,7 +135,9 @@ impl Say for Definition {
             ),
             Self::Temperature { coverage_factor, error_k, without_emissivity_errors } => {
                 let unasked = match without_emissivity_errors {
-                    true => " (errors of the emissivities are not carried into it: no camera is said to meet it)",
+                    true => {
+                        " (errors of the emissivities are not carried into it: no camera is said to meet it)"
+                    }
                     false => "",
                 };
                 format!(

@@ -161,7 +161,9 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
                 }
                 _ => ".".into(),
             };
-            format!("{yes}: {camera} {tells} {target} from {other} with {wanted} reliability{but}, by {reading}{end}")
+            format!(
+                "{yes}: {camera} {tells} {target} from {other} with {wanted} reliability{but}, by {reading}{end}"
+            )
         }
     }
 }

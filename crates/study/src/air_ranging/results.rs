@@ -1,14 +1,13 @@
 //! What a study of ranging by air finds, as data.
 
 use crate::Warning;
-use crate::spoken::{self, Phrase};
 use hadar::demand::Work;
 use hadar::fisher::precision::Sight;
 use hadar::ranging::depth::Demand;
 use hadar_scenario::AirRangingScenario;
 use hadar_simulate::efficiency::{Errors, Verdict};
 use hadar_simulate::sequential::Interval;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// The whole answer.
 #[derive(Debug, Clone, Serialize)]
@@ -87,12 +86,6 @@ pub enum AirFinding {
         /// Which, and how.
         by: Vec<BlindChange>,
     },
-}
-
-impl Serialize for AirFinding {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        spoken::serialize(Phrase::AirFinding(self), serializer)
-    }
 }
 
 /// How an unknown hides a change of the distance.

@@ -1,7 +1,6 @@
 //! A companion table as data: rows of a kind, with values, the conditions that they hold under, a caveat, or why there is no value.
 
 use super::measure::{Caveat, Measure, Unknown};
-use crate::spoken::{Phrase, Spoken};
 use hadar::policy::practice::ObserverTask;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
@@ -43,7 +42,7 @@ struct Caveats;
 
 impl Serialize for Caveats {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(Caveat::ALL.iter().map(|caveat| (caveat.code(), Spoken(Phrase::Caveat(*caveat)))))
+        serializer.collect_map(Caveat::ALL.iter().map(|caveat| (caveat.code(), *caveat)))
     }
 }
 
@@ -139,7 +138,7 @@ impl Serialize for CompanionRow {
         out.serialize_field("conditions", &Named(&self.conditions))?;
         out.serialize_field("caveat", self.measure.caveat().code())?;
         out.serialize_field("unknown", &self.unknown().map(Unknown::code))?;
-        out.serialize_field("reason", &self.unknown().map(|unknown| Spoken(Phrase::Unknown(unknown))))?;
+        out.serialize_field("reason", &self.unknown())?;
         out.end()
     }
 }

@@ -1,14 +1,13 @@
 //! What a ranging study finds, as data.
 
 use crate::Warning;
-use crate::spoken::{self, Phrase};
 use hadar::cube::{Found, Shape};
 use hadar::demand::Work;
 use hadar::ranging::depth::DepthSolution;
 use hadar::ranging::metrics::DepthMetrics;
 use hadar_scenario::RangeScenario;
 use hadar_scenario::range::Demand;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::ops::Range;
 
 /// What depth is read from.
@@ -150,12 +149,6 @@ pub enum DepthFinding {
     },
     /// No window has a bound.
     NoBound,
-}
-
-impl Serialize for DepthFinding {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        spoken::serialize(Phrase::DepthFinding(self), serializer)
-    }
 }
 
 /// The pair of cameras.

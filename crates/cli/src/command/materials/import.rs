@@ -9,6 +9,7 @@ use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::{Material, Summary, read};
 use hadar_report::bundle::Bundle;
+use hadar_report::json;
 use hadar_report::text::significant;
 use hadar_study::Warning;
 use std::collections::BTreeSet;
@@ -88,7 +89,11 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
     } else {
         work.spare(Thing::Reports, Reason::NotAsked, 1);
     }
-    global.answer_with(serde_json::json!({ "materials": summaries, "warnings": warnings }), &out, &work)
+    global.answer_with(
+        serde_json::json!({ "materials": summaries, "warnings": json::value(&warnings)? }),
+        &out,
+        &work,
+    )
 }
 
 fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Found> {
