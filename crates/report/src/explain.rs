@@ -95,7 +95,7 @@ impl From<&Place> for ExplainedKey {
 
 impl From<Code> for ExplainedCode {
     fn from(code: Code) -> Self {
-        let words = warnings::words(code);
+        let words = warnings::of_code(code);
         Self { code: code.name(), meaning: words.meaning, remedy: words.remedy }
     }
 }

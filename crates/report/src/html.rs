@@ -12,7 +12,7 @@ use self::element::{escape, wide};
 use crate::manifest::{Provenance, VERSION};
 use crate::table::Table;
 use crate::words::Say;
-use crate::words::warnings::words;
+use crate::words::warnings::of_code;
 use hadar_study::Warning;
 use hadar_study::warning::{Code, by_code};
 use std::borrow::Cow;
@@ -131,7 +131,7 @@ fn list(items: &[String]) -> String {
 /// Every kind of warning once: what it means, what to do, and what was said of which.
 fn warnings(warnings: &[Warning]) -> String {
     let of = |(code, said): (Code, Vec<&Warning>)| {
-        let words = words(code);
+        let words = of_code(code);
         format!(
             "<h3><code>{}</code></h3>\n<p>{} {}</p>\n{}",
             code.name(),

@@ -1,5 +1,15 @@
 //! What the program says: every sentence of an answer, each in one place.
 
+mod air_ranging;
+mod classes;
+mod companion;
+mod conditions;
+mod demand;
+pub mod probability;
+mod range;
+pub(crate) mod rule;
+pub(crate) mod shortfall;
+pub mod size;
 pub mod warnings;
 
 use hadar_study::spoken::Phrase;
@@ -14,7 +24,18 @@ pub trait Say {
 #[must_use]
 pub fn voice(phrase: Phrase<'_>) -> String {
     match phrase {
-        Phrase::Warning(warning) => warning.say(),
-        _ => String::new(),
+        Phrase::AirFinding(it) => it.say(),
+        Phrase::Caveat(it) => it.say(),
+        Phrase::Certified(it) => it.say(),
+        Phrase::Definition(it) => it.say(),
+        Phrase::DepthFinding(it) => it.say(),
+        Phrase::EmissivityError(it) => it.say(),
+        Phrase::Finding(it) => it.say(),
+        Phrase::IdealCamera(it) => it.say(),
+        Phrase::Proviso(it) => it.say(),
+        Phrase::Quotable(it) => it.say(),
+        Phrase::Unknown(it) => it.say(),
+        Phrase::WhoMeets(it) => it.say(),
+        Phrase::Warning(it) => it.say(),
     }
 }

@@ -52,7 +52,6 @@ mod surface;
 pub mod sweep;
 mod warn;
 pub mod warning;
-pub mod words;
 
 pub use crate::proviso::Proviso;
 pub use crate::warning::{Warning, WorstBlackbody};
@@ -67,11 +66,12 @@ pub use looked_up::Study;
 pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
-    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
-    EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
-    Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
-    NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
-    StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer,
+    Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime,
+    LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
+    Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    RuleStudy, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
+    WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;
@@ -83,7 +83,6 @@ pub use simulate::{
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
     RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
-    no_limit,
 };
 pub use surface::Surface;
 

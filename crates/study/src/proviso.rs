@@ -3,11 +3,8 @@
 //! Motion blur counts the frames one by one ([`hadar::policy::Motion`]): it takes them to be laid over each other before they are added.
 
 use hadar::instrument::Camera;
-use hadar::words::{length, quantity};
-use serde::{Serialize, Serializer};
-use std::fmt::{self, Display, Formatter};
 
-/// Frames that must be registered. Its `Display` completes 'yes, if '.
+/// Frames that must be registered. In JSON it completes 'yes, if '.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proviso {
     /// Frames that must be laid over each other.
@@ -30,18 +27,5 @@ impl Proviso {
     pub(crate) fn is_harder_than(&self, other: &Self) -> bool {
         let hard = |one: &Self| (one.way_m, one.time_s, one.frames);
         hard(self) > hard(other)
-    }
-}
-
-impl Display for Proviso {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (time, way) = (quantity(self.time_s, "s"), length(self.way_m));
-        write!(f, "its {} frames can be registered ({time}, a way of {way})", self.frames)
-    }
-}
-
-impl Serialize for Proviso {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
     }
 }

@@ -13,7 +13,6 @@ mod subject;
 mod verdict;
 mod watched;
 mod witness;
-mod wording;
 
 pub use looked_up::RangeStudy;
 pub(crate) use overfull::Overfull;

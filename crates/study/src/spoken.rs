@@ -2,18 +2,47 @@
 //!
 //! The JSON of an answer has sentences in it, and this package knows none. A part of an answer that has a sentence serialises it through
 //! [`serialize`] as a [`Phrase`], which the [`Voice`] of the one who writes puts into words: `hadar_report::words::voice` in every program
-//! here. Whoever serialises without one gets the same keys, with `null` where a sentence would be.
+//! here. Whoever serialises without one gets the same keys, with `null` where a sentence would be. The parts themselves do not know that
+//! they are spoken of: how they serialise stands here.
 
+use crate::air_ranging::AirFinding;
+use crate::companion::{Caveat, Unknown};
+use crate::range::DepthFinding;
+use crate::rule::{Certified, Definition, EmissivityError, IdealCamera, Quotable, WhoMeets};
 use crate::warning::Warning;
-use serde::Serializer;
+use crate::{Finding, Proviso};
+use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::cell::Cell;
 
 /// A part of an answer that has a sentence.
 #[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
 pub enum Phrase<'a> {
+    /// Ranging by air.
+    AirFinding(&'a AirFinding),
+    /// What the reader of a row of practice must know.
+    Caveat(&'a Caveat),
+    /// How sure a worst case is.
+    Certified(&'a Certified),
+    /// What a clause demands.
+    Definition(&'a Definition),
+    /// Ranging by stereo.
+    DepthFinding(&'a DepthFinding),
+    /// That errors of emissivities make up more than the distance.
+    EmissivityError(&'a EmissivityError),
+    /// The verdict on a camera.
+    Finding(&'a Finding),
+    /// That the camera which no other surpasses does not tell a pair.
+    IdealCamera(&'a IdealCamera),
+    /// What a 'yes' is subject to.
+    Proviso(&'a Proviso),
+    /// A rule that can be quoted.
+    Quotable(&'a Quotable),
+    /// Why a row of practice has no number.
+    Unknown(&'a Unknown),
     /// A remark.
     Warning(&'a Warning),
+    /// Which cameras meet a rule.
+    WhoMeets(&'a WhoMeets),
 }
 
 /// Puts a phrase into words.
@@ -51,9 +80,44 @@ pub(crate) fn serialize<S: Serializer>(phrase: Phrase<'_>, serializer: S) -> Res
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spoken<'a>(pub(crate) Phrase<'a>);
 
-impl serde::Serialize for Spoken<'_> {
+impl Serialize for Spoken<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serialize(self.0, serializer)
+    }
+}
+
+/// Serialises parts of an answer as their sentences.
+macro_rules! sentences {
+    ($($part:ident),+ $(,)?) => {$(
+        impl Serialize for $part {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serialize(Phrase::$part(self), serializer)
+            }
+        }
+    )+};
+}
+
+sentences!(
+    AirFinding,
+    Caveat,
+    Definition,
+    DepthFinding,
+    EmissivityError,
+    Finding,
+    IdealCamera,
+    Proviso,
+    Quotable,
+    Unknown,
+    WhoMeets,
+);
+
+impl Serialize for Certified {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Certified", 3)?;
+        object.serialize_field("kind", &self.kind)?;
+        object.serialize_field("statement", &Spoken(Phrase::Certified(self)))?;
+        object.serialize_field("gap", &self.gap)?;
+        object.end()
     }
 }
 
@@ -71,6 +135,7 @@ mod tests {
         assert!(said(&warning).is_null());
         let outer: Voice = |phrase| match phrase {
             Phrase::Warning(warning) => format!("outer {}", warning.code().name()),
+            _ => "another".into(),
         };
         with_voice(outer, || {
             assert_eq!(said(&warning), "outer blind");

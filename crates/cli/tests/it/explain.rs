@@ -116,7 +116,7 @@ fn every_word_is_explained() {
         assert_eq!(folder.json(&["explain", word])["word"], word);
     }
     let code = Code::NearestAtEdge;
-    assert!(folder.run(&["explain", code.name()]).stdout.contains(warnings::words(code).remedy));
+    assert!(folder.run(&["explain", code.name()]).stdout.contains(warnings::of_code(code).remedy));
     let shown = folder.json(&["explain", "camera.noise_bandwidth"]);
     assert_eq!(shown["keys"][0]["paths"][0], "camera.noise_bandwidth");
     assert_eq!(shown["keys"][0]["example"], "noise_bandwidth = \"175 kHz\"");

@@ -9,6 +9,7 @@
 
 use crate::json;
 use crate::manifest::{Input, Provenance, SCHEMA, VERSION, sha256};
+use crate::words::Say;
 use hadar::error::{Error, Result};
 use hadar_scenario::rule::Verdict;
 use hadar_study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
@@ -38,7 +39,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
             "interval": camera.interval,
             "limiting_clause": camera.limiting_clause,
             "evidence": camera.grade.name(),
-            "provided": camera.provided.map(|proviso| proviso.to_string()),
+            "provided": camera.provided.map(|proviso| proviso.say()),
         })
     });
     let set = &study.rule().scenario.source.settings;
@@ -58,7 +59,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
             "until": day(about.until),
         },
         "sources": json::value(&answer.rule.sources)?,
-        "sentence": answer.sentence.to_string(),
+        "sentence": answer.sentence.say(),
         "cameras": cameras.collect::<Vec<_>>(),
         "clauses": clauses,
         "warnings": json::value(&super::text::together(answer))?,
@@ -117,7 +118,7 @@ fn of_line(clause: &ClauseAnswer, index: usize, line: &Line<'_>) -> Result<Value
         "margin_proved": proved,
         "uncertainty": json::value(&line.uncertainty)?,
         "evidence": line.grade.name(),
-        "provided": line.provided.map(|proviso| proviso.to_string()),
+        "provided": line.provided.map(|proviso| proviso.say()),
         "limiting_scene": scene,
     }))
 }

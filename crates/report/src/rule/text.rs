@@ -1,22 +1,25 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
+use super::columns::columns;
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
-use super::words::{columns, in_words, in_words_of_kind};
 use crate::companion;
 use crate::size::rows::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
+use crate::words::Say;
+use crate::words::probability::{demanded, reliability};
+use crate::words::rule::in_words_of_kind;
+use crate::words::shortfall::in_words;
 use crate::words::warnings::say_the_same;
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
-use hadar_study::words::{demanded, reliability};
 use hadar_study::{
-    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy,
-    Shortfall, Warning,
+    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce, RuleAnswer,
+    RuleStudy, Shortfall, Warning,
 };
 use std::fmt::Write as _;
 
@@ -24,7 +27,7 @@ use std::fmt::Write as _;
 #[must_use]
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     let units = answer.rule.scenario.units();
-    let mut out = format!("{}\n\n", answer.sentence);
+    let mut out = format!("{}\n\n", answer.sentence.say());
     if answer.only().is_none() {
         out.push_str(&overview(answer));
     }
@@ -34,7 +37,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
             if let Some(text) = &clause.text {
                 let _ = writeln!(out, "  {text}");
             }
-            let _ = writeln!(out, "  {}\n", clause.sentence);
+            let _ = writeln!(out, "  {}\n", clause.sentence.say());
         }
         if let Some(stop) = &clause.stop {
             let _ = writeln!(out, "Stop\n  {}\n", decisions(stop, units));
@@ -49,7 +52,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         .iter()
         .filter_map(|clause| {
             let name = clause.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-            Some(format!("  {name}{}", clause.apart()?.requirement.quotable))
+            Some(format!("  {name}{}", clause.apart()?.requirement.quotable.say()))
         })
         .collect();
     if !quotables.is_empty() {
@@ -74,7 +77,7 @@ fn overview(answer: &RuleAnswer) -> String {
     rows.extend(answer.cameras.iter().map(|camera| {
         let verdict = match (camera.verdict, &camera.provided) {
             (Verdict::Meets, None) => "yes".to_owned(),
-            (Verdict::Meets, Some(proviso)) => format!("yes, if {proviso}"),
+            (Verdict::Meets, Some(proviso)) => format!("yes, if {}", proviso.say()),
             (Verdict::Undecided, _) => format!("undecided: {}", camera.undecided.join(", ")),
             (Verdict::Fails, _) => format!("no: {}", camera.fails.join(", ")),
         };
@@ -117,6 +120,11 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
     out
 }
 
+/// The line above what is said of a rule that does not hold, if it does not.
+pub(super) fn idle(of: Option<NotInForce>) -> String {
+    of.map_or_else(String::new, |idle| format!("{}\n", idle.say()))
+}
+
 /// All warnings; what is said of several cameras is said once, with their names.
 pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let mut said: Vec<(&Warning, Vec<&str>)> = Vec::new();
@@ -142,7 +150,7 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
 pub(crate) fn meets(camera: &CameraVerdict) -> String {
     let said = match (camera.verdict, &camera.provided) {
         (Verdict::Meets, None) => "yes".into(),
-        (Verdict::Meets, Some(proviso)) => format!("yes, if {proviso}"),
+        (Verdict::Meets, Some(proviso)) => format!("yes, if {}", proviso.say()),
         (Verdict::Undecided, _) => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
         (Verdict::Fails, _) => format!("no: {}", fails_by(camera)),
     };
@@ -215,7 +223,7 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
 
 /// How sure the limiting scene is, and what that is worth where figures are uncertain.
 pub(super) fn certified(camera: &CameraVerdict) -> String {
-    let said = camera.certificate.to_string();
+    let said = camera.certificate.say();
     if camera.uncertainty.is_none() { said } else { said + ", its figures as they are stated" }
 }
 
@@ -270,7 +278,7 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
-    let mut lines = vec![found, part.definition.to_string()];
+    let mut lines = vec![found, part.definition.say()];
     if let Some(near) = &part.neighbourhood {
         lines.push(format!(
             "nine tenths of these scenes are within {} K of equilibrium with the surroundings, unlit share up to {}",
@@ -281,7 +289,7 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let within = part.fraction_within_emissivity_error;
     if within > 0.0 {
         let of = share(within) + &error(part.standard_error_within_emissivity_error);
-        lines.push(format!("in {of} {}", part.emissivity_error));
+        lines.push(format!("in {of} {}", part.emissivity_error.say()));
     }
     lines
 }

@@ -106,7 +106,7 @@ const fn equal(a: &[u8], b: &[u8]) -> bool {
 
 /// What the warnings of a code mean, and what to do about them.
 #[must_use]
-pub fn words(code: Code) -> &'static Words {
+pub fn of_code(code: Code) -> &'static Words {
     BY_CODE[code as usize]
 }
 
@@ -118,7 +118,7 @@ impl Say for Warning {
             }
             Self::OfCameras { who, warning } => format!("{who}: {}", warning.say()),
             // Every warning has a sentence: see `BY_CODE`.
-            warning => (words(warning.code()).sentence)(warning).unwrap_or_default(),
+            warning => (of_code(warning.code()).sentence)(warning).unwrap_or_default(),
         }
     }
 }
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn meanings_and_remedies_are_sentences() {
         for code in Code::ALL {
-            let words = words(*code);
+            let words = of_code(*code);
             assert_eq!(words.code, *code);
             for text in [words.meaning, words.remedy] {
                 assert!(text.ends_with('.') && text.starts_with(char::is_uppercase), "{code:?}: {text}");

@@ -9,7 +9,7 @@
 use super::apart::steps;
 use super::approach::{Approach, Moving, contradiction, spoiled};
 use super::cameras::Named;
-use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
 use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
 use crate::warning::by_code;
@@ -102,27 +102,18 @@ impl DepthClause {
             progress(done + 1);
         }
         let share = self.demand.requirement.share;
-        let (quantity, demanded, error) = match self.demand.requirement.error {
-            Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m, hadar::words::length(error_m)),
-            Demand::Relative(part) => (Measure::RelativeDepthError, part, hadar::words::share(part)),
+        let (quantity, demanded) = match self.demand.requirement.error {
+            Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m),
+            Demand::Relative(part) => (Measure::RelativeDepthError, part),
         };
-        let looks = self.cameras.iter().map(|camera| camera.studies.len()).max().unwrap_or(1);
-        let from = match looks {
-            1 => String::new(),
-            _ => format!(", at {looks} distances from the nearest to the farthest"),
+        let definition = Definition::Depth {
+            object: self.demand.object.name(),
+            error: self.demand.requirement.error,
+            share,
+            distances: self.cameras.iter().map(|camera| camera.studies.len()).max().unwrap_or(1),
+            without_air: self.cameras.iter().any(|camera| camera.air),
+            without_uncertainty: self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()),
         };
-        let mut definition = format!(
-            "least depth error of the {} within {error} in {} of its windows{from}",
-            self.demand.object.name(),
-            hadar::words::share(share)
-        );
-        if self.cameras.iter().any(|camera| camera.air) {
-            definition += " (the air of the rule is not in it: no camera is said to meet it)";
-        }
-        if self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()) {
-            definition +=
-                " (uncertain figures are not carried into it: no camera that has some is said to meet it)";
-        }
         Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
     }
 

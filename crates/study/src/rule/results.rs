@@ -11,9 +11,9 @@ use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use std::collections::BTreeMap;
+use toml::value::Date;
 
-/// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence, and another one where
-/// placeholders decide.
+/// Names of the cameras that meet a rule, and of the others; in JSON a sentence.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WhoMeets {
     /// Those that do, each with what it hangs on.
@@ -27,9 +27,20 @@ pub struct WhoMeets {
     /// Whether it is one clause of several that they meet.
     pub clause: bool,
     /// That the rule does not hold on the day that is asked about.
-    pub idle: Option<Warning>,
+    pub idle: Option<NotInForce>,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
     pub placeholders: Vec<(String, String, [f64; 2])>,
+}
+
+/// A rule on a day on which it does not hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NotInForce {
+    /// The day.
+    pub day: Date,
+    /// The day from which the rule holds, if it begins.
+    pub from: Option<Date>,
+    /// The last day on which it does, if it ends.
+    pub until: Option<Date>,
 }
 
 /// A camera over the pairs of which more than one number is known of one of the two.
@@ -63,7 +74,7 @@ pub struct RuleRequirement {
     pub quotable: Quotable,
 }
 
-/// What can be quoted of a rule. Its `Display` is a sentence or two.
+/// What can be quoted of a rule; in JSON a sentence or two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quotable {
     /// Where it is demanded.
@@ -156,7 +167,7 @@ pub struct CameraVerdict {
     pub warnings: Vec<Warning>,
 }
 
-/// How sure a worst case is. Its `Display` is the statement.
+/// How sure a worst case is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certified {
     /// How it is known.
@@ -285,7 +296,7 @@ pub struct NotIdentifiable {
     pub neighbourhood: Option<Neighbourhood>,
 }
 
-/// The camera that no other surpasses. Its `Display` says that it does not tell the pair.
+/// The camera that no other surpasses; in JSON that it does not tell the pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdealCamera {
     /// f-number.
@@ -322,7 +333,7 @@ pub enum LightTime {
     LongestIntegration,
 }
 
-/// Standard deviation of an emissivity in a band. Its `Display` says that it makes up more than the distance.
+/// Standard deviation of an emissivity in a band; in JSON that it makes up more than the distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EmissivityError(pub f64);
 

@@ -1,11 +1,11 @@
 //! Every warning by a row: what it is of, its data, its code. Its words are a block of `hadar_report::words::warnings`.
 
 use crate::proviso::Proviso;
+use crate::rule::NotInForce;
 use crate::warning::WorstBlackbody;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar_simulate::classifier::Method;
-use toml::value::Date;
 
 /// Makes warnings and codes of one table. A row ends in the name of the code that it brings, or in the warning whose code it shares.
 macro_rules! warnings {
@@ -210,7 +210,7 @@ warnings! {
     /// What a pixel sees by two statements of a camera.
     ContradictoryView { finer_rad: f64, coarser_rad: f64 } = "contradictory-view";
     /// A rule on a day on which it does not hold.
-    NotInForce { day: Date, from: Option<Date>, until: Option<Date> } = "not-in-force";
+    NotInForce(NotInForce) = "not-in-force";
     /// Filters and no temperature of the sensor.
     FilterLightLeftOut = "filter-light";
     /// A temperature of the sensor and no filters.

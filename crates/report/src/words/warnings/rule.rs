@@ -1,20 +1,14 @@
 //! Rules: their days, their envelopes, their cameras.
 
 use super::{short, words};
-use hadar_study::Proviso;
+use crate::words::Say;
+use hadar_study::{NotInForce, Proviso};
 
 words! {
     NotInForce {
         meaning: "The rule does not hold on the day that was asked about: nothing is demanded.",
         remedy: "Nothing; or ask about another day with --on.",
-        NotInForce { day, from, until } => {
-            let but = match (from, until) {
-                (Some(from), _) if day < from => format!(", it holds from {from}"),
-                (_, Some(until)) => format!(", it held until {until}"),
-                _ => String::new(),
-            };
-            format!("the rule does not hold on {day}{but}")
-        },
+        NotInForce(idle) => idle.say(),
     }
     EmissivityErrorsLeftOut {
         meaning: "The rule has errors of emissivities, and this answer takes all spectra to be exact.",
@@ -52,5 +46,17 @@ words! {
             "camera.{figure} is set, and camera.{condition} is not stated: the noise is taken to hold for what is set, as in a file \
              that says so, and another {figure} is another noise"
         ),
+    }
+}
+
+impl Say for NotInForce {
+    fn say(&self) -> String {
+        let Self { day, from, until } = self;
+        let but = match (from, until) {
+            (Some(from), _) if day < from => format!(", it holds from {from}"),
+            (_, Some(until)) => format!(", it held until {until}"),
+            _ => String::new(),
+        };
+        format!("the rule does not hold on {day}{but}")
     }
 }
