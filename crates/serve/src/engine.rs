@@ -13,6 +13,7 @@ use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
+use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
@@ -181,7 +182,7 @@ impl Engine {
         Ok(Answer {
             met,
             provided: result.verdict.provided.is_some(),
-            sentence: result.verdict.sentence.to_string(),
+            sentence: result.verdict.sentence.say(),
             numbers: rows::of_camera(&result, &study),
             solved: rows::solved(&result, study.units()),
             pairs: result.pairs.iter().map(pair_shown).collect(),
