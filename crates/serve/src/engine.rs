@@ -183,7 +183,7 @@ impl Engine {
         Ok(Answer {
             met,
             provided: result.verdict.provided.is_some(),
-            sentence: result.verdict.sentence.to_string(),
+            sentence: result.verdict.sentence.say(),
             numbers: rows::of_camera(&result, &study),
             solved: rows::solved(&result, study.units()),
             pairs: result.pairs.iter().map(pair_shown).collect(),

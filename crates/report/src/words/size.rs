@@ -177,3 +177,79 @@ fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
         [most @ .., last] => (format!("{} and {last}", most.join(", ")), "are"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hadar_study::{Proviso, Shortfall};
+
+    fn finding(answer: Answer) -> Finding {
+        Finding {
+            camera: "ours".into(),
+            target: "skin".into(),
+            alternative: Some("aluminium".into()),
+            required: 1.0,
+            by: DistanceKind::Nearest,
+            answer,
+            placeholders: None,
+            classes: None,
+            provided: None,
+        }
+    }
+
+    fn judged(enough: bool, spoiled: Vec<Shortfall>) -> Finding {
+        finding(Answer::Judged { enough, spoiled, reached: Some(2.0), limit: Some(2.0) })
+    }
+
+    #[test]
+    fn a_yes_says_what_it_is_subject_to() {
+        let yes = judged(true, Vec::new());
+        assert_eq!(
+            yes.say(),
+            "Yes: ours can tell skin from aluminium with 84.1 % reliability; it reaches 97.7 % at most."
+        );
+        let provided = Some(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 });
+        let said = Finding { provided, placeholders: Some([0.95, 0.9]), ..yes }.say();
+        assert!(
+            said.starts_with("Yes, if its 4 frames can be registered (62 ms, a way of 0.83 m): "),
+            "{said}"
+        );
+        let end = "Both are entered as one number (0.95 and 0.9): that says nothing of real surfaces.";
+        assert!(said.ends_with(end), "{said}");
+    }
+
+    /// No shortfall is called by another's name.
+    #[test]
+    fn a_no_names_what_spoils_the_image() {
+        use Shortfall as S;
+        let all = [
+            (S::Distance, "distance is below"),
+            (S::Pixels, "too few pixels"),
+            (S::TemperatureError, "temperature is not known"),
+            (S::DepthError, "distance is not known"),
+            (S::DecisionTime, "read later"),
+            (S::MotionBlur, "moves by a pixel or more"),
+            (S::MotionUnknown, "not known without target.distance"),
+            (S::FullWell, "full well"),
+            (S::FrameRate, "longer than a frame"),
+            (S::Diffraction, "the lens blurs"),
+            (S::Impractical, "no camera is built"),
+            (S::LowestNoise, "read noise"),
+        ];
+        for (by, part) in all {
+            let said = judged(true, vec![by]).say();
+            let start = "No: ours could tell skin from aluminium with 84.1 % reliability, but ";
+            assert!(said.starts_with(start) && said.contains(part), "{said}");
+            assert_eq!(all.iter().filter(|(_, part)| said.contains(part)).count(), 1, "{said}");
+        }
+    }
+
+    #[test]
+    fn one_band_is_not_enough_while_something_is_unknown() {
+        let unknowns = vec![Nuisance::Temperature, Nuisance::Lighting];
+        let said = finding(Answer::TooFewBands { bands: 1, unknowns }).say();
+        let start =
+            "No: one band cannot tell materials while temperature and lighting are unknown: ours cannot";
+        assert!(said.starts_with(start), "{said}");
+    }
+}
