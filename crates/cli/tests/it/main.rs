@@ -33,6 +33,7 @@ mod nearest;
 mod own_cameras;
 mod packs;
 mod range;
+mod remarks;
 mod render;
 mod reproduce;
 mod robust;
