@@ -14,6 +14,7 @@ pub mod companion;
 pub mod cube_format;
 pub mod decompose;
 pub mod diff;
+pub mod explain;
 pub mod figures;
 pub mod folder;
 mod html;

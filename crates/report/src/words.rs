@@ -10,8 +10,8 @@ mod range;
 pub(crate) mod rule;
 pub(crate) mod shortfall;
 pub mod size;
+pub mod warnings;
 
-use hadar_study::Warning;
 use hadar_study::spoken::Phrase;
 
 /// What is said in a sentence.
@@ -37,11 +37,5 @@ pub fn voice(phrase: Phrase<'_>) -> String {
         Phrase::Unknown(it) => it.say(),
         Phrase::WhoMeets(it) => it.say(),
         Phrase::Warning(it) => it.say(),
-    }
-}
-
-impl Say for Warning {
-    fn say(&self) -> String {
-        self.to_string()
     }
 }

@@ -15,6 +15,7 @@ use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
 use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
+use hadar_report::words::warnings::of_code;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
 use hadar_study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
@@ -266,7 +267,7 @@ fn pair_shown(pair: &PairResult) -> Pair {
 
 fn said(warning: &Warning) -> Said {
     let code = warning.code();
-    Said { code: code.name(), message: warning.to_string(), remedy: code.remedy() }
+    Said { code: code.name(), message: warning.say(), remedy: of_code(code).remedy }
 }
 
 /// An error with its place apart.

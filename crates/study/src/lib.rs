@@ -2,8 +2,8 @@
 //!
 //! [`Study`] is a scenario with its materials, bands, surroundings and camera looked up. [`Study::identify`] gives the distances to every
 //! alternative, [`Study::size`] the verdict on the camera and what each hardware quantity would have to be; a folder a command. [`sweep`] asks one question
-//! about many scenes or cameras, [`explain`] says what a key, a warning and a part of an answer mean. Results are plain data that serialise to the
-//! JSON of the command line; text, tables and plots only render them.
+//! about many scenes or cameras. Results are plain data that serialise to the JSON of the command line, whose sentences are those of the one
+//! who writes it ([`spoken`]); text, tables and plots only render them.
 //!
 //! ```
 //! use hadar::material::Library;
@@ -29,7 +29,6 @@ mod cube_noise;
 mod cube_unit;
 pub mod decompose;
 mod distances;
-pub mod explain;
 mod heat_cube;
 mod identify;
 pub mod library;
@@ -70,8 +69,8 @@ pub use rule::{
     ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer,
     Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime,
     LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
-    Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
-    StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
+    Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    RuleStudy, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
     WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;

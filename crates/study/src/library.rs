@@ -109,7 +109,7 @@ impl LibraryStudy {
             warnings.push(Warning::ClustersNotSettled { rounds: found.rounds });
         }
         let bands = measured.bands.len().saturating_sub(measured.bad_bands.len());
-        let misfits: Vec<(String, f64)> = found
+        let misfits: Vec<usize> = found
             .clusters
             .iter()
             .enumerate()
@@ -118,12 +118,13 @@ impl LibraryStudy {
                 let scatter = (2.0 / (one.fitted * bands).max(1) as f64).sqrt();
                 one.chi_square_reduced > 1.0 + MISFIT.max(6.0 * scatter)
             })
-            .map(|(i, one)| (results::name(i), one.chi_square_reduced))
+            .map(|(i, _)| i)
             .collect();
         if !misfits.is_empty() {
+            let chi_squares = misfits.iter().map(|i| found.clusters[*i].chi_square_reduced);
             warnings.push(Warning::ClusterDoesNotFit {
-                chi_square: misfits.iter().map(|one| one.1).fold(0.0, f64::max),
-                clusters: misfits.into_iter().map(|one| one.0).collect(),
+                chi_square: chi_squares.fold(0.0, f64::max),
+                clusters: misfits.iter().map(|i| results::name(*i)).collect(),
             });
         }
         if measured.lights.len() > 1 && scenario.unknown.lighting_total.is_none() {
@@ -146,6 +147,6 @@ impl LibraryStudy {
             });
         }
         let seconds = start.elapsed().as_secs_f64();
-        Ok(results::summary(scenario, measured, found, truth, seconds, warnings))
+        Ok(results::summary(scenario, measured, found, truth, seconds, (misfits, warnings)))
     }
 }

@@ -3,6 +3,7 @@
 mod bounds;
 mod distribution;
 mod looked_up;
+mod overfull;
 mod resolve;
 mod results;
 mod signals;
@@ -14,6 +15,7 @@ mod watched;
 mod witness;
 
 pub use looked_up::RangeStudy;
+pub(crate) use overfull::Overfull;
 pub use results::{
     BoundMaps, CellMedians, DepthFinding, DepthSolutions, DepthVerdict, Geometry, Line, Matched,
     ObjectBounds, PictureKind, Ranging, Signal, SignalBounds,

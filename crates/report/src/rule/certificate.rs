@@ -65,7 +65,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     if !warned.is_empty() {
         out.push_str("## Warnings\n\n");
         warned.iter().for_each(|warning| {
-            let _ = writeln!(out, "- [{}] {warning}", warning.code().name());
+            let _ = writeln!(out, "- [{}] {}", warning.code().name(), warning.say());
         });
         out.push('\n');
     }

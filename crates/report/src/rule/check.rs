@@ -1,7 +1,7 @@
 //! `--check`: a line a camera, what is known of it and how.
 
 use super::measured::{guarded, measure, measured_scene, undecided};
-use super::text::{fails_by, without_placeholders};
+use super::text::{fails_by, idle, without_placeholders};
 use crate::text::significant;
 use crate::words::Say;
 use crate::words::shortfall::in_words;
@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 /// A line for every camera; of a rule with clauses, a line for each of them below it.
 #[must_use]
 pub fn check(answer: &RuleAnswer) -> String {
-    let idle = answer.sentence.idle.as_ref().map_or_else(String::new, |warning| format!("{warning}\n"));
+    let idle = idle(answer.sentence.idle);
     if let Some(only) = answer.only() {
         let required = only.requirement.distance;
         let lines =

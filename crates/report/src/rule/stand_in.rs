@@ -1,5 +1,6 @@
 //! The thermal stand-in as text, table and picture: how exact it must be so that no camera of the rule tells it from a person.
 
+use super::text::idle;
 use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, LineFigure, Series};
@@ -16,8 +17,7 @@ use std::fmt::Write as _;
 #[must_use]
 pub fn stand_in(answer: &StandInAnswer) -> String {
     let units = answer.units;
-    let idle = answer.warnings.iter().filter(|warning| warning.code() == Code::NotInForce);
-    let mut out: String = idle.map(|warning| format!("{warning}\n")).collect();
+    let mut out = idle(answer.idle);
     out.push_str(&sentence(answer));
     let _ = write!(
         out,

@@ -11,14 +11,15 @@ use crate::words::Say;
 use crate::words::probability::{demanded, reliability};
 use crate::words::rule::in_words_of_kind;
 use crate::words::shortfall::in_words;
+use crate::words::warnings::say_the_same;
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{
-    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy,
-    Shortfall, Warning,
+    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce, RuleAnswer,
+    RuleStudy, Shortfall, Warning,
 };
 use std::fmt::Write as _;
 
@@ -119,13 +120,18 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
     out
 }
 
+/// The line above what is said of a rule that does not hold, if it does not.
+pub(super) fn idle(of: Option<NotInForce>) -> String {
+    of.map_or_else(String::new, |idle| format!("{}\n", idle.say()))
+}
+
 /// All warnings; what is said of several cameras is said once, with their names.
 pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let mut said: Vec<(&Warning, Vec<&str>)> = Vec::new();
     let lines: Vec<_> = answer.clauses.iter().flat_map(|clause| clause.lines()).collect();
     for camera in &lines {
         for warning in camera.warnings {
-            match said.iter_mut().find(|(known, _)| known.says_as(warning)) {
+            match said.iter_mut().find(|(known, _)| say_the_same(known, warning)) {
                 Some((_, names)) if names.contains(&camera.camera) => {}
                 Some((_, names)) => names.push(camera.camera),
                 None => said.push((warning, vec![camera.camera])),

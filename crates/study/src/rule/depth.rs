@@ -11,7 +11,8 @@ use super::approach::{Approach, Moving, contradiction, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
-use crate::range::{RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::warning::by_code;
 use crate::{Shortfall, Warning};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
@@ -47,6 +48,7 @@ struct Seen {
     margin: f64,
     /// Median of the object's windows, m; as asked for where none shows it.
     distance_m: f64,
+    overfull: Option<Overfull>,
     warnings: Vec<Warning>,
 }
 
@@ -137,19 +139,25 @@ impl DepthClause {
             Demand::Relative(_) => 1,
         };
         let margin = reach.map_or(0.0, |reach| reach.powi(power));
-        Ok(Seen { met, margin, distance_m: depth_m.unwrap_or(distance_m), warnings: found.warnings })
+        let overfull = study.overfull(&found);
+        Ok(Seen {
+            met,
+            margin,
+            distance_m: depth_m.unwrap_or(distance_m),
+            overfull,
+            warnings: found.warnings,
+        })
     }
 
     fn judged(&self, before: &Before) -> Result<MeasuredVerdict> {
         let seen = before.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
         let mut seen = seen.collect::<Result<Vec<_>>>()?;
         seen.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
-        let mut warnings: Vec<Warning> = Vec::new();
-        for warning in seen.iter().flat_map(|seen| &seen.warnings) {
-            if !warnings.iter().any(|known| known.code() == warning.code()) {
-                warnings.push(warning.clone());
-            }
-        }
+        let overfull = seen.iter().any(|seen| seen.overfull.is_some());
+        // The same is said from every distance.
+        let said = by_code(seen.iter().flat_map(|seen| &seen.warnings)).into_iter();
+        let mut warnings: Vec<Warning> =
+            said.filter_map(|(_, of_code)| of_code.first().copied().cloned()).collect();
         warnings.extend(contradiction(&before.named.camera));
         let worst = seen
             .into_iter()
@@ -165,7 +173,7 @@ impl DepthClause {
             fails_by.push(Shortfall::DepthError);
         }
         fails_by.extend(before.spoiled.iter().copied());
-        if warnings.iter().any(|warning| matches!(warning, Warning::PixelFull { .. })) {
+        if overfull {
             fails_by.push(Shortfall::FullWell);
         }
         // The street has no air, and is rendered for each camera as it is stated: who passes without either may not with them.

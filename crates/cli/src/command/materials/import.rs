@@ -11,6 +11,7 @@ use hadar::material::{Material, Summary, read};
 use hadar_report::bundle::Bundle;
 use hadar_report::json;
 use hadar_report::text::significant;
+use hadar_report::words::Say;
 use hadar_study::Warning;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -73,7 +74,7 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
         .map(|error| Warning::Library { remark: format!("passed over: {error}") })
         .collect();
     for warning in &warnings {
-        let _ = writeln!(out, "{warning}");
+        let _ = writeln!(out, "{}", warning.say());
     }
     let mut work = Work::default();
     work.compute(Thing::LibrarySpectra, summaries.len() as u64);
