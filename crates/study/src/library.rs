@@ -10,7 +10,7 @@ use super::heat_cube::{Measured, Said};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_estimate::decompose::{NO_MATERIAL, Setting};
-use hadar_estimate::separation::{Asked, library_from_cube};
+use hadar_estimate::separation::{Asked, COUNT, library_from_cube};
 use hadar_scenario::LibraryScenario;
 
 /// Share of χ²/ν above 1 up to which a cluster counts as one material.
@@ -89,8 +89,8 @@ impl LibraryStudy {
         let found = found.map_err(|error| match &error {
             Error::At { place, .. } if place.path.is_some() => error,
             // What is asked for is wrong, or what the cube holds.
-            _ if error.to_string().contains("clusters of") => {
-                error.at(scenario.source.place("clusters.count"))
+            Error::At { place, source } if place.key.as_deref() == Some(COUNT) => {
+                source.as_ref().clone().at(scenario.source.place(COUNT))
             }
             _ => error.in_file(&scenario.cube.data),
         })?;

@@ -16,6 +16,9 @@ pub struct Proviso {
 }
 
 impl Proviso {
+    /// Stable code of what must hold.
+    pub const CODE: &'static str = "registered-frames";
+
     /// Of a camera that reads so many bands at a speed; `None` where one frame is all it takes.
     pub(crate) fn of(camera: &Camera, bands: usize, speed_m_s: f64) -> Option<Self> {
         let time_s = camera.acquisition_s(bands);

@@ -105,11 +105,20 @@ sentences!(
     EmissivityError,
     Finding,
     IdealCamera,
-    Proviso,
     Quotable,
     Unknown,
     WhoMeets,
 );
+
+/// Never null: that would be a 'yes' that is subject to nothing.
+impl Serialize for Proviso {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match VOICE.get() {
+            Some(_) => serialize(Phrase::Proviso(self), serializer),
+            None => serializer.serialize_str(Self::CODE),
+        }
+    }
+}
 
 impl Serialize for Certified {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -21,6 +21,7 @@ mod diff;
 mod explain;
 mod extremes;
 mod fuzz;
+mod house;
 mod identify;
 mod identify_libraries;
 mod identify_mistakes;
