@@ -119,6 +119,19 @@ fn nothing_reads_remarks_back() {
     assert!(wrong.is_empty(), "compute the fact as data, and make the remark of it:\n{}", wrong.join("\n"));
 }
 
+/// Whatever serialises an answer by itself loses its sentences.
+#[test]
+fn the_json_of_answers_is_written_in_one_place() {
+    let root = hadar_testing::repository();
+    let mut all = Vec::new();
+    FOLDERS.iter().for_each(|folder| sources(&root.join(folder), &mut all));
+    let writes = |path: &PathBuf| code(&fs::read_to_string(path).unwrap()).contains("serde_json::to_");
+    let found: Vec<_> =
+        all.iter().filter(|path| writes(path)).map(|path| path.strip_prefix(&root).unwrap()).collect();
+    let expected = ["crates/report/src/json.rs", "crates/study/src/sweep/question.rs"].map(Path::new);
+    assert!(found.len() == 2 && expected.iter().all(|one| found.contains(one)), "{found:?}");
+}
+
 #[test]
 fn what_reads_a_remark_is_seen() {
     for read in [
