@@ -166,6 +166,11 @@ mod tests {
             "{\"code\":\"nearest-at-edge\",\"message\":\"skin against pmma: the nearest state stands at the edge of its range \
              (temperature, lighting of environment[1]); the range decides the answer\"}"
         );
+        let digits = |relative_error| Warning::FewDigits { distance: "local distance", relative_error }.say();
+        assert!(digits(2e-2).ends_with("known to a share of 2e-2"), "{}", digits(2e-2));
+        for error in [1e300, f64::NAN] {
+            assert!(digits(error).ends_with("it may have any value"), "{}", digits(error));
+        }
         // Digits that are not shown make no second warning.
         let moving = |time_s| Warning::FramesInMotion(Proviso { frames: 60, time_s, way_m: 1.7 });
         assert!(say_the_same(&moving(1.0), &moving(1.0 + 1e-9)));
