@@ -1,6 +1,8 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
 
 pub mod allowed;
+pub(crate) mod best_first;
+pub(crate) mod box_least_squares;
 pub mod correlation;
 pub mod cube;
 pub mod demand;

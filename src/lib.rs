@@ -97,11 +97,11 @@ mod limits;
 mod physics;
 
 pub use base::error::{Error, Result};
-pub(crate) use base::wide;
 pub use base::{
     allowed, correlation, cube, demand, envi_header, error, file, grid, inputs, lattice_points, minimum,
     random, root, simd, spectral_unit, statistics, sum, units, words,
 };
+pub(crate) use base::{best_first, box_least_squares, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 

@@ -32,6 +32,7 @@ use crate::spectrum::Bands;
 
 /// One line of the noise budget of a band.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct NoiseLine {
     /// What it is.
     pub label: &'static str,
@@ -45,6 +46,7 @@ pub struct NoiseLine {
 
 /// A line with its variance in every band.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BandLine {
     /// What it is.
     pub label: &'static str,

@@ -21,6 +21,7 @@ pub const SCENE_K: f64 = 300.0;
 
 /// Two cameras in the range that both see; every ratio is of B over A.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Comparison {
     /// Temperature of the scene, K.
     pub temperature_k: f64,
@@ -46,6 +47,7 @@ pub struct Comparison {
 
 /// A camera before a grey scene, in one acquisition of all bands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct InScene {
     /// Number of bands.
     pub bands: usize,

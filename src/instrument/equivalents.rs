@@ -29,6 +29,7 @@ const BAND_CM1: f64 = 1.0;
 
 /// One noise in every way of stating it. What depends on a wavenumber is for the middle of the range.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Equivalents {
     /// Exposure for which all of this holds, s.
     pub exposure_s: f64,

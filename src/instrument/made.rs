@@ -21,15 +21,18 @@ impl Preset {
     /// # Errors
     /// All figures that are missing and nothing can stand for.
     pub fn camera(&self) -> Result<Camera, Missing> {
+        let mut assumed = Vec::new();
+        let Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency } =
+            self.required(&mut assumed)?;
         let CameraSpec {
             preset: _,
             own: _,
-            exposure_s,
+            exposure_s: _,
             frame_rate_hz,
-            pixel_m,
-            f_number,
-            focal_length_m,
-            optics_efficiency,
+            pixel_m: _,
+            f_number: _,
+            focal_length_m: _,
+            optics_efficiency: _,
             quantum_efficiency,
             noise,
             noise_exposure_s,
@@ -50,78 +53,9 @@ impl Preset {
             reference_temperature_k,
             spectral_range_cm1,
         } = self.figures.clone();
-        let mut assumed = Vec::new();
-        let mut missing = Missing::default();
-        // What is missing is asked for with all else that is, before anything is made of it.
-        let mut ask = |key| {
-            missing.0.push(key);
-            f64::NAN
-        };
-        let exposure_s = match (exposure_s, frame_rate_hz) {
-            (Some(exposure), _) => exposure,
-            (None, Some(rate)) => {
-                assumed.push(format!("exposure: not stated; the frame of {:.4} ms is taken", 1e3 / rate));
-                1.0 / rate
-            }
-            (None, None) => ask("exposure"),
-        };
-        let pixel_m = pixel_m.unwrap_or_else(|| ask("pixel"));
-        let f_number = f_number.unwrap_or_else(|| ask("f_number"));
-        let focal_length_m = focal_length_m.unwrap_or_else(|| ask("focal_length"));
-        if self.noise_table.is_none() && noise.stated().is_none() {
-            ask("netd");
-        }
-        if !missing.0.is_empty() {
-            return Err(missing);
-        }
-        // What depends on wavenumber is in the curves.
-        let number = |efficiency: Efficiency| efficiency.number().unwrap_or(1.0);
-        let stated = noise.stated();
-        let optics_efficiency = optics_efficiency.map(number).unwrap_or_else(|| {
-            let why = match stated {
-                Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
-                    "1 is taken, the noise being stated through the same optics"
-                }
-                _ => "1 is taken",
-            };
-            assumed.push(format!("optics_efficiency: not stated; {why}"));
-            1.0
-        });
-        let noise = match (&self.noise_table, stated) {
-            (Some(table), _) => table.clone(),
-            (None, None | Some(StatedNoise::None)) => NoiseSpec::None,
-            (
-                None,
-                Some(StatedNoise::Netd {
-                    netd_k,
-                    temperature_k,
-                    f_number: at,
-                    optics_efficiency: eta,
-                    pixel_m: of,
-                }),
-            ) => {
-                if temperature_k.is_none() {
-                    assumed.push(format!("netd_temperature: not stated; {REFERENCE_K} K is taken"));
-                }
-                if at.is_none() {
-                    assumed.push(format!("netd_f_number: not stated; f/{f_number} is taken"));
-                }
-                NoiseSpec::Netd {
-                    netd_k,
-                    temperature_k: temperature_k.unwrap_or(REFERENCE_K),
-                    f_number: at.unwrap_or(f_number),
-                    optics_efficiency: eta.unwrap_or(optics_efficiency),
-                    pixel_m: of.unwrap_or(pixel_m),
-                }
-            }
-            (None, Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz })) => {
-                NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
-            }
-            (None, Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz })) => {
-                NoiseSpec::Nep { nep_w_hz05, bandwidth_hz }
-            }
-            (None, Some(StatedNoise::Nesr { microflick, .. })) => NoiseSpec::SpectralRadiance { microflick },
-            (None, Some(StatedNoise::Counts { sigma_counts })) => NoiseSpec::Counts { sigma_counts },
+        let noise = match &self.noise_table {
+            Some(table) => table.clone(),
+            None => noise_of(noise.stated(), [f_number, optics_efficiency, pixel_m], &mut assumed),
         };
         let spectral_range_cm1 = spectral_range_cm1.unwrap_or_else(|| {
             let [low, high] = PAPER_RANGE_CM1;
@@ -156,7 +90,7 @@ impl Preset {
             f_number,
             focal_length_m,
             optics_efficiency,
-            quantum_efficiency: quantum_efficiency.map_or(1.0, number),
+            quantum_efficiency: quantum_efficiency.as_ref().map_or(1.0, number),
             efficiency_curves: self.efficiency_curves.clone(),
             noise,
             noise_exposure_s: noise_exposure_s.unwrap_or(exposure_s),
@@ -177,6 +111,98 @@ impl Preset {
             reference_temperature_k: reference_temperature_k.unwrap_or(REFERENCE_K),
             spectral_range_cm1,
         })
+    }
+
+    /// The figures without which there is no camera: the frame is taken for an exposure that is not stated, 1 for an efficiency of the optics.
+    fn required(&self, assumed: &mut Vec<String>) -> Result<Required, Missing> {
+        let CameraSpec { exposure_s, frame_rate_hz, pixel_m, f_number, focal_length_m, .. } = self.figures;
+        let stated = self.figures.noise.stated();
+        let mut missing = Missing::default();
+        // What is missing is asked for with all else that is, before anything is made of it.
+        let mut ask = |key| {
+            missing.0.push(key);
+            f64::NAN
+        };
+        let exposure_s = match (exposure_s, frame_rate_hz) {
+            (Some(exposure), _) => exposure,
+            (None, Some(rate)) => {
+                assumed.push(format!("exposure: not stated; the frame of {:.4} ms is taken", 1e3 / rate));
+                1.0 / rate
+            }
+            (None, None) => ask("exposure"),
+        };
+        let pixel_m = pixel_m.unwrap_or_else(|| ask("pixel"));
+        let f_number = f_number.unwrap_or_else(|| ask("f_number"));
+        let focal_length_m = focal_length_m.unwrap_or_else(|| ask("focal_length"));
+        if self.noise_table.is_none() && stated.is_none() {
+            ask("netd");
+        }
+        if !missing.0.is_empty() {
+            return Err(missing);
+        }
+        let optics_efficiency = self.figures.optics_efficiency.as_ref().map(number).unwrap_or_else(|| {
+            let why = match stated {
+                Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
+                    "1 is taken, the noise being stated through the same optics"
+                }
+                _ => "1 is taken",
+            };
+            assumed.push(format!("optics_efficiency: not stated; {why}"));
+            1.0
+        });
+        Ok(Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency })
+    }
+}
+
+/// What every camera has.
+struct Required {
+    exposure_s: f64,
+    pixel_m: f64,
+    f_number: f64,
+    focal_length_m: f64,
+    optics_efficiency: f64,
+}
+
+/// An efficiency that is one number; what depends on wavenumber is in the curves.
+fn number(efficiency: &Efficiency) -> f64 {
+    efficiency.number().unwrap_or(1.0)
+}
+
+/// The noise that is stated; an NETD without its conditions is one of this camera.
+fn noise_of(
+    stated: Option<StatedNoise>,
+    [f_number, optics_efficiency, pixel_m]: [f64; 3],
+    assumed: &mut Vec<String>,
+) -> NoiseSpec {
+    match stated {
+        None | Some(StatedNoise::None) => NoiseSpec::None,
+        Some(StatedNoise::Netd {
+            netd_k,
+            temperature_k,
+            f_number: at,
+            optics_efficiency: eta,
+            pixel_m: of,
+        }) => {
+            if temperature_k.is_none() {
+                assumed.push(format!("netd_temperature: not stated; {REFERENCE_K} K is taken"));
+            }
+            if at.is_none() {
+                assumed.push(format!("netd_f_number: not stated; f/{f_number} is taken"));
+            }
+            NoiseSpec::Netd {
+                netd_k,
+                temperature_k: temperature_k.unwrap_or(REFERENCE_K),
+                f_number: at.unwrap_or(f_number),
+                optics_efficiency: eta.unwrap_or(optics_efficiency),
+                pixel_m: of.unwrap_or(pixel_m),
+            }
+        }
+        Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }) => {
+            NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
+        }
+        Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => NoiseSpec::Nep { nep_w_hz05, bandwidth_hz },
+        Some(StatedNoise::Nesr { microflick, .. }) => NoiseSpec::SpectralRadiance { microflick },
+        Some(StatedNoise::Counts { sigma_counts }) => NoiseSpec::Counts { sigma_counts },
     }
 }
 

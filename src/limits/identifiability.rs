@@ -27,7 +27,6 @@ pub mod nearest;
 pub mod ratio;
 pub mod selection;
 mod space;
-mod step;
 
 /// What kind of answer a distance is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

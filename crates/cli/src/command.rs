@@ -3,24 +3,23 @@
 //! Exit codes: 0 done; 1 the input is wrong (one message on stderr); 2 usage; 3 requirement not met with
 //! `--check`. With `--json` stdout is one object and nothing else.
 
-mod accuracy;
 mod calibrate;
 mod cameras;
 mod cube_format;
 mod decompose;
 mod diff;
+pub mod evidence;
 mod explain;
 mod flags;
-mod global;
+pub(crate) mod global;
 mod identify;
 mod init;
 mod library;
 mod materials;
-mod progress;
+pub(crate) mod progress;
 mod provenance;
 mod range;
 mod render;
-mod reproduce;
 mod rule;
 mod serve;
 mod several;
@@ -35,7 +34,7 @@ mod threads;
 use self::global::Global;
 use self::stderr::say;
 use self::terminal::Stream;
-use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
 use std::io::ErrorKind;
@@ -75,10 +74,8 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     /// Many scenes or cameras: a file's keys varied, a row of a table for each, resumed where it was left
     Sweep(sweep::SweepArgs),
-    /// The paper's figures and tables made again, with a ledger of what agrees
-    Reproduce(reproduce::ReproduceArgs),
-    /// Run time against error: every method of a computation over its effort, beside extended precision
-    Accuracy(accuracy::AccuracyArgs),
+    #[command(flatten)]
+    Evidence(evidence::Question),
     /// The materials: list, show, plot, import
     Materials(materials::MaterialsArgs),
     /// The known cameras: list, show, compare
@@ -102,13 +99,21 @@ enum Command {
 
 /// Runs the command line of this process.
 #[must_use]
-pub(crate) fn main() -> ExitCode {
+pub fn main() -> ExitCode {
+    answered(parsed_by::<Cli>(&line()), |cli, global| run(&cli.command, global))
+}
+
+/// What a process ends with: its answer's exit code, or 1 or 2 behind a message of what is wrong.
+fn answered<C>(
+    parsed: std::result::Result<(C, Global), clap::Error>,
+    run: impl FnOnce(&C, &Global) -> Result<ExitCode>,
+) -> ExitCode {
     let failed = |error: Error| {
         say(&Stream::Err.message("error:", &error.to_string()));
         ExitCode::from(1)
     };
-    match parsed() {
-        Ok((command, global)) => run(&command, &global).unwrap_or_else(failed),
+    match parsed {
+        Ok((cli, global)) => run(&cli, &global).unwrap_or_else(failed),
         // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
         Err(usage) => match usage.print() {
             Err(error) if !usage.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
@@ -124,30 +129,38 @@ fn line() -> clap::Command {
     flags::added(Cli::command())
 }
 
-fn parsed() -> std::result::Result<(Command, Global), clap::Error> {
-    let (line, words) = (line(), std::env::args_os().collect::<Vec<_>>());
+/// The words of this process, read by a command line.
+fn parsed_by<C: FromArgMatches>(line: &clap::Command) -> std::result::Result<(C, Global), clap::Error> {
+    let words = std::env::args_os().collect::<Vec<_>>();
     let found = line.clone().try_get_matches_from(&words).map_err(|error| {
         let words: Vec<String> =
             words.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-        flags::explained(&line, error, &words)
+        flags::explained(line, error, &words)
     })?;
-    let global = flags::given(&line, &found)?;
-    Ok((Cli::from_arg_matches(&found)?.command, global))
+    let global = flags::given(line, &found)?;
+    Ok((C::from_arg_matches(&found)?, global))
 }
 
-fn run(command: &Command, global: &Global) -> Result<ExitCode> {
+/// Starts the threads and the list of what is read; with `checks_out` refuses a folder that a report may not be written to.
+fn prepared(global: &Global, checks_out: bool) -> Result<Noting> {
     if let Some(threads) = global.threads.filter(|threads| *threads > threads::MOST) {
         let expected = format!("at most {}, or 0 for all cores", threads::MOST);
         return Err(Error::out_of_range("--threads", threads as f64, "", expected));
     }
     threads::start(global.threads, global.quiet);
-    let _noting = Noting::open();
-    // Figures of the paper have a folder each, which their command looks at.
-    if let Some(out) = &global.out
-        && !matches!(command, Command::Reproduce(_))
-    {
+    let noting = Noting::open();
+    if let Some(out) = global.out.as_ref().filter(|_| checks_out) {
         global.folder(out).check()?;
     }
+    Ok(noting)
+}
+
+fn run(command: &Command, global: &Global) -> Result<ExitCode> {
+    let _noting = match command {
+        // The program that answers does so itself.
+        Command::Evidence(_) => None,
+        _ => Some(prepared(global, true)?),
+    };
     match command {
         Command::Size(args) => size::run(args, global),
         Command::Identify(args) => identify::run(args, global),
@@ -159,8 +172,7 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Render(args) => render::run(args, global),
         Command::Simulate(args) => simulate::run(args, global),
         Command::Sweep(args) => sweep::run(args, global),
-        Command::Reproduce(args) => reproduce::run(args, global),
-        Command::Accuracy(args) => accuracy::run(args, global),
+        Command::Evidence(question) => evidence::hand_over(question),
         Command::Materials(args) => materials::run(args, global),
         Command::Cameras(args) => cameras::run(args, global),
         Command::Diff(args) => Ok(diff::run(args, global)),

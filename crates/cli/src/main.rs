@@ -1,10 +1,7 @@
-//! The `hadar` command: parse, run, print.
+//! The program `hadar`.
 
 use std::process::ExitCode;
 
-mod command;
-mod reproduce;
-
 fn main() -> ExitCode {
-    command::main()
+    hadar_cli::main()
 }

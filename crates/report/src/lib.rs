@@ -4,7 +4,6 @@
 //! say what several commands say, [`bundle`] gathers files and makes one page of them, [`folder`] puts them in place, all or none,
 //! with a [`manifest`] of whose they are.
 
-pub mod accuracy;
 pub mod air_ranging;
 pub mod bundle;
 pub mod calibrate;

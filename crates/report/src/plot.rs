@@ -63,7 +63,8 @@ pub fn categorical(index: usize) -> Rgb {
 }
 
 /// A number as it is written in pictures: three digits, powers of ten with superscripts.
-pub(crate) fn number(value: f64) -> String {
+#[must_use]
+pub fn number(value: f64) -> String {
     ticks::label(value)
 }
 

@@ -47,6 +47,7 @@ const AT_EDGE: f64 = 1e-6;
 
 /// One fit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AirFit {
     /// Distance, m.
     pub distance_m: f64,

@@ -89,6 +89,7 @@ pub struct DecisionScene<'a> {
 
 /// How often the decision is right when one material in one state is true.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Detection {
     /// Share of right decisions; ties are split.
     pub probability: f64,

@@ -80,6 +80,7 @@ impl Errors {
 
 /// One parameter beside its bound.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ParameterEfficiency {
     /// Bias and errors.
     pub errors: Errors,
@@ -97,6 +98,7 @@ pub struct ParameterEfficiency {
 
 /// All parameters beside the bound of their covariance.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct JointEfficiency {
     /// tr(C⁻¹Ĉ)/p.
     pub ratio: f64,

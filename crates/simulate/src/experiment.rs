@@ -46,6 +46,7 @@ pub struct Design {
 
 /// How often one classifier was right on the test spectra.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Performance {
     /// Which.
     pub method: Method,

@@ -165,6 +165,7 @@ impl Parts {
 
 /// Spectra for training, for validation and for the test.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Split {
     /// See [`Parts`].
     pub training: LabelledSpectra,

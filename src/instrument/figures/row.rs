@@ -15,6 +15,7 @@ pub const BLANK: &str = "…";
 
 /// Where a figure stands in [`CameraSpec`].
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Slot<T: 'static> {
     /// To look at.
     pub of: fn(&CameraSpec) -> &Option<T>,

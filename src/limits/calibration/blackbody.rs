@@ -35,6 +35,7 @@ pub struct Blackbodies {
 
 /// The least squares of one channel, before any reading.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Channel {
     /// B̄, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
     pub mean_radiance: f64,

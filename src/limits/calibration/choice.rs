@@ -34,6 +34,7 @@ pub struct Wanted {
 
 /// Error common to all pixels of a calibrated radiance, as temperature.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct RadianceError {
     /// By the noise of the blackbodies' readings, K.
     pub noise_k: f64,

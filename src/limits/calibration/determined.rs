@@ -99,6 +99,7 @@ impl CurvePrior {
 
 /// What readings tell of a curve.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Determined {
     /// D, the largest first: 1/σ of each direction.
     pub singular: Vec<f64>,

@@ -45,6 +45,7 @@ const IN_DOUBT: f64 = 1e-9;
 
 /// What is left of a column after the span of the others has been removed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Projection {
     /// ‖P⊥ a_g‖.
     pub residual: f64,

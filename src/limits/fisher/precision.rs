@@ -45,6 +45,7 @@ pub enum Sight {
 
 /// Cramér–Rao bound of one parameter.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Precision {
     /// Which one.
     pub parameter: Parameter,
@@ -62,6 +63,7 @@ pub struct Precision {
 
 /// Cramér–Rao bounds of all unknown parameters together.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct JointPrecision {
     /// One by one, in the order of [`Unknowns::parameters`].
     pub each: Vec<Precision>,

@@ -64,6 +64,7 @@ const HYBRID_ORDER: usize = 32;
 
 /// The detection probability averaged over the prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct AverageProbability {
     /// P̄ = E[Φ(d)].
     pub probability: f64,
@@ -77,6 +78,7 @@ pub struct AverageProbability {
 
 /// Photons at which an averaged detection probability is reached.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct AveragePhotons {
     /// Photons of the nominal state.
     pub photons: f64,

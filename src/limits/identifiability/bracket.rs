@@ -49,6 +49,7 @@ use std::f64::consts::LN_2;
 
 /// Bounds on the error of the best test between two known, equally likely states.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct KnownStatesBracket {
     /// −ln ρ of the Bhattacharyya coefficient ρ.
     pub bhattacharyya: f64,
@@ -190,6 +191,7 @@ fn ln_lower_bound(s: f64, at: Moments) -> f64 {
 
 /// Bounds on the error among M known, equally likely states.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ManyStatesBracket {
     /// Averaged over the states, no test errs less often.
     pub average_lower: f64,

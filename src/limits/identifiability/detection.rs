@@ -94,6 +94,7 @@ pub fn distance_for_rates(detection: f64, false_alarm: f64) -> Result<f64> {
 
 /// Rigorous bounds on the error of the best test between the two nearest states, at statistical distance d.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ErrorBracket {
     /// No test errs less often.
     pub lower: f64,

@@ -24,6 +24,7 @@ use crate::scene::Columns;
 
 /// What Theorem 1 says of a pair of parallel surfaces.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct LinearDetection {
     /// d = ½‖P⊥A‖, in units of the noise; 0 where the surfaces coincide.
     pub distance: f64,

@@ -21,15 +21,14 @@ use self::boxes::Interval;
 use self::hull::{Hulls, Mixed};
 use self::scene::{Scene, Side};
 use super::multi::LibraryScene;
+use crate::best_first::BestFirst;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance};
 use crate::scene::State;
 use crate::sum;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// Intervals of temperature that are looked at before the search gives up.
-const MOST_BOXES: usize = 4_000;
+const MOST_BOXES: u64 = 4_000;
 /// Turns between shares and state.
 const TURNS: usize = 12;
 /// Share of a distance that a turn must win.
@@ -51,6 +50,7 @@ pub struct Mixtures<'m> {
 
 /// The least distance found, and what is proved.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct MixtureDistance {
     /// Distance of the two mixtures, every part in the same lighting.
     pub distance: f64,
@@ -64,30 +64,6 @@ pub struct MixtureDistance {
     pub state: State,
     /// Intervals of temperature that the proof took.
     pub boxes: usize,
-}
-
-/// An interval of temperatures with its bound, the lowest first.
-struct Piece {
-    bound: f64,
-    ends_k: [f64; 2],
-    start: Mixed,
-}
-
-impl PartialEq for Piece {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Piece {}
-impl PartialOrd for Piece {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Piece {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound)
-    }
 }
 
 impl Mixtures<'_> {
@@ -109,43 +85,39 @@ impl Mixtures<'_> {
             ],
             cost: f64::INFINITY,
         };
-        let mut heap = BinaryHeap::from([Piece { bound: 0.0, ends_k: range_k, start }]);
+        let mut search = BestFirst::new(MOST_BOXES);
+        search.push(0.0, 0, (range_k, start));
         let mut best: Option<(Mixed, f64)> = None;
-        let (mut lower, mut boxes) = (0.0_f64, 0);
-        while let Some(piece) = heap.pop() {
-            let least = best.as_ref().map_or(f64::INFINITY, |(best, _)| best.cost);
-            lower = piece.bound.max(lower);
-            // Of what is far nearer than anybody asks for only that is of interest.
-            let close = enough.is_finite() && least.sqrt() - lower.sqrt() <= tolerance * enough;
-            let proved = lower >= least * (1.0 - tolerance).powi(2) || lower >= enough * enough || close;
-            // There is always one look.
-            let done = best.is_some() && proved;
-            if done || boxes >= MOST_BOXES {
-                break;
-            }
-            boxes += 1;
-            let [cold, hot] = piece.ends_k;
+        // There is always one look.
+        let proved = |lower: f64, best: &Option<(Mixed, f64)>| {
+            best.as_ref().is_some_and(|(best, _)| {
+                // Of what is far nearer than anybody asks for only that is of interest.
+                let close = enough.is_finite() && best.cost.sqrt() - lower.sqrt() <= tolerance * enough;
+                lower >= best.cost * (1.0 - tolerance).powi(2) || lower >= enough * enough || close
+            })
+        };
+        while let Some((lower, (ends_k, start))) = search.take(|lower| proved(lower, &best)) {
+            search.look();
+            let [cold, hot] = ends_k;
             let middle = (cold * hot).sqrt().clamp(cold, hot);
-            let (found, plane) = scene.at(middle, piece.start);
+            let (found, plane) = scene.at(middle, start);
             if best.as_ref().is_none_or(|(best, _)| found.cost < best.cost) {
                 best = Some((found.clone(), middle));
             }
-            let whole = scene.bound(&Interval::new(self.scene.bands.nodes_cm1(), piece.ends_k), &plane);
-            let whole = whole.max(piece.bound);
+            let bound = |ends_k| scene.bound(&Interval::new(self.scene.bands.nodes_cm1(), ends_k), &plane);
+            let whole = bound(ends_k).max(lower);
             let least = best.as_ref().map_or(f64::INFINITY, |(best, _)| best.cost);
-            if whole >= least * (1.0 - tolerance).powi(2) || middle <= cold || middle >= hot {
+            let point = middle <= cold || middle >= hot;
+            if point || whole >= least * (1.0 - tolerance).powi(2) {
                 // It need not be cut; of a point the bound is all there is.
-                heap.push(Piece { bound: whole, ends_k: piece.ends_k, start: found });
-                if middle <= cold || middle >= hot {
-                    lower = heap.peek().map_or(lower, |piece| piece.bound).max(lower);
+                search.push(whole, 0, (ends_k, found));
+                if point {
                     break;
                 }
                 continue;
             }
             for ends_k in [[cold, middle], [middle, hot]] {
-                let interval = Interval::new(self.scene.bands.nodes_cm1(), ends_k);
-                let bound = scene.bound(&interval, &plane).max(whole);
-                heap.push(Piece { bound, ends_k, start: found.clone() });
+                search.push(bound(ends_k).max(whole), 0, (ends_k, found.clone()));
             }
         }
         let (best, temperature_k) = best
@@ -179,8 +151,8 @@ impl Mixtures<'_> {
                 }
             }
         }
-        found.lower = lower.max(0.0).sqrt().min(found.distance);
-        found.boxes = boxes;
+        found.lower = search.bound().max(0.0).sqrt().min(found.distance);
+        found.boxes = search.looked_at() as usize;
         Ok(found)
     }
 

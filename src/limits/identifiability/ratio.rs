@@ -74,6 +74,7 @@ pub enum State {
 
 /// Error probabilities of the best test between two known, equally likely states.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct TestError {
     /// ½(α + β).
     pub error: f64,

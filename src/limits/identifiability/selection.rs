@@ -31,6 +31,7 @@ const ROUNDS: Range<usize> = 60..400;
 
 /// A choice of single bands.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Selection {
     /// Indices of the bands, rising.
     pub bands: Vec<usize>,
@@ -50,6 +51,7 @@ pub struct FilterSelection {
 /// What a selection keeps, and what no other can exceed. Distances are over what is required of the pair
 /// (1 where nothing is said), and are of the pair that fares worst.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Quality {
     /// Distance with the selection.
     pub distance: f64,

@@ -5,7 +5,7 @@
 //! Levenberg and Marquardt; parameters of any unit are made comparable by the diagonal of the positive
 //! definite part.
 
-use super::step::BoundedStep;
+use crate::box_least_squares::BoxLeastSquares;
 use crate::error::{Error, Result, check};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::scene::{Parameter, State};
@@ -140,7 +140,7 @@ impl StateSpace {
             lower[i] *= scale[i];
             upper[i] *= scale[i];
         }
-        let problem = BoundedStep {
+        let problem = BoxLeastSquares {
             hessian: &hessian,
             gradient: &gradient,
             lower: &lower,

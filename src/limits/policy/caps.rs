@@ -36,6 +36,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// A limit on one quantity, the rest of the camera as it is.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Limit {
     /// Which.
     pub code: CapCode,

@@ -99,6 +99,7 @@ impl Lever {
 
 /// ∂ln d/∂ln q with an estimate of its error.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Elasticity {
     /// The elasticity.
     pub value: f64,

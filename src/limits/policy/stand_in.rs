@@ -24,6 +24,7 @@
 //! Symbols: counts N = κ Σ_j w_j S(ν_j), σ² added variance, T in K, ν in cm⁻¹.
 
 use super::envelope::{EnvelopeScene, Ranges};
+use crate::best_first::BestFirst;
 use crate::error::{Error, Result};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::NearestSolver;
@@ -79,7 +80,6 @@ struct Corner {
 struct Piece {
     low: Vec<f64>,
     high: Vec<f64>,
-    bound: f64,
     /// Along which it is halved.
     split: usize,
 }
@@ -118,31 +118,31 @@ pub fn farthest(
     let solver = NearestSolver::new(scene.bands, scene.surroundings, unknowns, scene.range);
     let mut search = Search { scene, solver, objects, corners: HashMap::new() };
     let mut best: Option<(f64, Vec<f64>)> = None;
-    let mut waiting = vec![search.piece(low, high, &mut best)?];
-    let mut boxes = 1;
+    let mut waiting = BestFirst::new(effort.boxes as u64);
+    let mut parts = vec![[low, high]];
     loop {
-        let largest = waiting.iter().enumerate().max_by(|a, b| a.1.bound.total_cmp(&b.1.bound));
-        let Some((index, bound)) = largest.map(|(index, piece)| (index, piece.bound)) else {
-            return Err(Error::malformed("a tolerance without a box", "report this as a bug"));
-        };
-        let attained = best.as_ref().map_or(0.0, |(distance, _)| *distance);
-        let close = bound <= attained * (1.0 + effort.relative_tolerance);
-        let enough = effort.enough.is_some_and(|enough| bound <= enough || attained > enough);
-        if close || enough || boxes >= effort.boxes {
-            let (distance, place) = best.unwrap_or_default();
-            let state = search.state(&place);
-            let offset = place.first().copied().unwrap_or(0.0);
-            let person = search.corner(&place)?.person.clone();
-            return Ok(Farthest { distance, upper_bound: bound, offset, state, person, boxes });
+        for [low, high] in parts {
+            let (bound, piece) = search.piece(low, high, &mut best)?;
+            // Of equal bounds the newest first.
+            let age = u64::MAX - waiting.look();
+            waiting.push(-bound, age, piece);
         }
-        let Piece { low, high, split, .. } = waiting.swap_remove(index);
+        let attained = best.as_ref().map_or(0.0, |(distance, _)| *distance);
+        let close = |bound: f64| bound <= attained * (1.0 + effort.relative_tolerance);
+        let enough = |bound: f64| effort.enough.is_some_and(|enough| bound <= enough || attained > enough);
+        let farthest = waiting.take(|bound| close(-bound) || enough(-bound));
+        let Some((_, Piece { low, high, split })) = farthest else { break };
         let middle = 0.5 * (low[split] + high[split]);
         let (mut left, mut right) = (high.clone(), low.clone());
         (left[split], right[split]) = (middle, middle);
-        waiting.push(search.piece(low, left, &mut best)?);
-        waiting.push(search.piece(right, high, &mut best)?);
-        boxes += 2;
+        parts = vec![[low, left], [right, high]];
     }
+    let (distance, place) = best.unwrap_or_default();
+    let state = search.state(&place);
+    let offset = place.first().copied().unwrap_or(0.0);
+    let person = search.corner(&place)?.person.clone();
+    let boxes = waiting.looked_at() as usize;
+    Ok(Farthest { distance, upper_bound: -waiting.bound(), offset, state, person, boxes })
 }
 
 fn check(
@@ -210,7 +210,12 @@ impl Search<'_, '_> {
     }
 
     /// A box with its bound; `best` is told of corners that are farther.
-    fn piece(&mut self, low: Vec<f64>, high: Vec<f64>, best: &mut Option<(f64, Vec<f64>)>) -> Result<Piece> {
+    fn piece(
+        &mut self,
+        low: Vec<f64>,
+        high: Vec<f64>,
+        best: &mut Option<(f64, Vec<f64>)>,
+    ) -> Result<(f64, Piece)> {
         let wide: Vec<usize> = (0..low.len()).filter(|&i| low[i] < high[i]).collect();
         let mut corners: Vec<Corner> = Vec::with_capacity(1 << wide.len());
         for number in 0..1usize << wide.len() {
@@ -254,7 +259,7 @@ impl Search<'_, '_> {
         let score = |(bit, i): (usize, usize)| along(bit) + if is_kelvin(i) { high[i] - low[i] } else { 0.0 };
         let scored = wide.iter().enumerate().map(|(bit, &i)| (i, score((bit, i))));
         let split = scored.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(i, _)| i);
-        Ok(Piece { low, high, bound, split })
+        Ok((bound, Piece { low, high, split }))
     }
 
     /// What the curvature of Planck's law puts on the bound of a box: how far stand-in and person are from the means of corners.

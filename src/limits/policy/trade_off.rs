@@ -63,6 +63,7 @@ pub struct Point {
 
 /// A limit over the plane of the two quantities.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct LimitLine {
     /// Code of the limit.
     pub code: CapCode,

@@ -95,6 +95,7 @@ pub struct AirState {
 
 /// Signal of each band and its derivatives, photons s⁻¹ m⁻² sr⁻¹, per unit of each parameter.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct AirSignal {
     /// L integrated over each band.
     pub signal: Vec<f64>,

@@ -192,6 +192,7 @@ impl Image {
 
 /// Least error of a window's depth. Infinite where nothing tells the position.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct DepthBound {
     /// δz, m.
     pub sigma_z_m: f64,

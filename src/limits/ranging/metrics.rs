@@ -25,6 +25,7 @@ use crate::sum::Compensated;
 /// # Ok::<(), hadar::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct DepthMetrics {
     /// Mean of |t − p|/t.
     pub abs_rel: f64,
@@ -44,6 +45,7 @@ pub struct DepthMetrics {
 
 /// Pixels that are not in use; each counts once, for the first reason that applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[non_exhaustive]
 pub struct Excluded {
     /// Left out by the mask.
     pub masked: usize,

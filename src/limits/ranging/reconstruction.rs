@@ -34,6 +34,7 @@ use crate::sum::Compensated;
 
 /// How precisely one lighting factor of a pixel is known, as 1/variance.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PixelPrecision {
     /// J_VV: temperature and all else known.
     pub others_known: f64,
@@ -46,6 +47,7 @@ pub struct PixelPrecision {
 
 /// What a pixel tells of the position, pixel⁻², where its state changes along x.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PixelInformation {
     /// The heat cube itself.
     pub heat_cube: f64,

@@ -28,6 +28,7 @@ const MAX_GREY: f64 = 1e140;
 
 /// A measure of every window that lies whole in the image.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct TextureMap {
     /// Rows of the windows' centres.
     pub rows: Range<usize>,

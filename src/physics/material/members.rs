@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// A member of a class.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Member {
     /// The material, by a name that no other member has.
     pub material: Material,

@@ -55,13 +55,12 @@ pub struct Provenance {
 impl Provenance {
     /// Provenance of something the caller made.
     pub(super) fn given(basis: Basis, description: &str) -> Self {
-        Self {
-            description: description.to_owned(),
-            category: "user".to_owned(),
-            basis,
-            source: "given by the user".to_owned(),
-            licence: String::new(),
-            note: String::new(),
-        }
+        Self { basis, ..Self::of_file(description.to_owned(), "given by the user".to_owned(), "") }
+    }
+
+    /// Provenance of what a user's file holds.
+    pub(super) fn of_file(description: String, source: String, note: &str) -> Self {
+        let (category, note) = ("user".to_owned(), note.to_owned());
+        Self { description, category, basis: Basis::UserFile, source, licence: String::new(), note }
     }
 }

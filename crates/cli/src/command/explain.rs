@@ -5,6 +5,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hadar::error::{Error, Result};
 use hadar_report::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
+use hadar_report::json;
 use hadar_scenario::keys::{self, FILES, FileKind, Place, Silent};
 use hadar_study::warning::Code;
 use serde::Serialize;
@@ -109,9 +110,7 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<ExitCode> {
         None => FILES.iter().collect(),
         Some(word) => keys::kinds_of(word),
     };
-    let schema = serde_json::to_string_pretty(&keys::schema(kinds))
-        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-    put(&schema)?;
+    put(&json::pretty(&keys::schema(kinds))?)?;
     Ok(ExitCode::SUCCESS)
 }
 

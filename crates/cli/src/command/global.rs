@@ -26,13 +26,13 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 /// Flags that several commands have; which of them a command takes is said in one table.
 #[derive(Debug, Clone, Args)]
-pub(super) struct Global {
+pub struct Global {
     /// Print one JSON object on stdout and nothing else
     #[arg(long)]
     pub(super) json: bool,
     /// Write a report into this folder: one page, the answer, scenario, tables and plots
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Write the tables of a report as Parquet too, beside the CSV
     #[arg(long, value_name = "FORMAT", requires = "out")]
     pub(super) format: Option<Format>,
@@ -46,7 +46,7 @@ pub(super) struct Global {
     pub(super) set: Vec<Setting>,
     /// Materials of your own, a folder or a file; may be given several times
     #[arg(long, value_name = "DIR")]
-    pub(super) library: Vec<PathBuf>,
+    pub library: Vec<PathBuf>,
     /// Use the materials of --library alone, not the built-in ones
     #[arg(long)]
     pub(super) only_library: bool,
@@ -61,7 +61,7 @@ pub(super) struct Global {
     pub(super) skip_uncovered: bool,
     /// Seed of random numbers; the same seed gives the same result, for any number of threads
     #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(super) seed: u64,
+    pub seed: u64,
     /// Number of threads (default: all cores); the result does not depend on it
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
@@ -122,7 +122,7 @@ impl Global {
     }
 
     /// A library with the user's own materials; what is to be said about them is said, and goes into the JSON.
-    pub(super) fn with_own(&self, library: Library) -> Result<Library> {
+    pub fn with_own(&self, library: Library) -> Result<Library> {
         let mut library = library.strict(self.strict);
         self.library.iter().try_for_each(|path| library.add_path(path))?;
         self.said_of_library.get_or_init(|| {
@@ -174,12 +174,12 @@ impl Global {
     }
 
     /// A bar on stderr for long work; nothing where stderr is no terminal, or quiet.
-    pub(super) fn progress(&self, what: &'static str) -> Bar {
+    pub fn progress(&self, what: &'static str) -> Bar {
         Bar::new(what, self.quiet)
     }
 
     /// A line on stderr, unless quiet.
-    pub(super) fn note(&self, text: &str) {
+    pub fn note(&self, text: &str) {
         if !self.quiet {
             say(text);
         }
@@ -191,7 +191,7 @@ impl Global {
     }
 
     /// A folder to be written to.
-    pub(super) fn folder(&self, path: &Path) -> Folder {
+    pub fn folder(&self, path: &Path) -> Folder {
         Folder::new(path, if self.force { Strangers::KeepBesides } else { Strangers::Refuse })
     }
 
@@ -233,7 +233,7 @@ impl Global {
     }
 
     /// Prints a result that has its ledger in it, and with `--stats` the ledger.
-    pub(super) fn answer(&self, json: &impl serde::Serialize, text: &str, work: &Work) -> Result<()> {
+    pub fn answer(&self, json: &impl serde::Serialize, text: &str, work: &Work) -> Result<()> {
         if self.stats {
             self.note(text::stats(work).trim_end());
         }
@@ -241,7 +241,7 @@ impl Global {
     }
 
     /// Prints a result that has no ledger in it, with `stats` beside its keys.
-    pub(super) fn answer_with(&self, mut json: serde_json::Value, text: &str, work: &Work) -> Result<()> {
+    pub fn answer_with(&self, mut json: serde_json::Value, text: &str, work: &Work) -> Result<()> {
         if let Some(object) = json.as_object_mut() {
             object.insert("stats".into(), json::value(work)?);
         }
@@ -294,7 +294,7 @@ impl Global {
     }
 
     /// Writes the files, with the answer and a page of all where there is an answer, and says where.
-    pub(super) fn write(&self, bundle: &Bundle, out: &Path, answer: Option<&str>) -> Result<()> {
+    pub fn write(&self, bundle: &Bundle, out: &Path, answer: Option<&str>) -> Result<()> {
         let bundle = self.formatted(bundle)?;
         let (provenance, inputs) = (self.provenance()?, inputs::so_far().files);
         let about = About { answer: answer.unwrap_or_default(), provenance: &provenance, inputs: &inputs };

@@ -6,7 +6,7 @@ use std::sync::Once;
 
 /// A bar that appears with the first step, when it is known of how many.
 #[derive(Debug)]
-pub(super) struct Bar {
+pub struct Bar {
     bar: ProgressBar,
     appears: Once,
     hidden: bool,
@@ -24,7 +24,7 @@ impl Bar {
     }
 
     /// So many of so many are done.
-    pub(super) fn set(&self, done: usize, total: usize) {
+    pub fn set(&self, done: usize, total: usize) {
         self.bar.set_length(total as u64);
         if !self.hidden && total > 0 {
             self.appears.call_once(|| self.bar.set_draw_target(ProgressDrawTarget::stderr()));
@@ -33,7 +33,7 @@ impl Bar {
     }
 
     /// Takes the bar away.
-    pub(super) fn finish(&self) {
+    pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }

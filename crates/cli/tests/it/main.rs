@@ -1,6 +1,5 @@
 //! Tests of the command `hadar`, and what several packages do together.
 
-mod accuracy;
 mod air_ranging;
 mod arrows;
 mod asked;
@@ -18,6 +17,7 @@ mod decompose_by_rows;
 mod decompose_image;
 mod demand;
 mod diff;
+mod evidence;
 mod explain;
 mod extremes;
 mod fuzz;
@@ -34,8 +34,8 @@ mod nearest;
 mod own_cameras;
 mod packs;
 mod range;
+mod remarks;
 mod render;
-mod reproduce;
 mod robust;
 mod rule;
 mod rule_clauses;
@@ -48,6 +48,7 @@ mod simulate;
 mod spectra;
 mod stand_in;
 mod sweep;
+mod vectors;
 mod written;
 
 mod support {
@@ -61,3 +62,6 @@ mod support {
     pub(crate) mod sound;
     pub(crate) mod uses;
 }
+
+/// The program that is tested.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_hadar");

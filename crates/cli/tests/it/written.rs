@@ -32,7 +32,7 @@ fn a_folder_of_the_user_is_refused_and_stays_as_it_is() {
         &["identify", "scenario.toml", "--out", "."],
         &["rule", "scenario.toml", "--out", "."],
         &["size", "scenario.toml", "--out", "old"],
-        &["reproduce", "tabs2", "--out", "old/pairs.csv"],
+        &["materials", "plot", "gold", "--out", "old/pairs.csv"],
     ] {
         let said = folder.refusal(arguments);
         assert!(
@@ -197,8 +197,6 @@ fn every_json_says_its_version() {
             "models",
         ],
         &["simulate", "a.toml", "--spectra", "4", "--thermometry", "300 K"],
-        &["reproduce", "tabs2"],
-        &["accuracy", "planck", "--quick"],
         &["materials", "list"],
         &["materials", "show", "skin"],
         &["cameras", "list"],
@@ -303,12 +301,10 @@ fn the_page_is_one_file_that_anyone_can_read() {
         (&["rule", "rule.toml"], 1),
         (&["simulate", "a.toml", "--spectra", "40", "--classifiers", "likelihood-ratio"], 1),
         (&["materials", "plot", "gold", "brass"], 1),
-        (&["reproduce", "tabs2"], 0),
     ] {
         let outcome = folder.run(&[arguments, &["--out", "out"]].concat());
         assert_eq!(outcome.code, 0, "{}", outcome.stderr);
-        let at = if arguments[0] == "reproduce" { "out/tabs2/report.html" } else { "out/report.html" };
-        let text = fs::read_to_string(folder.path().join(at)).unwrap();
+        let text = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
         let page = elements(&text);
         let all = |name: &str| page.iter().filter(|element| element.name == name).collect::<Vec<_>>();
         assert!(

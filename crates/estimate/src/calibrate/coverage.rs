@@ -20,6 +20,7 @@ const REACH: f64 = 1.959_963_984_540_054;
 
 /// A coverage with its deviation.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Coverage {
     /// Share of the intervals that hold the truth.
     pub share: f64,
@@ -49,6 +50,7 @@ fn held(errors: impl Iterator<Item = (f64, f64)>) -> f64 {
 
 /// What is held in the experiments of a spectrometer.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct SpectrometerCoverage {
     /// Of R.
     pub response: Coverage,
@@ -141,6 +143,7 @@ pub fn spectrometer(
 
 /// What is held in the experiments of a filter-wheel camera.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct FilterWheelCoverage {
     /// Of the 30 values.
     pub response: Coverage,

@@ -78,6 +78,7 @@ pub struct Transfer {
 
 /// The noise of a band.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct OfBand {
     /// Its own line; `None` where its means do not spread enough.
     pub line: Option<Line>,

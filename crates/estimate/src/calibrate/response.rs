@@ -32,6 +32,7 @@ const FITTED: f64 = 1e-9;
 
 /// A response with its covariance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Response {
     /// r, in units of the typical curve's peak.
     pub values: Vec<f64>,
@@ -55,6 +56,7 @@ pub struct Response {
 
 /// A blackbody whose temperature, were it free, would explain part of χ².
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Suspect {
     /// Its place.
     pub blackbody: usize,
@@ -66,6 +68,7 @@ pub struct Suspect {
 
 /// A mean radiance behind a filter, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct FilterRadiance {
     /// S̄.
     pub radiance: f64,

@@ -16,6 +16,7 @@ const ROUNDS: usize = 3;
 
 /// Response and offset of every channel.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Calibration {
     /// The blackbodies it was made with.
     pub blackbodies: Blackbodies,
@@ -34,6 +35,7 @@ pub struct Calibration {
 
 /// Emissivity of a surface and radiance of its surroundings in a channel, with their errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SurfaceFound {
     /// e.
     pub emissivity: f64,

@@ -76,6 +76,7 @@ fn microbolometer(edges: f64, ripple: f64, nu: f64) -> f64 {
 
 /// A filter-wheel camera.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FilterWheelTwin {
     /// Filters and scale of the counts.
     pub wheel: FilterWheel,
@@ -195,6 +196,7 @@ fn counts_per_radiance(centres_cm1: &[f64], typical: &[f64]) -> f64 {
 
 /// A spectrometer.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SpectrometerTwin {
     /// Channels, cm⁻¹.
     pub wavenumbers_cm1: Vec<f64>,

@@ -21,6 +21,7 @@ use rayon::prelude::*;
 
 /// η of every pixel, with its errors.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Vignette {
     /// η, row after row.
     pub values: Vec<f64>,

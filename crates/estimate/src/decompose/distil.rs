@@ -67,6 +67,7 @@ pub struct Distilled {
 
 /// Residues of one material.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Residue {
     /// Its place in the library.
     pub material: usize,

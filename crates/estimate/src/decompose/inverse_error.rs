@@ -18,6 +18,7 @@ use hadar::error::{Error, Result};
 
 /// Errors of a temperature by S46, to first order.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InverseError {
     /// Without any noise, K.
     pub bias_k: f64,

@@ -196,25 +196,35 @@ impl Model {
     }
 
     fn fill(&mut self, setting: &Setting<'_>) -> Result<()> {
-        let Setting { bands, library, surroundings, counts_per_radiance, .. } = *setting;
+        let Setting { bands, library, .. } = *setting;
         let widths = bands.widths_cm1();
-        let counts = |signal: &[f64]| -> Vec<f64> {
-            bands.weigh(signal).iter().zip(counts_per_radiance).map(|(s, k)| s * k).collect()
-        };
-        let width = self.width;
         self.var_added.fill(1.0);
         let centres = centres_of(bands, &widths);
         for (lane, &band) in self.used.iter().enumerate() {
             self.var_added[lane] = setting.var_added.get(band).copied().unwrap_or(0.0);
             self.centres_cm1.push(centres[band]);
         }
-        let used = self.used.clone();
-        let put = move |to: &mut [f64], from: &[f64]| {
-            for (to, &band) in to.iter_mut().zip(&used) {
-                *to = from[band];
+        self.fill_lighting(setting, &widths)?;
+        self.fill_table(setting);
+        let width = self.width;
+        self.factor = Aligned::zeros(library.len() * width);
+        for (m, emissivity) in library.iter().enumerate() {
+            let mean: Vec<f64> =
+                bands.weigh(emissivity).iter().zip(&widths).map(|(e, width)| e / width).collect();
+            put(&self.used, &mut self.emissivity[m * width..][..width], &mean);
+            let factor = &mut self.factor[m * width..][..width];
+            match self.shared {
+                true => put(&self.used, factor, emissivity),
+                false => factor.fill(1.0),
             }
-        };
-        // Vertices: darkness first if there is one, then each of the surroundings alone.
+        }
+        Ok(())
+    }
+
+    /// What each vertex sends and what each material scatters of it: darkness first if there is one, then each of the surroundings alone.
+    fn fill_lighting(&mut self, setting: &Setting<'_>, widths: &[f64]) -> Result<()> {
+        let Setting { bands, library, surroundings, .. } = *setting;
+        let width = self.width;
         let first = self.vertices - surroundings.len();
         let share = self.lighting_total.unwrap_or(1.0);
         for (k, light) in surroundings.iter().enumerate() {
@@ -232,29 +242,27 @@ impl Model {
                 |x| check::non_negative("spectrum of the surroundings", x, ""),
             )?;
             let alone = match light {
-                Light::Radiance(spectrum) => counts(spectrum),
+                Light::Radiance(spectrum) => counts(setting, spectrum.iter().copied()),
                 Light::Counts(spectrum) => spectrum.clone(),
             };
             let alone: Vec<f64> = alone.iter().map(|n| n * share).collect();
-            put(&mut self.light[(first + k) * width..][..width], &alone);
+            put(&self.used, &mut self.light[(first + k) * width..][..width], &alone);
             for (m, emissivity) in library.iter().enumerate() {
                 let scattered: Vec<f64> = match light {
-                    Light::Radiance(spectrum) => counts(
-                        &spectrum
-                            .iter()
-                            .zip(emissivity)
-                            .map(|(s, e)| share * (1.0 - e) * s)
-                            .collect::<Vec<_>>(),
-                    ),
+                    Light::Radiance(spectrum) => {
+                        let nodes = spectrum.iter().zip(emissivity.iter());
+                        counts(setting, nodes.map(|(s, e)| share * (1.0 - e) * s))
+                    }
                     Light::Counts(_) => bands
                         .weigh(emissivity)
                         .iter()
-                        .zip(&widths)
+                        .zip(widths)
                         .zip(&alone)
                         .map(|((e, width), n)| (1.0 - e / width) * n)
                         .collect(),
                 };
-                put(&mut self.scattered[(m * self.vertices + first + k) * width..][..width], &scattered);
+                let to = &mut self.scattered[(m * self.vertices + first + k) * width..][..width];
+                put(&self.used, to, &scattered);
             }
         }
         for m in 0..library.len() {
@@ -265,42 +273,28 @@ impl Model {
                 *to = from - first[i % width];
             }
         }
-        let nodes = bands.nodes_cm1();
+        Ok(())
+    }
+
+    /// What each material emits at the temperatures of the table; the last table is that of a blackbody, alone where all share it.
+    fn fill_table(&mut self, setting: &Setting<'_>) {
+        let (library, nodes, width) = (setting.library, setting.bands.nodes_cm1(), self.width);
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
-        // The last table is that of a blackbody, alone where all share it.
         let tables = if self.shared { 1 } else { library.len() + 1 };
         self.table = Aligned::zeros(tables * (self.steps + 1) * 2 * width);
-        self.factor = Aligned::zeros(library.len() * width);
         for row in 0..=self.steps {
-            planck::photon_radiance_and_slope_into(
-                nodes,
-                self.temperature_of(row as f64),
-                &mut value,
-                &mut slope,
-            );
+            let temperature_k = self.temperature_of(row as f64);
+            planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
             for table in 0..tables {
-                let times_e = |values: &[f64], factor: f64| -> Vec<f64> {
-                    let own = library.get(table).filter(|_| !self.shared);
-                    let e = |j: usize| own.map_or(1.0, |own| own[j]);
-                    counts(&values.iter().enumerate().map(|(j, x)| factor * e(j) * x).collect::<Vec<_>>())
-                };
+                let own = library.get(table).filter(|_| !self.shared);
+                let e = |j: usize| own.map_or(1.0, |own| own[j]);
                 let at = (table * (self.steps + 1) + row) * 2 * width;
-                let (values, slopes) = (times_e(&value, 1.0), times_e(&slope, self.step_k));
-                put(&mut self.table[at..][..width], &values);
-                put(&mut self.table[at + width..][..width], &slopes);
+                for (i, (values, factor)) in [(&value, 1.0), (&slope, self.step_k)].into_iter().enumerate() {
+                    let emitted = values.iter().enumerate().map(|(j, x)| factor * e(j) * x);
+                    put(&self.used, &mut self.table[at + i * width..][..width], &counts(setting, emitted));
+                }
             }
         }
-        for (m, emissivity) in library.iter().enumerate() {
-            let mean: Vec<f64> =
-                bands.weigh(emissivity).iter().zip(&widths).map(|(e, width)| e / width).collect();
-            put(&mut self.emissivity[m * width..][..width], &mean);
-            let factor = &mut self.factor[m * width..][..width];
-            match self.shared {
-                true => put(factor, emissivity),
-                false => factor.fill(1.0),
-            }
-        }
-        Ok(())
     }
 
     /// Temperature at a row of the table, K.
@@ -405,6 +399,19 @@ impl Model {
             *v = share * u / total;
         }
         lighting
+    }
+}
+
+/// Photon counts of each band of a spectrum at the nodes.
+fn counts(setting: &Setting<'_>, signal: impl Iterator<Item = f64>) -> Vec<f64> {
+    let weighed = setting.bands.weigh(&signal.collect::<Vec<f64>>());
+    weighed.iter().zip(setting.counts_per_radiance).map(|(s, k)| s * k).collect()
+}
+
+/// The values of the bands that are used.
+fn put(used: &[usize], to: &mut [f64], from: &[f64]) {
+    for (to, &band) in to.iter_mut().zip(used) {
+        *to = from[band];
     }
 }
 

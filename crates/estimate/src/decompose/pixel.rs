@@ -101,6 +101,7 @@ impl Pixel {
 
 /// What was done and what was spared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Spared {
     /// Pairs of pixel and material that were fitted.
     pub fitted: u64,

@@ -23,6 +23,7 @@ use hadar::error::{Error, Result};
 
 /// J of every pixel, `[row][column]`, pixel⁻². A first and a last column have none, nor has a reading where it is unknown: 0.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct TextureInformation {
     /// All bands.
     pub cube: Vec<f64>,

@@ -21,6 +21,7 @@ pub struct Object {
 
 /// Objects, the largest first, and which one every pixel is of.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Objects {
     /// What is there.
     pub all: Vec<Object>,

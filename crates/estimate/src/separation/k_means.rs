@@ -19,6 +19,7 @@ const CHUNK: usize = 256;
 
 /// Groups of points.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Means {
     /// Means of the groups, one after the other.
     pub centres: Vec<f64>,

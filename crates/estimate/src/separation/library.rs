@@ -75,6 +75,7 @@ pub struct Asked {
 
 /// A group of pixels with one emissivity; values of all bands in their order.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Cluster {
     /// Emissivity.
     pub emissivity: Vec<f64>,

@@ -17,6 +17,7 @@ const ROUNDS: usize = 5;
 
 /// e_min = a − b·MMD^c.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Mmd {
     /// Least emissivity of a grey body.
     pub a: f64,

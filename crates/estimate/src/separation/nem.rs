@@ -35,6 +35,7 @@ pub struct Surface<'a> {
 
 /// A temperature and the emissivities that belong to it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Separated {
     /// K.
     pub temperature_k: f64,

@@ -2,7 +2,6 @@
 
 mod figures;
 mod named_values;
-mod vectors;
 
 mod support {
     pub(crate) mod figures;

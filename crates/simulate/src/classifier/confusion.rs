@@ -15,6 +15,7 @@ pub(crate) const TIE: f64 = 1e-6;
 
 /// Decisions counted by true and by chosen class; those that tie share one.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Confusion {
     /// `decisions[true][chosen]`.
     pub decisions: Vec<Vec<f64>>,

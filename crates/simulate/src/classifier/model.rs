@@ -170,6 +170,7 @@ const SAME_BAND: f64 = 1e-9;
 /// A trained classifier with all it takes to use it again.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SavedModel {
     /// Version of this format.
     #[serde(rename = "schema", alias = "format")]

@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 
 /// Largest distance between the distribution functions of the Gaussian law and of what it stands for.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct GaussianDistance {
     /// Between the laws as they are.
     pub largest: f64,

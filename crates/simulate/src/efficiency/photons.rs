@@ -20,6 +20,7 @@ use hadar::identifiability::detection;
 /// # Ok::<(), hadar::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PhotonShare {
     /// Share of right decisions.
     pub accuracy: f64,

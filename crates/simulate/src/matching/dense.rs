@@ -15,6 +15,7 @@ const ROWS: usize = 32;
 
 /// Disparities of all windows that lie within the left view.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct DisparityMap {
     /// Rows of the windows' centres.
     pub rows: Range<usize>,

@@ -17,6 +17,7 @@ use hadar::ranging::noise::NoiseVariance;
 
 /// At one disparity.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct LockingPoint {
     /// True disparity, pixels.
     pub disparity: f64,

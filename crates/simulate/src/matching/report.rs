@@ -17,6 +17,7 @@ pub const OUTLIER: f64 = 1.0;
 
 /// One window.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct CentreReport {
     /// The window.
     pub centre: Centre,
@@ -46,6 +47,7 @@ pub struct CentreReport {
 
 /// All windows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct LineReport {
     /// One by one.
     pub centres: Vec<CentreReport>,

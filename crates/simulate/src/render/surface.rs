@@ -157,6 +157,7 @@ pub struct Bump {
 /// One sinusoid of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Wave {
     /// Cycles per metre in x and y.
     pub cycles_per_m: [f64; 2],

@@ -64,6 +64,7 @@ impl Options {
 
 /// Both pictures.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct StereoPair {
     /// The picture of the camera at x = −b/2.
     pub left: View,

@@ -13,6 +13,7 @@ use hadar::error::{Result, check};
 /// Seen by a rig without pitch, its depth and disparity are the same everywhere.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
+#[non_exhaustive]
 pub struct WallSpec {
     /// Distance of the wall, m.
     pub distance_m: f64,

@@ -23,6 +23,7 @@ const RANGE_K: [f64; 2] = [10.0, 1e5];
 
 /// How a thermal imager makes a temperature of a sum of counts.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Conventional {
     /// Emissivity e in all bands; above 1 where a calibration in warm surroundings asks for it.
     pub emissivity: f64,

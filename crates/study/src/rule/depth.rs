@@ -43,12 +43,14 @@ struct Before {
 }
 
 /// What is found from one distance.
+#[derive(Clone)]
 struct Seen {
     met: bool,
     margin: f64,
     /// Median of the object's windows, m; as asked for where none shows it.
     distance_m: f64,
     overfull: Option<Overfull>,
+    /// What is to be said of it.
     warnings: Vec<Warning>,
 }
 
@@ -98,7 +100,8 @@ impl DepthClause {
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
         let mut verdicts = Vec::with_capacity(self.cameras.len());
         for (done, camera) in self.cameras.iter().enumerate() {
-            verdicts.push(self.judged(camera)?);
+            let seen = camera.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
+            verdicts.push(self.judged(camera, seen.collect::<Result<_>>()?)?);
             progress(done + 1);
         }
         let share = self.demand.requirement.share;
@@ -149,9 +152,8 @@ impl DepthClause {
         })
     }
 
-    fn judged(&self, before: &Before) -> Result<MeasuredVerdict> {
-        let seen = before.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
-        let mut seen = seen.collect::<Result<Vec<_>>>()?;
+    /// The verdict, made of what was found from every distance; what is to be said of it is handed on and decides nothing.
+    fn judged(&self, before: &Before, mut seen: Vec<Seen>) -> Result<MeasuredVerdict> {
         seen.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
         let overfull = seen.iter().any(|seen| seen.overfull.is_some());
         // The same is said from every distance.
@@ -218,5 +220,54 @@ fn distances(clause: &Clause, demand: &DepthDemand, approach: Option<&Approach>)
         [least, most] if least == most => vec![least],
         [least, most] if most < ALIKE * least => vec![least, most],
         ends => steps(ends).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const RULE: &str = "cameras = [\"flir-a325sc\"]\n[target]\nmaterial = \"skin\"\ntemperature = \"33 degC\"\n\
+        [alternatives]\nmaterials = [\"aluminium\"]\n[bands]\nstep = \"20 cm^-1\"\n[[clause]]\nname = \"z\"\n\
+        kind = \"depth-error\"\n[clause.requirement]\ndepth_error = \"0.2 m\"\n[clause.stereo]\nbaseline = \"0.5 m\"\n";
+
+    /// The clause of the rule and its camera, from no distance.
+    fn clause() -> (DepthClause, Before) {
+        let rule = Rule::from_toml(RULE, None).unwrap();
+        let hadar_scenario::rule::Demand::DepthError(demand) = &rule.clauses[0].demand else { panic!() };
+        let library = Library::embedded().unwrap();
+        let clause = DepthClause::new(&rule, &rule.clauses[0], demand, &[], &library).unwrap();
+        let named = super::super::cameras::of(&rule).unwrap().remove(0);
+        (clause, Before { named, studies: Vec::new(), approach: None, spoiled: Vec::new(), air: false })
+    }
+
+    proptest! {
+        /// A verdict that is made without any remark, or with others, is the same.
+        #[test]
+        fn remarks_decide_nothing(
+            looks in prop::collection::vec((any::<bool>(), 0.0..3.0f64, any::<bool>(), 0..3usize), 1..4),
+        ) {
+            let (clause, before) = clause();
+            let overfull = Overfull { counts: 2.0, full_well: 1.0 };
+            let seen: Vec<Seen> = looks
+                .iter()
+                .map(|&(met, margin, full, said)| Seen {
+                    met,
+                    margin,
+                    distance_m: 5.0,
+                    overfull: full.then_some(overfull),
+                    warnings: [overfull.remark(), Warning::NoDepth].into_iter().take(said).collect(),
+                })
+                .collect();
+            let without = seen.iter().map(|one| Seen { warnings: Vec::new(), ..one.clone() }).collect();
+            let (with, without) = (clause.judged(&before, seen).unwrap(), clause.judged(&before, without).unwrap());
+            let full = looks.iter().any(|look| look.2);
+            prop_assert_eq!(with.fails_by.contains(&Shortfall::FullWell), full);
+            prop_assert_eq!(with.verdict, without.verdict);
+            prop_assert_eq!(with.fails_by, without.fails_by);
+            prop_assert_eq!(with.undecided_by, without.undecided_by);
+            prop_assert_eq!((with.margin, with.grade), (without.margin, without.grade));
+        }
     }
 }

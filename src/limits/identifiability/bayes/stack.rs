@@ -24,6 +24,7 @@ pub struct Pair<'a> {
 
 /// The hybrid Cramér–Rao bound as a distance.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct BayesianDistance {
     /// d_B per √photon of the nominal state; 0 where no prior helps.
     pub distance: f64,

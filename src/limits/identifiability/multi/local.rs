@@ -91,6 +91,7 @@ struct Lost {
 
 /// How the pairs of a matrix were computed: what was shared, and what that left to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[non_exhaustive]
 pub struct Passes {
     /// Targets whose signal, weights and orthogonal nuisances served all their pairs.
     pub shared_targets: usize,

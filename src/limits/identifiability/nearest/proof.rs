@@ -29,9 +29,8 @@ pub(super) use self::prover::Memory;
 use self::prover::{Goal, Prover};
 use super::refine::{NearestDistance, refine};
 use super::residual::{Comparison, Target};
+use crate::best_first::BestFirst;
 use crate::scene::State;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// What a bound is lowered by in the end.
 const MARGIN: f64 = 1e-12;
@@ -68,29 +67,8 @@ enum Outcome {
 #[derive(Debug, Clone)]
 struct Region {
     ends: Vec<[usize; 2]>,
-    bound: f64,
     axis: Option<usize>,
 }
-
-impl Ord for Region {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound)
-    }
-}
-
-impl PartialOrd for Region {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Region {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Region {}
 
 /// Whether any state is nearer than `limit`: none is where that can be proved of `reach`, a little more. `known` is the nearest
 /// one that a search has found, if there was one.
@@ -158,48 +136,45 @@ impl Prover<'_, '_> {
         goal: Goal,
     ) -> Outcome {
         let Goal { limit, enough, rounding, boxes } = goal;
-        let (mut aside, faces) = match best.map(|best| self.close_about(comparison, target, best, goal)) {
+        let mut queue = BestFirst::new(boxes);
+        let faces = match best.map(|best| self.close_about(comparison, target, best, goal)) {
             Some(Closed::Nearer(state)) => return Outcome::Nearer(state),
             // Its bound is that distance, and errs as that does; what bounds the others counts its own rounding.
             Some(Closed::Box(lower, faces)) => {
                 let surely = (1.0 - rounding).max(0.0);
-                (surely * surely * lower, Some(faces))
+                queue.leave(surely * surely * lower);
+                Some(faces)
             }
-            Some(Closed::Nothing) | None => (f64::INFINITY, None),
+            Some(Closed::Nothing) | None => None,
         };
-        let mut queue = BinaryHeap::new();
         if self.all.axes.is_empty() {
             if faces.is_none() {
-                queue.push(Region { ends: Vec::new(), bound: 0.0, axis: None });
+                queue.push(0.0, 0, Region { ends: Vec::new(), axis: None });
             }
         } else {
             let warmest = best.map_or(target.state, |best| &best.state);
-            queue.extend(self.around(faces.as_deref(), warmest));
+            self.around(faces.as_deref(), warmest).into_iter().for_each(|region| queue.push(0.0, 0, region));
         }
         let (mut descents, mut descended) = (0, f64::INFINITY);
-        while let Some(region) = queue.pop() {
-            if region.bound >= enough || self.boxes >= boxes {
-                queue.push(region);
-                break;
-            }
+        while let Some((lowest, region)) = queue.take(|bound| bound >= enough) {
             let parts = match region.axis {
                 Some(axis) => self.halves(&region, axis),
                 None => vec![region.clone()],
             };
             if parts.is_empty() {
-                aside = aside.min(region.bound);
+                queue.leave(lowest);
                 continue;
             }
             for mut part in parts {
-                self.boxes += 1;
+                let looked_at = queue.look();
                 let (bound, axis, in_all) = self.bound(&part.ends, None, enough);
-                part.bound = bound.max(part.bound);
-                if part.bound < enough && in_all {
+                let bound = bound.max(lowest);
+                if bound < enough && in_all {
                     let (state, cost) = self.candidate(comparison, target, &self.bounder.mixture(&self.all));
                     if cost < limit * (1.0 - 1e-12) {
                         return Outcome::Nearer(state);
                     }
-                    if self.boxes >= FIRST_DESCENT && cost < descended && descents < DESCENTS {
+                    if looked_at >= FIRST_DESCENT && cost < descended && descents < DESCENTS {
                         // Downhill from here another valley may be found; each time from lower than before, or seldom.
                         descents += 1;
                         descended = cost;
@@ -207,21 +182,20 @@ impl Prover<'_, '_> {
                         if found.distance * found.distance < limit * (1.0 - 1e-12) {
                             return Outcome::Nearer(found.state);
                         }
-                    } else if self.boxes.is_multiple_of(SELDOM) {
+                    } else if looked_at.is_multiple_of(SELDOM) {
                         descended = f64::INFINITY;
                     }
                 }
                 if self.all.axes.is_empty() {
                     // There is nothing to halve.
-                    aside = aside.min(part.bound);
+                    queue.leave(bound);
                     continue;
                 }
                 part.axis = Some(axis);
-                queue.push(part);
+                queue.push(bound, 0, part);
             }
         }
-        let waiting = queue.peek().map_or(f64::INFINITY, |region| region.bound);
-        Outcome::Bound(aside.min(waiting).min(limit.max(enough)).max(0.0).sqrt())
+        Outcome::Bound(queue.bound().min(limit.max(enough)).max(0.0).sqrt())
     }
 
     /// The whole range but for the closed box, in boxes that share faces with it.
@@ -232,7 +206,7 @@ impl Prover<'_, '_> {
             let ends = [self.end(axis, range[0]), self.end(axis, range[1])];
             rest.push(ends);
         }
-        let region = |ends: Vec<[usize; 2]>| Region { ends, bound: 0.0, axis: None };
+        let region = |ends: Vec<[usize; 2]>| Region { ends, axis: None };
         let Some(faces) = faces else { return vec![region(rest)] };
         let mut regions = Vec::new();
         for (axis, (face, range)) in faces.iter().zip(&ranges).enumerate() {

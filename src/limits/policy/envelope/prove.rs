@@ -14,10 +14,9 @@ use super::model::{self, Model, Point, Region};
 use super::node::Node;
 use super::partition::partition;
 use super::ranges::Ranges;
+use crate::best_first::BestFirst;
 use crate::error::Result;
 use rayon::prelude::*;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
 /// A descent is tried in every one of the first so many batches, and in every so many later.
 const EVERY: u64 = 8;
@@ -47,40 +46,12 @@ pub(super) struct Proof {
     pub(super) attained: Attained,
 }
 
-/// A box in its queue: the lowest bound first, then the oldest.
-struct Waiting {
-    cube: Cube,
-    age: u64,
-}
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.cube.bound.total_cmp(&self.cube.bound).then(other.age.cmp(&self.age))
-    }
-}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Waiting {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Waiting {}
-
-/// The queue, and the least bound of what was left aside.
+/// The queue, the oldest of equal bounds first, and the bound from which on a box is left aside.
 struct Search<'m, 'a> {
     model: &'m Model<'a>,
     cells: Vec<Cell>,
-    queue: BinaryHeap<Waiting>,
+    queue: BestFirst<Cube>,
     threshold: f64,
-    aside: f64,
-    boxes: u64,
 }
 
 /// A lower bound of the distance over an envelope in which `attained` is known to be.
@@ -99,13 +70,13 @@ pub(super) fn prove(
     let distance = attained.distance;
     let cells: Vec<Cell> =
         parts.into_par_iter().map(|part| Cell::new(model, &part, best, distance)).collect();
+    let mut search = Search { model, cells, queue: BestFirst::new(effort.boxes), threshold };
     // What cells leave out is not below the distance attained.
-    let aside = distance;
-    let mut search = Search { model, cells, queue: BinaryHeap::new(), threshold, aside, boxes: 0 };
+    search.queue.leave(distance);
     let roots = (0..search.cells.len()).filter_map(|cell| search.root(cell)).collect();
     search.take_in(roots);
     let mut round = 0;
-    while search.boxes < effort.boxes && !search.queue.is_empty() {
+    while search.queue.lowest().is_some() {
         // Along a stretch of distances there is nothing to attain.
         let tried = model.along.is_none() && (round < EVERY || round % EVERY == 0);
         let promising = if tried { search.lowest() } else { None };
@@ -121,9 +92,8 @@ pub(super) fn prove(
         round += 1;
         search.advance();
     }
-    let waiting = search.queue.peek().map_or(f64::INFINITY, |waiting| waiting.cube.bound);
-    let lower_bound = waiting.min(search.aside).min(attained.distance);
-    Ok(Proof { lower_bound, boxes: search.boxes, attained })
+    let lower_bound = search.queue.bound().min(attained.distance);
+    Ok(Proof { lower_bound, boxes: search.queue.looked_at(), attained })
 }
 
 impl Search<'_, '_> {
@@ -139,22 +109,19 @@ impl Search<'_, '_> {
         let (cells, model) = (&self.cells, self.model);
         cubes.par_iter_mut().with_min_len(64).for_each(|cube| cells[cube.cell as usize].bound(model, cube));
         for cube in cubes {
-            self.boxes += 1;
+            let age = self.queue.look();
             if cube.bound >= self.threshold || cube.split.is_none() {
-                self.aside = self.aside.min(cube.bound);
+                self.queue.leave(cube.bound);
             } else {
-                self.queue.push(Waiting { cube, age: self.boxes });
+                self.queue.push(cube.bound, age, cube);
             }
         }
     }
 
     /// Halves the lowest boxes.
     fn advance(&mut self) {
-        let mut batch = Vec::with_capacity(BATCH);
-        while batch.len() < BATCH {
-            let Some(Waiting { cube, .. }) = self.queue.pop() else { break };
-            batch.push(cube);
-        }
+        let lowest = std::iter::from_fn(|| self.queue.take(|_| false)).take(BATCH);
+        let batch: Vec<Cube> = lowest.map(|(_, cube)| cube).collect();
         self.halve_intervals(&batch);
         let halves = batch.iter().flat_map(|cube| self.halves(cube)).flatten().collect();
         self.take_in(halves);
@@ -202,7 +169,7 @@ impl Search<'_, '_> {
 
     /// The middle of the lowest box.
     fn lowest(&self) -> Option<Point> {
-        let cube = &self.queue.peek()?.cube;
+        let (_, cube) = self.queue.lowest()?;
         let cell = &self.cells[cube.cell as usize];
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let mut values = [[0.0; 3]; SOURCES];

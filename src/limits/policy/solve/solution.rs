@@ -39,6 +39,7 @@ impl CapCode {
 
 /// A limit that a value breaks.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Cap {
     /// Which.
     pub code: CapCode,

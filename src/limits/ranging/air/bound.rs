@@ -24,6 +24,7 @@ const IMITATES: f64 = 1e-9;
 
 /// Cramér–Rao bound of a distance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AirBound {
     /// Least deviation of an unbiased estimate, m; infinite unless it is seen.
     pub sigma_m: f64,

@@ -17,6 +17,7 @@ const MOST_UNKNOWNS: usize = 100;
 
 /// A choice of bands.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct AirChoice {
     /// Indices of the bands, rising.
     pub bands: Vec<usize>,

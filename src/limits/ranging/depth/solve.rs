@@ -66,6 +66,7 @@ pub struct ExposureNoise {
 
 /// The value of a quantity at which the demand is just met, or why there is none.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct DepthSolution {
     /// The value (largest distance or noise, least of the others), in the unit of `camera`; `None` if none suffices.
     pub value: Option<f64>,

@@ -41,6 +41,7 @@ const MARGIN: f64 = 1e-9;
 
 /// Which windows reach a required information.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Decision {
     /// J(full) ≥ required, \[row\]\[column\] of the windows' centres.
     pub above: Vec<bool>,
@@ -54,6 +55,7 @@ pub struct Decision {
 
 /// Windows and samples that were, and were not, evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[non_exhaustive]
 pub struct Stats {
     /// Windows that some of their pixels prove to be above.
     pub windows_proved_above: usize,

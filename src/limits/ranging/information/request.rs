@@ -97,6 +97,7 @@ pub struct Request<'a> {
 
 /// J of every window, as far as it was asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct InformationMap {
     /// Rows of the centres.
     pub rows: Range<usize>,

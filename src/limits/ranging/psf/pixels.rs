@@ -22,6 +22,7 @@ const PART: f64 = 0.125;
 ///
 /// Infinite where pixels are so much wider than the point spread that no photon falls outside the first one.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PixelBound {
     /// Mean of 1/J: the variance of position averaged over sources that are anywhere.
     pub var_mean_m2: f64,

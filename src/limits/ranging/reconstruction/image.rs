@@ -47,6 +47,7 @@ pub struct EmissionImage<'a> {
 
 /// Information of every pixel, pixel⁻², `[row][column]` without the derivative's margins.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BesideEmission {
     columns: usize,
     margin: usize,

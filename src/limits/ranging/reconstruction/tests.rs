@@ -2,10 +2,10 @@ use super::*;
 use crate::cube::Shape;
 use crate::fisher::precision::PrecisionSolver;
 use crate::planck;
+use crate::random::generator;
 use crate::ranging::derivative::Derivative;
 use crate::scene::EnvironmentObject;
-use crate::simulate::draws::{Draws, generator};
-use crate::statistics::Statistics;
+use rand_distr::{Distribution, Poisson};
 
 const T_K: f64 = 305.0;
 const AROUND_K: f64 = 288.0;
@@ -157,11 +157,11 @@ fn least_squares_reach_the_bound() {
     let parameters = [Parameter::Temperature, Parameter::Lighting(0)];
     model.evaluate(&e, &e, &state, &parameters, false);
     let mean: Vec<f64> = model.signal().iter().map(|s| s * counting.counts_per_radiance).collect();
-    let draws = Draws::new(&Statistics::Poisson, &mean).unwrap();
-    let mut counts = vec![0.0; 6];
+    let laws: Vec<Poisson<f64>> = mean.iter().map(|mean| Poisson::new(*mean).unwrap()).collect();
     let (mut sum, mut square) = (0.0, 0.0);
     for trial in 0..TRIALS {
-        draws.draw_into(&mut generator(11, trial as u64), &mut counts);
+        let mut rng = generator(11, trial as u64);
+        let counts: Vec<f64> = laws.iter().map(|law| law.sample(&mut rng)).collect();
         let mut fit = state.clone();
         for _ in 0..3 {
             model.evaluate(&e, &e, &fit, &parameters, false);

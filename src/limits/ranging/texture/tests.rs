@@ -1,6 +1,6 @@
 use super::*;
 use crate::cube::Shape;
-use crate::simulate::draws::generator;
+use crate::random::generator;
 use rand::RngExt;
 
 fn image(rows: usize, columns: usize, at: impl Fn(usize, usize) -> f64) -> MemoryCube<f64> {

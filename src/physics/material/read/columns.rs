@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::material::Material;
 use crate::material::dielectric::{Dielectric, OpticalConstants};
 use crate::material::model::Model;
-use crate::material::provenance::{Basis, Provenance};
+use crate::material::provenance::Provenance;
 use crate::material::table::{Fault, Table, ascending};
 use crate::spectral_unit::SpectralUnit;
 use std::collections::BTreeSet;
@@ -32,109 +32,46 @@ struct Columns<'a> {
     twins: Vec<(usize, SpectralUnit)>,
 }
 
+/// A column of values, its header and what that says.
+type Told<'a> = (usize, &'a str, Values);
+
 /// All materials of a table.
 pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
     let columns = Columns::of(sheet)?;
-    let grid = &sheet.grid;
     let wavenumbers = columns.wavenumbers()?;
-    let described = |description: String, note: &str| Provenance {
-        description,
-        category: "user".to_owned(),
-        basis: Basis::UserFile,
-        source: source.display().to_string(),
-        licence: String::new(),
-        note: note.to_owned(),
-    };
-    let read_as = |values: &str| {
-        let form = sheet.form.in_words();
-        [columns.axis_in_words.as_str(), values, &form]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
     let own = stem(source);
-    let headers: Vec<&str> = columns.values.iter().map(|(_, header)| *header).collect();
-    if headers == ["n", "k"] {
+    let source = source.display().to_string();
+    if columns.headers() == ["n", "k"] {
         let model = Model::HalfSpace(Dielectric::Constants(columns.optical_constants(&wavenumbers)?));
         let note = "smooth opaque half-space at normal incidence";
-        let material = Material::of(own.clone(), described(format!("spectrum of {own}"), note), model);
-        return Ok(vec![material.reading(read_as("n and k"))]);
+        let provenance = Provenance::of_file(format!("spectrum of {own}"), source, note);
+        let material = Material::of(own, provenance, model);
+        return Ok(vec![material.reading(columns.read_as("n and k", sheet))]);
     }
-    let at = |error: Error, header: &str| error.for_key(header).on_line(grid.header_line);
-    let (mut told, mut left_out): (Vec<(usize, &str, Values)>, Vec<&str>) = (Vec::new(), Vec::new());
-    for &(column, header) in &columns.values {
-        match header::values(header) {
-            Meaning::Values(values) => told.push((column, header, values)),
-            Meaning::Deviation => left_out.push(header),
-            Meaning::Unclear => {
-                let found =
-                    format!("a column `{0}`, which may be what its numbers are or a name", one_line(header));
-                let instead =
-                    "end its header with what they are, as in `panel 2 reflectance` or `panel 2 emissivity`";
-                return Err(at(Error::malformed(found, instead), header));
-            }
-            Meaning::Other => {
-                let found = format!("a column `{}`, from which no emissivity follows", one_line(header));
-                let instead = "use emissivity, or the hemispherical reflectance of an opaque sample, or delete the column";
-                return Err(at(Error::malformed(found, instead), header));
-            }
-        }
-    }
+    let (told, left_out) = columns.told()?;
     let alone = told.len() == 1;
-    let has = |quantity: Quantity| {
-        told.iter().any(|(_, _, values)| values.quantity == Some(quantity) && values.name.is_empty())
-    };
-    let both = has(Quantity::Emissivity) && has(Quantity::Reflectance);
     let mut names = BTreeSet::new();
     let mut materials = Vec::with_capacity(told.len());
-    for (column, header, values) in told {
-        let quantity = match values.quantity {
-            Some(quantity) => quantity,
-            // In a table of materials a name alone stands for emissivity.
-            None if !alone => Quantity::Emissivity,
-            None => {
-                let found = format!(
-                    "a column `{}` of which nothing says whether it is emissivity or reflectance",
-                    one_line(header)
-                );
-                let line = header::suggested(&grid.header, &sheet.ranges);
-                return Err(at(
-                    Error::malformed(found, format!("write the header that is true, such as {line}")),
-                    header,
-                ));
-            }
-        };
-        let name = if alone && values.name.is_empty() { own.clone() } else { values.name.clone() };
+    for one in &told {
+        let (column, header, values) = one;
+        let quantity = columns.quantity(one, alone, sheet)?;
+        let name = if alone && values.name.is_empty() { &own } else { &values.name };
         if name.is_empty() {
-            let (found, instead) = match both {
-                true => (
-                    "columns of emissivity and of reflectance without the name of a material".to_owned(),
-                    "delete one of them if they are of one surface; else name each column after its material, as in skin_emissivity",
-                ),
-                false => (
-                    format!("a column `{}` in a table of materials", one_line(header)),
-                    "name each column after its material, as in skin or skin_reflectance",
-                ),
-            };
-            return Err(at(Error::malformed(found, instead), header));
+            return Err(columns.nameless(header, &told));
         }
-        if !names.insert(name.clone()) {
+        if !names.insert(name) {
             let found = format!("two columns for the material `{name}`");
-            return Err(Error::malformed(found, "give every column its own name").on_line(grid.header_line));
+            let error = Error::malformed(found, "give every column its own name");
+            return Err(error.on_line(sheet.grid.header_line));
         }
-        let table = columns.emissivities(&wavenumbers, column, quantity, values.percent, sheet)?;
-        let note = match quantity {
-            Quantity::Emissivity => "",
-            Quantity::Reflectance => "emissivity = 1 - reflectance (Kirchhoff), taken as opaque",
-        };
+        let table = columns.emissivities(&wavenumbers, *column, quantity, values.percent, sheet)?;
         let description = match alone {
             true => format!("spectrum of {name}"),
             false => format!("column {}", one_line(header)),
         };
         let share = if values.percent { " in percent" } else { "" };
         let mut warnings = Vec::new();
-        if let Some((_, high)) = sheet.ranges.get(column)
+        if let Some((_, high)) = sheet.ranges.get(*column)
             && values.percent
         {
             warnings.extend(of_all(quantity.name(), *high, 100.0));
@@ -142,27 +79,28 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         if let [column, ..] = left_out.as_slice() {
             warnings.push(format!("the errors in the column `{}` are not used", one_line(column)));
         }
-        let read_as = read_as(&format!("{}{share}", quantity.name()));
-        materials.push(
-            Material::of(name, described(description, note), Model::Table(table))
-                .reading(read_as)
-                .warn(warnings),
-        );
+        let provenance = Provenance::of_file(description, source.clone(), quantity.note());
+        let read_as = columns.read_as(&format!("{}{share}", quantity.name()), sheet);
+        let material = Material::of(name.clone(), provenance, Model::Table(table));
+        materials.push(material.reading(read_as).warn(warnings));
     }
     if materials.is_empty() {
-        let found = "no column has emissivities";
-        let line = header::suggested(&grid.header, &sheet.ranges);
-        return Err(Error::malformed(found, format!("write the header that is true, such as {line}"))
-            .on_line(grid.header_line));
+        let error = Error::malformed("no column has emissivities", one_true(sheet));
+        return Err(error.on_line(sheet.grid.header_line));
     }
     Ok(materials)
+}
+
+/// What to write where no header says what its column is.
+fn one_true(sheet: &Sheet) -> String {
+    let line = header::suggested(&sheet.grid.header, &sheet.ranges);
+    format!("write the header that is true, such as {line}")
 }
 
 /// The columns `n` and `k`.
 pub(super) fn optical_constants(sheet: &Sheet) -> Result<OpticalConstants> {
     let columns = Columns::of(sheet)?;
-    let headers: Vec<&str> = columns.values.iter().map(|(_, header)| *header).collect();
-    if headers != ["n", "k"] {
+    if columns.headers() != ["n", "k"] {
         return Err(Error::malformed(
             format!("columns {}", sheet.grid.header.join(",")),
             "optical constants need the columns wavelength_um,n,k",
@@ -227,6 +165,82 @@ impl<'a> Columns<'a> {
             }
         }
         Ok(Self { grid, axis, unit, axis_in_words, values, twins })
+    }
+
+    fn headers(&self) -> Vec<&'a str> {
+        self.values.iter().map(|(_, header)| *header).collect()
+    }
+
+    /// How the file was read, given what the values are.
+    fn read_as(&self, values: &str, sheet: &Sheet) -> String {
+        let parts = [self.axis_in_words.as_str(), values, &sheet.form.in_words()];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
+    fn at(&self, error: Error, header: &str) -> Error {
+        error.for_key(header).on_line(self.grid.header_line)
+    }
+
+    /// The columns of which something follows, and the headers of those with errors, which are left out.
+    fn told(&self) -> Result<(Vec<Told<'a>>, Vec<&'a str>)> {
+        let (mut told, mut left_out) = (Vec::new(), Vec::new());
+        for &(column, header) in &self.values {
+            let (found, instead) = match header::values(header) {
+                Meaning::Values(values) => {
+                    told.push((column, header, values));
+                    continue;
+                }
+                Meaning::Deviation => {
+                    left_out.push(header);
+                    continue;
+                }
+                Meaning::Unclear => (
+                    "which may be what its numbers are or a name",
+                    "end its header with what they are, as in `panel 2 reflectance` or `panel 2 emissivity`",
+                ),
+                Meaning::Other => (
+                    "from which no emissivity follows",
+                    "use emissivity, or the hemispherical reflectance of an opaque sample, or delete the column",
+                ),
+            };
+            let found = format!("a column `{}`, {found}", one_line(header));
+            return Err(self.at(Error::malformed(found, instead), header));
+        }
+        Ok((told, left_out))
+    }
+
+    /// What the values of a column are.
+    fn quantity(&self, (_, header, values): &Told<'_>, alone: bool, sheet: &Sheet) -> Result<Quantity> {
+        match values.quantity {
+            Some(quantity) => Ok(quantity),
+            // In a table of materials a name alone stands for emissivity.
+            None if !alone => Ok(Quantity::Emissivity),
+            None => {
+                let found = format!(
+                    "a column `{}` of which nothing says whether it is emissivity or reflectance",
+                    one_line(header)
+                );
+                Err(self.at(Error::malformed(found, one_true(sheet)), header))
+            }
+        }
+    }
+
+    /// Why a column of several needs a name.
+    fn nameless(&self, header: &str, told: &[Told<'_>]) -> Error {
+        let has = |quantity: Quantity| {
+            told.iter().any(|(_, _, values)| values.quantity == Some(quantity) && values.name.is_empty())
+        };
+        let (found, instead) = match has(Quantity::Emissivity) && has(Quantity::Reflectance) {
+            true => (
+                "columns of emissivity and of reflectance without the name of a material".to_owned(),
+                "delete one of them if they are of one surface; else name each column after its material, as in skin_emissivity",
+            ),
+            false => (
+                format!("a column `{}` in a table of materials", one_line(header)),
+                "name each column after its material, as in skin or skin_reflectance",
+            ),
+        };
+        self.at(Error::malformed(found, instead), header)
     }
 
     /// The wavenumbers of the rows, cm⁻¹; each only once.

@@ -11,11 +11,12 @@
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
 use super::content::{Content, kebab_case, of_all, one_line, short_name, stem, warnings};
+use super::header::Quantity;
 use crate::error::{Error, Result, check};
 use crate::grid;
 use crate::material::Material;
 use crate::material::model::Model;
-use crate::material::provenance::{Basis, Provenance};
+use crate::material::provenance::Provenance;
 use crate::material::table::{Fault, Table, ascending};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -84,17 +85,11 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     let title = value("name");
     let own = short_name(&kebab_case(title));
     let name = if own.is_empty() { stem(source) } else { own };
-    let provenance = Provenance {
-        description: joined(&[title, value("description")], "; "),
-        category: one_line(&value("type").to_lowercase()),
-        basis: Basis::UserFile,
-        source: joined(&[&source.display().to_string(), value("owner")], "; "),
-        licence: String::new(),
-        note: joined(
-            &[value("measurement"), "emissivity = 1 - reflectance (Kirchhoff), taken as opaque"],
-            "; ",
-        ),
-    };
+    let description = joined(&[title, value("description")], "; ");
+    let source = joined(&[&source.display().to_string(), value("owner")], "; ");
+    let note = joined(&[measurement, Quantity::Reflectance.note()], "; ");
+    let category = one_line(&value("type").to_lowercase());
+    let provenance = Provenance { category, ..Provenance::of_file(description, source, &note) };
     let material = Material::of(name, provenance, Model::Table(table)).warn(warnings);
     let sample = kebab_case(value("sample no."));
     let read_as = "ECOSTRESS, wavelength in um, reflectance in percent";

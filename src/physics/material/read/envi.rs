@@ -13,7 +13,7 @@ use crate::file;
 use crate::grid::READ_SPECTRUM;
 use crate::material::Material;
 use crate::material::model::Model;
-use crate::material::provenance::{Basis, Provenance};
+use crate::material::provenance::Provenance;
 use crate::material::table::Table;
 use crate::spectral_unit::SpectralUnit;
 use std::collections::BTreeSet;
@@ -92,86 +92,22 @@ fn of(
     };
     let ignored = header.ignored()?.map(|value| layout.data_type.stored(value));
     let good = header.good_bands(channels)?;
-    let wavenumbers = axis
-        .iter()
-        .map(|&value| {
-            check::positive("wavelength", value, unit.name())
-                .and_then(|value| check::positive("wavenumber", unit.wavenumber_cm1(value), "cm^-1"))
-                .map_err(|error| header.wrong("wavelength", error))
-        })
-        .collect::<Result<Vec<f64>>>()?;
+    let wavenumber = |&value: &f64| {
+        check::positive("wavelength", value, unit.name())
+            .and_then(|value| check::positive("wavenumber", unit.wavenumber_cm1(value), "cm^-1"))
+            .map_err(|error| header.wrong("wavelength", error))
+    };
+    let wavenumbers_cm1 = axis.iter().map(wavenumber).collect::<Result<Vec<f64>>>()?;
+    let library = Library { header, source, unit, wavenumbers_cm1, quantity, scale, good, ignored };
     let spectra: Vec<&[f64]> = samples.chunks_exact(channels).collect();
     let names = names(header, spectra.len(), source)?;
-    let known = |(channel, sample): (usize, &f64)| {
-        let is_good = good.as_ref().is_none_or(|good| good.get(channel).copied().unwrap_or(false));
-        is_good && ignored != Some(*sample) && sample.is_finite()
-    };
     let mut materials = Vec::with_capacity(spectra.len());
     let mut unknown = Vec::new();
     for (name, spectrum) in names.iter().zip(spectra) {
-        let fractions =
-            || spectrum.iter().enumerate().map(|one| if known(one) { one.1 / scale } else { f64::NAN });
-        let (beyond, most) = fractions()
-            .fold((0, 0.0_f64), |(count, most), value| (count + usize::from(value > 1.5), most.max(value)));
-        // Noise goes beyond 1, percent and integers do nearly everywhere.
-        if 2 * beyond > channels {
-            let found =
-                format!("{} of `{}` up to {most} where 1 is all there is", quantity.name(), one_line(name));
-            let instead =
-                format!("write `{SCALE} = 100` where samples are percent, or the factor that is true");
-            return Err(header.wrong(SCALE, Error::malformed(found, instead)));
+        match library.material(name, spectrum)? {
+            Some(material) => materials.push(material),
+            None => unknown.push(format!("`{}`", one_line(name))),
         }
-        let mut rows: Vec<(f64, [f64; 1])> = wavenumbers
-            .iter()
-            .zip(fractions())
-            .map(|(&wavenumber, value)| (wavenumber, [quantity.emissivity(value)]))
-            .collect();
-        let usable = rows.iter().filter(|(_, [e])| !e.is_nan()).count();
-        if usable < 2 && usable < channels {
-            unknown.push(format!("`{}`", one_line(name)));
-            continue;
-        }
-        let table = |rows: &[_]| Table::new(rows).map_err(|error| header.wrong("wavelength", error));
-        // All of them first, so that a channel that is there twice is found wherever it is.
-        let all = table(&rows)?;
-        let good_cm1 = |(wavenumber, [e]): (f64, [f64; 1])| (!e.is_nan()).then_some(wavenumber);
-        let (low, high) = all
-            .rows()
-            .filter_map(good_cm1)
-            .fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-        rows.retain(|(wavenumber, _)| (low..=high).contains(wavenumber));
-        let table = table(&rows)?;
-        let mut said = warnings(&table);
-        if usable < channels {
-            said.push(format!(
-                "{} of {channels} channels are bad or not known; bands that use them are an error",
-                channels - usable
-            ));
-        }
-        said.extend(of_all(quantity.name(), most * scale, scale));
-        let share = if scale == 1.0 { String::new() } else { format!(" times {scale}") };
-        let read_as = format!(
-            "ENVI spectral library, {} in {}, {}{share}",
-            unit.quantity(),
-            unit.name(),
-            quantity.name()
-        );
-        let provenance = Provenance {
-            description: one_line(name),
-            category: "user".to_owned(),
-            basis: Basis::UserFile,
-            source: source.display().to_string(),
-            licence: String::new(),
-            note: match quantity {
-                Quantity::Emissivity => String::new(),
-                Quantity::Reflectance => {
-                    "emissivity = 1 - reflectance (Kirchhoff), taken as opaque".to_owned()
-                }
-            },
-        };
-        materials.push(
-            Material::of(kebab_case(name), provenance, Model::Table(table)).reading(read_as).warn(said),
-        );
     }
     if unknown.is_empty() {
         return Ok(Content::Materials(materials));
@@ -183,6 +119,87 @@ fn of(
     }
     let left_out = |material: Material| material.warn([format!("left out of the same file: {unknown}")]);
     Ok(Content::Materials(materials.into_iter().map(left_out).collect()))
+}
+
+/// What the header says of all spectra.
+struct Library<'a> {
+    header: &'a EnviHeader,
+    source: &'a Path,
+    unit: SpectralUnit,
+    wavenumbers_cm1: Vec<f64>,
+    quantity: Quantity,
+    /// What samples are divided by.
+    scale: f64,
+    good: Option<Vec<bool>>,
+    ignored: Option<f64>,
+}
+
+impl Library<'_> {
+    /// The samples as fractions, those of channels that are bad or not known no numbers.
+    fn fractions(&self, spectrum: &[f64]) -> impl Iterator<Item = f64> {
+        spectrum.iter().enumerate().map(|(channel, sample)| {
+            let is_good = self.good.as_ref().is_none_or(|good| good.get(channel).copied().unwrap_or(false));
+            let known = is_good && self.ignored != Some(*sample) && sample.is_finite();
+            if known { sample / self.scale } else { f64::NAN }
+        })
+    }
+
+    /// One material; `None` where less than two channels are good and known.
+    fn material(&self, name: &str, spectrum: &[f64]) -> Result<Option<Material>> {
+        let (channels, quantity, scale) = (spectrum.len(), self.quantity, self.scale);
+        let (beyond, most) = self
+            .fractions(spectrum)
+            .fold((0, 0.0_f64), |(count, most), value| (count + usize::from(value > 1.5), most.max(value)));
+        // Noise goes beyond 1, percent and integers do nearly everywhere.
+        if 2 * beyond > channels {
+            let found =
+                format!("{} of `{}` up to {most} where 1 is all there is", quantity.name(), one_line(name));
+            let instead =
+                format!("write `{SCALE} = 100` where samples are percent, or the factor that is true");
+            return Err(self.header.wrong(SCALE, Error::malformed(found, instead)));
+        }
+        let fractions = self.wavenumbers_cm1.iter().zip(self.fractions(spectrum));
+        let rows: Vec<(f64, [f64; 1])> =
+            fractions.map(|(&wavenumber, value)| (wavenumber, [quantity.emissivity(value)])).collect();
+        let usable = rows.iter().filter(|(_, [e])| !e.is_nan()).count();
+        if usable < 2 && usable < channels {
+            return Ok(None);
+        }
+        let table = self.table(rows)?;
+        let mut said = warnings(&table);
+        if usable < channels {
+            said.push(format!(
+                "{} of {channels} channels are bad or not known; bands that use them are an error",
+                channels - usable
+            ));
+        }
+        said.extend(of_all(quantity.name(), most * scale, scale));
+        let share = if scale == 1.0 { String::new() } else { format!(" times {scale}") };
+        let read_as = format!(
+            "ENVI spectral library, {} in {}, {}{share}",
+            self.unit.quantity(),
+            self.unit.name(),
+            quantity.name()
+        );
+        let source = self.source.display().to_string();
+        let provenance = Provenance::of_file(one_line(name), source, quantity.note());
+        let material = Material::of(kebab_case(name), provenance, Model::Table(table));
+        Ok(Some(material.reading(read_as).warn(said)))
+    }
+
+    /// The rows from the first known value to the last.
+    fn table(&self, mut rows: Vec<(f64, [f64; 1])>) -> Result<Table<1>> {
+        let table = |rows: &[_]| Table::new(rows).map_err(|error| self.header.wrong("wavelength", error));
+        // All of them first, so that a channel that is there twice is found wherever it is.
+        let all = table(&rows)?;
+        let good_cm1 = |(wavenumber, [e]): (f64, [f64; 1])| (!e.is_nan()).then_some(wavenumber);
+        let (low, high) = all
+            .rows()
+            .filter_map(good_cm1)
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+        rows.retain(|(wavenumber, _)| (low..=high).contains(wavenumber));
+        table(&rows)
+    }
 }
 
 fn unit(header: &EnviHeader, axis: &[f64], columns: Option<&[String]>) -> Result<SpectralUnit> {

@@ -144,6 +144,14 @@ impl Quantity {
         }
     }
 
+    /// What is assumed where this is made into an emissivity.
+    pub(super) const fn note(self) -> &'static str {
+        match self {
+            Self::Emissivity => "",
+            Self::Reflectance => "emissivity = 1 - reflectance (Kirchhoff), taken as opaque",
+        }
+    }
+
     /// The emissivity of a fraction.
     pub(super) fn emissivity(self, fraction: f64) -> f64 {
         match self {

@@ -18,7 +18,7 @@ use crate::error::{Error, Result, check};
 use crate::grid::number;
 use crate::material::Material;
 use crate::material::model::Model;
-use crate::material::provenance::{Basis, Provenance};
+use crate::material::provenance::Provenance;
 use crate::material::table::Table;
 use crate::spectral_unit::SpectralUnit;
 use std::collections::BTreeMap;
@@ -225,22 +225,9 @@ impl Block<'_> {
             parts.collect::<Vec<_>>().join("; ")
         };
         let share = if percent { " in percent" } else { "" };
-        let provenance = Provenance {
-            description: said(&["TITLE", "SAMPLEDESCRIPTION"]),
-            category: "user".to_owned(),
-            basis: Basis::UserFile,
-            source: [source.display().to_string(), said(&["ORIGIN", "OWNER"])]
-                .join("; ")
-                .trim_end_matches("; ")
-                .to_owned(),
-            licence: String::new(),
-            note: match quantity {
-                header::Quantity::Emissivity => String::new(),
-                header::Quantity::Reflectance => {
-                    "emissivity = 1 - reflectance (Kirchhoff), taken as opaque".to_owned()
-                }
-            },
-        };
+        let source = [source.display().to_string(), said(&["ORIGIN", "OWNER"])].join("; ");
+        let source = source.trim_end_matches("; ").to_owned();
+        let provenance = Provenance::of_file(said(&["TITLE", "SAMPLEDESCRIPTION"]), source, quantity.note());
         let read_as = format!("JCAMP-DX, {} in {}, {}{share}", unit.quantity(), unit.name(), quantity.name());
         Ok(Ok(Material::of(name, provenance, Model::Table(table)).reading(read_as).warn(warnings)))
     }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 const FOLDERS: [&str; 5] =
-    ["src", "crates/study/src", "crates/proof/src", "crates/report/src", "crates/cli/src"];
+    ["src", "crates/study/src", "crates/report/src", "crates/cli/src", "crates/evidence/src"];
 const LEDGER: &str = "src/base/demand/ledger.rs";
 
 /// Lines `key`, part of an answer, meaning, with tabs between.

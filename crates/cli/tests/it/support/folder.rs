@@ -60,13 +60,13 @@ impl Folder {
     }
 
     pub(crate) fn run(&self, arguments: &[&str]) -> Outcome {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hadar"));
+        let mut command = Command::new(crate::PROGRAM);
         Outcome::of(command.current_dir(self.path()).args(arguments))
     }
 
     /// The same with a text on standard input.
     pub(crate) fn fed(&self, stdin: &str, arguments: &[&str]) -> Outcome {
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hadar"));
+        let mut command = Command::new(crate::PROGRAM);
         Outcome::of(command.current_dir(self.path()).args(arguments).write_stdin(stdin))
     }
 

@@ -34,6 +34,7 @@ pub struct Sought {
 
 /// A line of a band that reads g·x + o.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Stripe {
     /// The line, counted from 0.
     pub line: usize,

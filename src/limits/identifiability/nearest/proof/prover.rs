@@ -43,7 +43,6 @@ pub(super) struct Prover<'a, 'm> {
     pub(super) bounder: &'m mut Bounder,
     /// Ends of intervals, by axis.
     pub(super) temperature_k: Vec<Vec<f64>>,
-    pub(super) boxes: u64,
 }
 
 impl<'a, 'm> Prover<'a, 'm> {
@@ -91,7 +90,7 @@ impl<'a, 'm> Prover<'a, 'm> {
         });
         let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
-        Self { merged, all, bounder: &mut memory.all, temperature_k, boxes: 0 }
+        Self { merged, all, bounder: &mut memory.all, temperature_k }
     }
 
     /// The state of a mixture, if its cost is below the limit.

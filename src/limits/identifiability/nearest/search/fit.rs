@@ -6,7 +6,7 @@
 
 use super::table::{Emission, Thinned};
 use super::whitened::Whitened;
-use crate::identifiability::step::BoundedStep;
+use crate::box_least_squares::BoxLeastSquares;
 use crate::scene::State;
 use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fold, fused, product};
 use crate::sum::dot;
@@ -143,7 +143,7 @@ fn least_squares(columns: &[&[f64]], goal: &[f64], scale: f64, upper: f64, sum_l
         return vec![(-pull[0] * size / gram[(0, 0)]).clamp(0.0, upper.min(sum_limit))];
     }
     let hessian = DMatrix::from_fn(n, n, |i, j| gram[(i, j)] / size + if i == j { 1e-13 } else { 0.0 });
-    let step = BoundedStep {
+    let step = BoxLeastSquares {
         hessian: &hessian,
         gradient: &DVector::from_vec(pull),
         lower: &vec![0.0; n],

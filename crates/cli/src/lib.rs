@@ -1,0 +1,12 @@
+//! The command `hadar`: parse, run, print.
+//!
+//! A library for two programs. `hadar` is [`main`]. `hadar-evidence` answers `hadar reproduce` and `hadar accuracy`; it takes
+//! their arguments from [`evidence`], and prints, writes and shows progress through [`Global`], so that each flag and message is
+//! defined once.
+
+mod command;
+
+pub use command::evidence;
+pub use command::global::Global;
+pub use command::main;
+pub use command::progress::Bar;

@@ -1,0 +1,7 @@
+//! The program `hadar-evidence`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    hadar_evidence::main()
+}

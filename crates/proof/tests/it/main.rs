@@ -1,4 +1,0 @@
-//! Tests of what holds the crate against references.
-
-mod accuracy;
-mod vectors;
