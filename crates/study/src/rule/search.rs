@@ -53,6 +53,18 @@ struct Image {
     spoiled: Vec<Shortfall>,
 }
 
+/// What the reader of a verdict must know beside it.
+struct Noted {
+    /// What a 'yes' is subject to.
+    provided: Option<Proviso>,
+    /// Whether the camera is said to meet the requirement without a proof.
+    unproved: bool,
+    /// Whether the noise is that of a brighter scene than the limiting one.
+    noisier: bool,
+    /// Whether small errors of the emissivities change the distance several times over.
+    fragile: bool,
+}
+
 impl Searched {
     /// What the estimate says alone.
     fn estimated(pair: Estimate) -> Self {
@@ -78,8 +90,7 @@ impl TellApart {
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
         let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
-        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
-        let image = image.unwrap_or_default();
+        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera)).unwrap_or_default();
         let mut others = vec![image.spoiled.clone()];
         let uncertainty = match uncertain.filter(|_| distance > 0.0) {
             Some(uncertain) => {
@@ -133,11 +144,7 @@ impl TellApart {
             }
         }
         let provided = self.proviso(candidate);
-        let mut warnings = self.warnings_of(candidate, provided);
-        warnings.extend(unproved.then_some(Warning::NotProved));
-        warnings.extend(noisier.then_some(Warning::BrightestNoise));
-        warnings.extend(at.placeholders(surface));
-        warnings.extend(fragile.then_some(Warning::FragileScene));
+        let warnings = self.remarks(candidate, &Noted { provided, unproved, noisier, fragile }, &at, surface);
         let bands = at.bands.len();
         Ok(CameraVerdict {
             name: candidate.named.name.clone(),
@@ -249,6 +256,16 @@ impl TellApart {
         if self.moving.is_some() && self.image(candidate, camera).blur.is_none() {
             warnings.push(Warning::RuleMotionBlurUnknown);
         }
+        warnings
+    }
+
+    /// What is to be said of a camera, made of what was found of it.
+    fn remarks(&self, candidate: &Candidate, noted: &Noted, at: &Study, surface: &Surface) -> Vec<Warning> {
+        let mut warnings = self.warnings_of(candidate, noted.provided);
+        warnings.extend(noted.unproved.then_some(Warning::NotProved));
+        warnings.extend(noted.noisier.then_some(Warning::BrightestNoise));
+        warnings.extend(at.placeholders(surface));
+        warnings.extend(noted.fragile.then_some(Warning::FragileScene));
         warnings
     }
 
