@@ -14,6 +14,7 @@ mod envelope;
 mod expected;
 mod guard;
 mod ideal;
+mod not_in_force;
 mod resolution;
 mod results;
 mod search;
@@ -27,10 +28,11 @@ pub use clauses::{
     MeasuredVerdict, RuleAnswer,
 };
 pub use expected::{TestCheck, TestResult, Told};
+pub use not_in_force::NotInForce;
 pub use results::{
     ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, Grade, IdealCamera,
-    LightTime, LimitingScene, Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleRequirement,
-    StopResult, WhoMeets, WithoutPlaceholders,
+    LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult,
+    WhoMeets, WithoutPlaceholders,
 };
 pub use stand_in::{StandIn, StandInAnswer, StandInScene};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};

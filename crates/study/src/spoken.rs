@@ -130,6 +130,15 @@ impl Serialize for Certified {
     }
 }
 
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Warning", 2)?;
+        object.serialize_field("code", self.code().name())?;
+        object.serialize_field("message", &Spoken(Phrase::Warning(self)))?;
+        object.end()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,9 +7,6 @@ mod table;
 
 pub use table::{Code, Warning};
 
-use crate::spoken::{Phrase, Spoken};
-use serde::ser::{Serialize, SerializeStruct, Serializer};
-
 impl Warning {
     /// The same, said of cameras among several.
     #[must_use]
@@ -40,15 +37,6 @@ pub struct WorstBlackbody {
     pub temperature_k: f64,
     /// By how much warmer its readings are than that, K.
     pub off_k: f64,
-}
-
-impl Serialize for Warning {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Warning", 2)?;
-        object.serialize_field("code", self.code().name())?;
-        object.serialize_field("message", &Spoken(Phrase::Warning(self)))?;
-        object.end()
-    }
 }
 
 #[cfg(test)]

@@ -116,7 +116,9 @@ fn assumptions(result: &LibraryFound) -> String {
         .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
     let noise = match scenario.cube.unit {
         CubeUnit::Radiance => "the stated noise, the same for all samples",
-        _ => "Poisson counts with the stated electronic noise",
+        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
+            "Poisson counts with the stated electronic noise"
+        }
     };
     let known = scenario.emissivity;
     format!(

@@ -161,7 +161,9 @@ pub(crate) fn meets(camera: &CameraVerdict) -> String {
 pub(super) fn fails_by(camera: &CameraVerdict) -> String {
     let LimitingScene { target, alternative, .. } = &camera.limiting;
     let words = camera.fails_by.iter().map(|reason| match reason {
-        Shortfall::Distance if camera.bands == 1 => "one band cannot tell materials".into(),
+        Shortfall::Distance if camera.bands == 1 => {
+            format!("one band cannot tell {target} from {alternative}")
+        }
         Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
         other => in_words(&[*other]),
     });
@@ -205,7 +207,10 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
     if !spoiled.is_empty() {
-        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| match longest {
+        // It is that of blur and full well alone.
+        let by_exposure = spoiled.iter().any(|by| matches!(by, Shortfall::MotionBlur | Shortfall::FullWell));
+        let longest = camera.longest_exposure_s.filter(|_| by_exposure);
+        let longest = longest.map_or_else(String::new, |longest| match longest {
             0.0 => ": the frames alone take too long, however short the exposures".into(),
             longest => format!(": exposures of {} and more are too long", quantity(longest, "s")),
         });

@@ -2,6 +2,7 @@
 //!
 //! The warnings themselves, their data and their codes, are rows of `hadar_study::warning`. A row without words does not compile.
 
+mod block;
 mod calibrate;
 mod camera;
 mod cubes;
@@ -11,43 +12,10 @@ mod ranging;
 mod rule;
 mod simulate;
 
+pub use block::Words;
+
 use super::Say;
-use hadar::words::significant;
 use hadar_study::warning::{Code, Warning};
-
-/// What is said of the warnings of a code.
-#[derive(Debug)]
-pub struct Words {
-    code: Code,
-    /// What it means.
-    pub meaning: &'static str,
-    /// What to do about it.
-    pub remedy: &'static str,
-    /// Names of the warnings that have a sentence here.
-    variants: &'static [&'static str],
-    sentence: fn(&Warning) -> Option<String>,
-}
-
-/// Blocks of words: the code, meaning, remedy, and a sentence for each warning that has the code, made of its data.
-macro_rules! words {
-    ($($code:ident {
-        meaning: $meaning:literal,
-        remedy: $remedy:literal,
-        $($variant:ident $({ $($field:tt)* })? $(($($tuple:tt)*))? $(if $guard:expr)? => $sentence:expr,)+
-    })+) => {
-        pub(super) const WORDS: &[super::Words] = &[$(super::Words {
-            code: hadar_study::warning::Code::$code,
-            meaning: $meaning,
-            remedy: $remedy,
-            variants: &[$(stringify!($variant)),+],
-            sentence: |warning| match warning {
-                $(hadar_study::Warning::$variant $({ $($field)* })? $(($($tuple)*))? $(if $guard)? => Some(String::from($sentence)),)+
-                _ => None,
-            },
-        }),+];
-    };
-}
-use words;
 
 const TOPICS: [&[Words]; 8] = [
     library::WORDS,
@@ -126,10 +94,6 @@ impl Say for Warning {
 /// Whether a reader is told the same, digits that are not shown left out.
 pub(crate) fn say_the_same(one: &Warning, other: &Warning) -> bool {
     one.code() == other.code() && one.say() == other.say()
-}
-
-fn short(value: f64) -> String {
-    significant(value, 2)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What comes of a rule, as data.
 
+use super::not_in_force::NotInForce;
 use super::uncertainty::MarginUncertainty;
 use crate::proviso::Proviso;
 use crate::size::Solutions;
@@ -11,7 +12,6 @@ use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use std::collections::BTreeMap;
-use toml::value::Date;
 
 /// Names of the cameras that meet a rule, and of the others; in JSON a sentence.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,17 +30,6 @@ pub struct WhoMeets {
     pub idle: Option<NotInForce>,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
     pub placeholders: Vec<(String, String, [f64; 2])>,
-}
-
-/// A rule on a day on which it does not hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NotInForce {
-    /// The day.
-    pub day: Date,
-    /// The day from which the rule holds, if it begins.
-    pub from: Option<Date>,
-    /// The last day on which it does, if it ends.
-    pub until: Option<Date>,
 }
 
 /// A camera over the pairs of which more than one number is known of one of the two.

@@ -1,6 +1,6 @@
 //! Calibration: stripes, noise, blackbodies, responses.
 
-use super::words;
+use super::block::words;
 use hadar::words::{quantity, significant};
 
 words! {

@@ -1,6 +1,6 @@
 //! Cameras: readout, motion, view, what is around the target.
 
-use super::{short, words};
+use super::block::{short, words};
 use hadar::instrument::Readout;
 use hadar::words::{length, quantity, significant};
 

@@ -1,6 +1,6 @@
 //! Cubes and what is estimated from them: emissivities, materials, objects.
 
-use super::{short, words};
+use super::block::{short, words};
 use hadar::words::significant;
 
 words! {

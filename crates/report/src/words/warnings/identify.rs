@@ -1,6 +1,6 @@
 //! Distances between materials, and the scene that they are of.
 
-use super::words;
+use super::block::words;
 use hadar::scene::Parameter;
 use hadar::words::significant;
 

@@ -1,6 +1,6 @@
 //! Materials and classes: what was left out or replaced, and what their entries say.
 
-use super::words;
+use super::block::words;
 
 words! {
     Library {

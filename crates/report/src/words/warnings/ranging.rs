@@ -1,6 +1,6 @@
 //! Depth by stereo and distance by air.
 
-use super::{short, words};
+use super::block::{short, words};
 use hadar::words::significant;
 
 words! {

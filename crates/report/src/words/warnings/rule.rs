@@ -1,6 +1,6 @@
 //! Rules: their days, their envelopes, their cameras.
 
-use super::{short, words};
+use super::block::{short, words};
 use crate::words::Say;
 use hadar_study::{NotInForce, Proviso};
 

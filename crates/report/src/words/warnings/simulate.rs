@@ -1,6 +1,6 @@
 //! Simulations: what is drawn, learnt and estimated.
 
-use super::{short, words};
+use super::block::{short, words};
 use hadar::words::significant;
 
 words! {
