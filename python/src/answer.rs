@@ -10,6 +10,7 @@ use hadar::material::Library;
 use hadar_formats::ReadLibrary as _;
 use hadar_report::bundle::Bundle;
 use hadar_report::manifest::{Provenance, answer_json};
+use hadar_report::words::Say;
 use hadar_report::{
     air_ranging, identify as identify_report, range, rule as rule_report, simulate as simulate_report,
     size as size_report,
@@ -103,7 +104,7 @@ impl Common {
             let mut reading = Reading { common: self, said: Vec::new() };
             let found = find(&noting, &mut reading).map_err(|error| question.told(error))?;
             let Found { json, text, draw } = found;
-            let library_warnings = reading.said.iter().map(|warning| warning.to_string()).collect();
+            let library_warnings = reading.said.iter().map(|warning| warning.say()).collect();
             Ok(Answer { json, text, library_warnings, draw })
         })
     }

@@ -7,6 +7,6 @@
 mod command;
 
 pub use command::evidence;
-pub use command::global::{Global, as_json};
+pub use command::global::Global;
 pub use command::main;
 pub use command::progress::Bar;

@@ -27,7 +27,7 @@ mod smoothest;
 
 pub use gaussian::gaussian;
 pub use k_means::{Means, k_means};
-pub use library::{Asked, Cluster, Found, Tried, library_from_cube};
+pub use library::{Asked, COUNT, Cluster, Found, Tried, library_from_cube};
 pub use mmd::{Mmd, mmd};
 pub use nem::{Separated, Surface, nem, ratio};
 pub use smoothest::smoothest;

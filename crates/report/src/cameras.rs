@@ -11,6 +11,7 @@ pub use list::list;
 pub use side_by_side::{Row, SideBySide};
 pub use text::text;
 
+use crate::json::value;
 use hadar::error::{Error, Result};
 use hadar::instrument::comparison::SCENE_K;
 use hadar::instrument::presets::{Missing, Preset};
@@ -119,10 +120,6 @@ impl Worked {
             camera,
         })
     }
-}
-
-fn value(of: &impl serde::Serialize) -> Result<Value> {
-    serde_json::to_value(of).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }
 
 fn object(of: &impl serde::Serialize) -> Result<Map<String, Value>> {

@@ -5,12 +5,13 @@
 
 use crate::table::{Table, number, optional};
 use crate::text::numbers::significant;
+use crate::words::Say;
+use crate::words::probability::probability;
 use hadar::policy::practice::resolution::{PERCEPTION, SIGNIFICANT_K};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_study::Companion;
-use hadar_study::companion::{CompanionRow, Condition, Kind, Measure};
-use hadar_study::words::probability;
+use hadar_study::companion::{CompanionRow, Condition, Measure};
 use std::fmt::Write as _;
 
 /// The measures in their order, with what a line of them is called.
@@ -59,7 +60,7 @@ pub fn text(companion: &Companion, units: Units) -> String {
         }
         let kind = Some(measure.kind()).filter(|kind| last != Some(*kind));
         last = Some(measure.kind());
-        let label = kind.map_or("", Kind::words);
+        let label = kind.map_or_else(String::new, |kind| kind.say());
         let _ = writeln!(out, "  {label:<15} {name:<31} {}", line(&rows, units));
     }
     for note in NOTES {
@@ -83,10 +84,11 @@ fn line(rows: &[&CompanionRow], units: Units) -> String {
     if let Some(unknown) = rows.first().and_then(reason)
         && rows.iter().all(|row| row.unknown() == Some(unknown))
     {
-        return format!("unknown: {unknown}");
+        return format!("unknown: {}", unknown.say());
     }
     let cells = rows.iter().map(|row| {
-        let cell = row.unknown().map_or_else(|| value(row, units), |unknown| format!("none ({unknown})"));
+        let cell =
+            row.unknown().map_or_else(|| value(row, units), |unknown| format!("none ({})", unknown.say()));
         row.task.map_or_else(|| cell.clone(), |task| format!("{} {cell}", task.name()))
     });
     let cells = cells.collect::<Vec<_>>().join(", ");
@@ -138,7 +140,6 @@ fn value(row: &CompanionRow, units: Units) -> String {
                 probability(distance, 4)
             )
         }
-        _ => String::new(),
     }
 }
 
@@ -173,7 +174,7 @@ pub fn table<'a>(companions: impl IntoIterator<Item = &'a Companion>) -> Table {
                     optional(value),
                     conditions.clone(),
                     row.measure.caveat().code().into(),
-                    row.unknown().map_or_else(String::new, |unknown| unknown.to_string()),
+                    row.unknown().map_or_else(String::new, |unknown| unknown.say()),
                 ]);
             }
         }

@@ -11,8 +11,10 @@ mod table;
 use self::element::{escape, wide};
 use crate::manifest::{Provenance, VERSION};
 use crate::table::Table;
+use crate::words::Say;
+use crate::words::warnings::of_code;
 use hadar_study::Warning;
-use hadar_study::warning::Code;
+use hadar_study::warning::{Code, by_code};
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("html/style.css");
@@ -127,23 +129,17 @@ fn list(items: &[String]) -> String {
 
 /// Every kind of warning once: what it means, what to do, and what was said of which.
 fn warnings(warnings: &[Warning]) -> String {
-    let mut codes: Vec<Code> = Vec::new();
-    for warning in warnings {
-        if !codes.contains(&warning.code()) {
-            codes.push(warning.code());
-        }
-    }
-    let of = |code: Code| {
-        let said = warnings.iter().filter(|warning| warning.code() == code).map(ToString::to_string);
+    let of = |(code, said): (Code, Vec<&Warning>)| {
+        let words = of_code(code);
         format!(
             "<h3><code>{}</code></h3>\n<p>{} {}</p>\n{}",
             code.name(),
-            escape(code.meaning()),
-            format_args!("<strong>What to do:</strong> {}", escape(code.remedy())),
-            list(&said.collect::<Vec<_>>())
+            escape(words.meaning),
+            format_args!("<strong>What to do:</strong> {}", escape(words.remedy)),
+            list(&said.into_iter().map(Say::say).collect::<Vec<_>>())
         )
     };
-    codes.into_iter().map(of).collect()
+    by_code(warnings).into_iter().map(of).collect()
 }
 
 fn provenance(made: &Provenance) -> String {

@@ -3,6 +3,7 @@
 //! Nothing in it depends on when or where it was made: no time, no machine, no folder of the one who ran it. The same program with
 //! the same command and inputs writes the same bytes, so that anyone can check a report by making it again.
 
+use crate::json;
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
 use hadar_scenario::Setting;
@@ -45,8 +46,7 @@ pub fn answer_json(
         answer: &'a T,
     }
     let versioned = Versioned { hadar: VERSION, schema: SCHEMA, library_warnings, set: settings, answer };
-    serde_json::to_string_pretty(&versioned)
-        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+    json::pretty(&versioned)
 }
 
 /// Who made a report of what.
@@ -200,9 +200,7 @@ impl Manifest {
 
     /// As it is written.
     pub(crate) fn to_json(&self) -> Result<String> {
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-        Ok(text + "\n")
+        Ok(json::pretty(self)? + "\n")
     }
 }
 

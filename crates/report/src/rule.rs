@@ -4,13 +4,13 @@
 
 mod certificate;
 mod check;
+mod columns;
 mod measured;
 mod record;
 mod sources;
 mod stand_in;
 mod stop;
 mod text;
-mod words;
 
 pub use check::check;
 pub use record::{agreement, parsed, record};
@@ -24,8 +24,9 @@ use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
-use super::text::shortfalls::no;
 use super::text::significant;
+use crate::words::Say;
+use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
 use hadar_scenario::rule::Verdict;
@@ -129,8 +130,8 @@ fn cameras(answer: &RuleAnswer) -> Table {
             let mut row = vec![
                 line.camera.to_owned(),
                 if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
-                words::codes(line.fails_by, " "),
-                line.provided.map(|proviso| proviso.to_string()).unwrap_or_default(),
+                codes(line.fails_by, " "),
+                line.provided.map(|proviso| proviso.say()).unwrap_or_default(),
                 of(&|camera| camera.bands.to_string()),
                 of(&|camera| camera.readout.name().into()),
                 of(&|camera| number(camera.sweep_s)),
@@ -248,7 +249,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
     let mut table = Table::new(["camera", "meets_the_rule", "fails_by", "margin", "margin_proved"]);
     for camera in &ranked {
         let own = verdict(camera);
-        let fails = own.map_or_else(|| camera.fails.join(", "), |own| words::codes(&own.fails_by, " "));
+        let fails = own.map_or_else(|| camera.fails.join(", "), |own| codes(&own.fails_by, " "));
         let proved = own.and_then(|own| Some(own.lower_bound? / only?.requirement.distance));
         table.push(vec![
             camera.name.clone(),

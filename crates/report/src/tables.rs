@@ -1,6 +1,7 @@
 //! Tables that several commands write.
 
 use super::table::{Table, number, optional};
+use crate::words::Say;
 use hadar_study::{PairResult, Warning};
 
 /// All pairs as a table.
@@ -65,7 +66,7 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
 pub fn warnings(warnings: &[Warning]) -> Table {
     let mut table = Table::new(["code", "message"]);
     for warning in warnings {
-        table.push(vec![warning.code().name().into(), warning.to_string()]);
+        table.push(vec![warning.code().name().into(), warning.say()]);
     }
     table
 }

@@ -3,7 +3,6 @@
 pub(crate) mod footing;
 pub(crate) mod numbers;
 pub(crate) mod pairs;
-pub(crate) mod shortfalls;
 mod stats;
 
 pub use footing::with_settings;

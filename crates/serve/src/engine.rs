@@ -9,12 +9,15 @@ use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
 use hadar::policy::trade_off::POINTS;
 use hadar_report::bundle::About;
+use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
 use hadar_report::text::significant;
+use hadar_report::words::Say;
+use hadar_report::words::probability::probability;
+use hadar_report::words::warnings::of_code;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
-use hadar_study::words::probability;
 use hadar_study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -144,7 +147,7 @@ impl Engine {
             let camera: &Preset = camera;
             Named { name: &camera.name, about: &camera.description }
         };
-        json(&Start {
+        json::line(&Start {
             version: VERSION,
             scenario: &self.begin,
             materials: self.library.iter().map(of_material).chain(classes).collect(),
@@ -165,7 +168,7 @@ impl Engine {
             Err(error) => (None, Some(told(&error))),
         };
         let presets: Vec<String> = self.presets()?.map(|camera| camera.name.clone()).collect();
-        json(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
+        json::line(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
     }
 
     fn shown(&self, text: &str, ask: &Ask) -> Result<Answer> {
@@ -180,7 +183,7 @@ impl Engine {
         Ok(Answer {
             met,
             provided: result.verdict.provided.is_some(),
-            sentence: result.verdict.sentence.to_string(),
+            sentence: result.verdict.sentence.say(),
             numbers: rows::of_camera(&result, &study),
             solved: rows::solved(&result, study.units()),
             pairs: result.pairs.iter().map(pair_shown).collect(),
@@ -264,7 +267,7 @@ fn pair_shown(pair: &PairResult) -> Pair {
 
 fn said(warning: &Warning) -> Said {
     let code = warning.code();
-    Said { code: code.name(), message: warning.to_string(), remedy: code.remedy() }
+    Said { code: code.name(), message: warning.say(), remedy: of_code(code).remedy }
 }
 
 /// An error with its place apart.
@@ -274,8 +277,4 @@ fn told(error: &Error) -> Told {
         _ => Default::default(),
     };
     Told { message: error.to_string(), line: place.line, key: place.key }
-}
-
-fn json(value: &impl Serialize) -> Result<String> {
-    serde_json::to_string(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }

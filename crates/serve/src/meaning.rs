@@ -1,6 +1,6 @@
 //! What a word means, as a page of its own: keys of the scenario, warnings, keys of the answer.
 
-use hadar_study::explain::{self, ExplainedCode, ExplainedKey};
+use hadar_report::explain::{self, ExplainedCode, ExplainedKey};
 use std::fmt::Write as _;
 
 /// The page of a word; none where it means nothing.

@@ -8,9 +8,9 @@ mod bias;
 mod point;
 mod results;
 mod stereo;
+mod verdict;
 mod warn;
 mod witness;
-mod wording;
 
 pub use results::{
     AirBand, AirBest, AirFinding, AirPoint, AirRanging, AirSight, AirVerdict, AirWitness, BlindChange,

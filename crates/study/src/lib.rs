@@ -2,8 +2,8 @@
 //!
 //! [`Study`] is a scenario with its materials, bands, surroundings and camera looked up. [`Study::identify`] gives the distances to every
 //! alternative, [`Study::size`] the verdict on the camera and what each hardware quantity would have to be; a folder a command. [`sweep`] asks one question
-//! about many scenes or cameras, [`explain`] says what a key, a warning and a part of an answer mean. Results are plain data that serialise to the
-//! JSON of the command line; text, tables and plots only render them.
+//! about many scenes or cameras. Results are plain data that serialise to the JSON of the command line, whose sentences are those of the one
+//! who writes it ([`spoken`]); text, tables and plots only render them.
 //!
 //! ```
 //! use hadar::material::Library;
@@ -29,7 +29,6 @@ mod cube_noise;
 mod cube_unit;
 pub mod decompose;
 mod distances;
-pub mod explain;
 mod heat_cube;
 mod identify;
 pub mod library;
@@ -47,12 +46,12 @@ mod shortfall;
 mod sight;
 mod simulate;
 mod size;
+pub mod spoken;
 mod stage;
 mod surface;
 pub mod sweep;
 mod warn;
 pub mod warning;
-pub mod words;
 
 pub use crate::proviso::Proviso;
 pub use crate::warning::{Warning, WorstBlackbody};
@@ -67,11 +66,12 @@ pub use looked_up::Study;
 pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
-    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
-    EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
-    Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
-    NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
-    StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer,
+    Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime,
+    LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
+    Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    RuleStudy, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
+    WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;
@@ -83,7 +83,6 @@ pub use simulate::{
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
     RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
-    no_limit,
 };
 pub use surface::Surface;
 

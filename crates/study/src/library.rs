@@ -10,7 +10,7 @@ use super::heat_cube::{Measured, Said};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_estimate::decompose::{NO_MATERIAL, Setting};
-use hadar_estimate::separation::{Asked, library_from_cube};
+use hadar_estimate::separation::{Asked, COUNT, library_from_cube};
 use hadar_scenario::LibraryScenario;
 
 /// Share of χ²/ν above 1 up to which a cluster counts as one material.
@@ -89,8 +89,8 @@ impl LibraryStudy {
         let found = found.map_err(|error| match &error {
             Error::At { place, .. } if place.path.is_some() => error,
             // What is asked for is wrong, or what the cube holds.
-            _ if error.to_string().contains("clusters of") => {
-                error.at(scenario.source.place("clusters.count"))
+            Error::At { place, source } if place.key.as_deref() == Some(COUNT) => {
+                source.as_ref().clone().at(scenario.source.place(COUNT))
             }
             _ => error.in_file(&scenario.cube.data),
         })?;
@@ -109,7 +109,7 @@ impl LibraryStudy {
             warnings.push(Warning::ClustersNotSettled { rounds: found.rounds });
         }
         let bands = measured.bands.len().saturating_sub(measured.bad_bands.len());
-        let misfits: Vec<(String, f64)> = found
+        let misfits: Vec<usize> = found
             .clusters
             .iter()
             .enumerate()
@@ -118,12 +118,13 @@ impl LibraryStudy {
                 let scatter = (2.0 / (one.fitted * bands).max(1) as f64).sqrt();
                 one.chi_square_reduced > 1.0 + MISFIT.max(6.0 * scatter)
             })
-            .map(|(i, one)| (results::name(i), one.chi_square_reduced))
+            .map(|(i, _)| i)
             .collect();
         if !misfits.is_empty() {
+            let chi_squares = misfits.iter().map(|i| found.clusters[*i].chi_square_reduced);
             warnings.push(Warning::ClusterDoesNotFit {
-                chi_square: misfits.iter().map(|one| one.1).fold(0.0, f64::max),
-                clusters: misfits.into_iter().map(|one| one.0).collect(),
+                chi_square: chi_squares.fold(0.0, f64::max),
+                clusters: misfits.iter().map(|i| results::name(*i)).collect(),
             });
         }
         if measured.lights.len() > 1 && scenario.unknown.lighting_total.is_none() {
@@ -146,6 +147,6 @@ impl LibraryStudy {
             });
         }
         let seconds = start.elapsed().as_secs_f64();
-        Ok(results::summary(scenario, measured, found, truth, seconds, warnings))
+        Ok(results::summary(scenario, measured, found, truth, seconds, (misfits, warnings)))
     }
 }

@@ -3,11 +3,8 @@
 //! Motion blur counts the frames one by one ([`hadar::policy::Motion`]): it takes them to be laid over each other before they are added.
 
 use hadar::instrument::Camera;
-use hadar::words::{length, quantity};
-use serde::{Serialize, Serializer};
-use std::fmt::{self, Display, Formatter};
 
-/// Frames that must be registered. Its `Display` completes 'yes, if '.
+/// Frames that must be registered. In JSON it completes 'yes, if '.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proviso {
     /// Frames that must be laid over each other.
@@ -19,6 +16,9 @@ pub struct Proviso {
 }
 
 impl Proviso {
+    /// Stable code of what must hold.
+    pub const CODE: &'static str = "registered-frames";
+
     /// Of a camera that reads so many bands at a speed; `None` where one frame is all it takes.
     pub(crate) fn of(camera: &Camera, bands: usize, speed_m_s: f64) -> Option<Self> {
         let time_s = camera.acquisition_s(bands);
@@ -30,18 +30,5 @@ impl Proviso {
     pub(crate) fn is_harder_than(&self, other: &Self) -> bool {
         let hard = |one: &Self| (one.way_m, one.time_s, one.frames);
         hard(self) > hard(other)
-    }
-}
-
-impl Display for Proviso {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let (time, way) = (quantity(self.time_s, "s"), length(self.way_m));
-        write!(f, "its {} frames can be registered ({time}, a way of {way})", self.frames)
-    }
-}
-
-impl Serialize for Proviso {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
     }
 }

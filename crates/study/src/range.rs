@@ -3,6 +3,7 @@
 mod bounds;
 mod distribution;
 mod looked_up;
+mod overfull;
 mod resolve;
 mod results;
 mod signals;
@@ -12,9 +13,9 @@ mod subject;
 mod verdict;
 mod watched;
 mod witness;
-mod wording;
 
 pub use looked_up::RangeStudy;
+pub(crate) use overfull::Overfull;
 pub use results::{
     BoundMaps, CellMedians, DepthFinding, DepthSolutions, DepthVerdict, Geometry, Line, Matched,
     ObjectBounds, PictureKind, Ranging, Signal, SignalBounds,

@@ -4,7 +4,7 @@
 //! sky, ground and the
 //! two others that light any such pixel most are the surroundings of the decomposition.
 
-use super::range::camera_noise;
+use super::range::{Overfull, camera_noise};
 use super::stage::{self, Staged};
 use super::{Warning, bands, camera, camera_bands};
 use hadar::cube::Shape;
@@ -219,9 +219,7 @@ impl RenderStudy {
         let brightest =
             expected.samples().iter().copied().fold(0.0, f64::max) / f64::from(self.camera.frames);
         let mut warnings = Vec::new();
-        if let Some(full_well) = self.camera.full_well.filter(|full_well| brightest > *full_well) {
-            warnings.push(Warning::PixelFull { counts: brightest, full_well });
-        }
+        warnings.extend(Overfull::of(brightest, &self.camera).map(Overfull::remark));
         let mut noise: Vec<f64> = (0..bands).map(|band| self.counting.var_added(band)).collect();
         noise.sort_by(f64::total_cmp);
         let nodes = self.bands.nodes_cm1();

@@ -14,20 +14,21 @@ mod envelope;
 mod expected;
 mod guard;
 mod ideal;
+mod not_in_force;
 mod resolution;
 mod results;
 mod search;
 mod stand_in;
 mod temperature;
 mod uncertainty;
-mod wording;
 
 pub use asked::{Extent, RuleAsked};
 pub use clauses::{
-    ApartAnswer, CameraAnswer, ClauseAnswer, Found, Line, Measure, MeasuredAnswer, MeasuredScene,
+    ApartAnswer, CameraAnswer, ClauseAnswer, Definition, Found, Line, Measure, MeasuredAnswer, MeasuredScene,
     MeasuredVerdict, RuleAnswer,
 };
 pub use expected::{TestCheck, TestResult, Told};
+pub use not_in_force::NotInForce;
 pub use results::{
     ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, Grade, IdealCamera,
     LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult,
@@ -162,10 +163,10 @@ impl RuleStudy {
 
     /// That the rule does not hold on a day, if that is so.
     #[must_use]
-    pub fn idle(&self, on: Option<Date>) -> Option<Warning> {
+    pub fn idle(&self, on: Option<Date>) -> Option<NotInForce> {
         let about = &self.rule.about;
         let day = on.filter(|day| !about.holds_on(*day))?;
-        Some(Warning::NotInForce { day, from: about.from, until: about.until })
+        Some(NotInForce { day, from: about.from, until: about.until })
     }
 
     /// What the rule says of every camera; `progress` is told how many pairs of materials before a camera are done.
@@ -195,9 +196,10 @@ impl RuleStudy {
         }
         let cameras = together(&clauses);
         let idle = self.idle(asked.on);
-        let sentence = WhoMeets { idle: idle.clone(), ..who_meets(&clauses, &cameras) };
+        let sentence = WhoMeets { idle, ..who_meets(&clauses, &cameras) };
         let rule = self.rule.clone();
-        let warnings = idle.into_iter().chain(self.warnings.iter().cloned()).collect();
+        let warnings =
+            idle.map(Warning::NotInForce).into_iter().chain(self.warnings.iter().cloned()).collect();
         Ok(RuleAnswer { rule, on: asked.on, sentence, cameras, clauses, warnings, stats: ledger.close() })
     }
 }

@@ -1,11 +1,8 @@
 //! What a camera falls short of.
 
-use std::fmt::{self, Display, Formatter};
-
 /// What a camera does not meet, or what a value of a quantity that would do spoils instead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum Shortfall {
     /// The statistical distance is below that demanded.
     Distance,
@@ -51,11 +48,5 @@ impl Shortfall {
             Self::Impractical => "impractical",
             Self::LowestNoise => "lowest-noise",
         }
-    }
-}
-
-impl Display for Shortfall {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(self.code())
     }
 }

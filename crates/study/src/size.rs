@@ -17,13 +17,11 @@ mod curves;
 mod reach;
 pub(crate) mod sensitivity;
 mod trade_offs;
-mod wording;
 
 pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
-pub use wording::no_limit;
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -113,7 +111,7 @@ pub struct Verdict {
     pub margin: Option<f64>,
 }
 
-/// What there is to be said of a camera, target and alternative. Its `Display` is a sentence.
+/// What there is to be said of a camera, target and alternative.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// Name of the camera; empty without one.

@@ -4,8 +4,9 @@ use super::global::{Global, put};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hadar::error::{Error, Result};
+use hadar_report::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
+use hadar_report::json;
 use hadar_scenario::keys::{self, FILES, FileKind, Place, Silent};
-use hadar_study::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
 use hadar_study::warning::Code;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -109,9 +110,7 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<ExitCode> {
         None => FILES.iter().collect(),
         Some(word) => keys::kinds_of(word),
     };
-    let schema = serde_json::to_string_pretty(&keys::schema(kinds))
-        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-    put(&schema)?;
+    put(&json::pretty(&keys::schema(kinds))?)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -13,6 +13,7 @@ use hadar::units::decimal_comma;
 use hadar_formats::ReadLibrary as _;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
+use hadar_report::json;
 use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text::{self, with_settings};
 use hadar_scenario::{Scenario, Setting, Written};
@@ -243,7 +244,7 @@ impl Global {
     /// Prints a result that has no ledger in it, with `stats` beside its keys.
     pub fn answer_with(&self, mut json: serde_json::Value, text: &str, work: &Work) -> Result<()> {
         if let Some(object) = json.as_object_mut() {
-            object.insert("stats".into(), as_json(work)?);
+            object.insert("stats".into(), json::value(work)?);
         }
         self.answer(&json, text, work)
     }
@@ -319,11 +320,6 @@ pub(super) fn put(text: &str) -> Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// Anything as JSON.
-pub fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
-    serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }
 
 type Places<'a> = [&'a ArgMatches; 2];

@@ -3,13 +3,14 @@
 mod files;
 mod import;
 
-use super::global::{Global, as_json};
+use super::global::Global;
 use clap::{Args, Subcommand};
 use files::{Columns, SHOWN_CM1};
 use hadar::demand::Thing;
 use hadar::error::{Error, Result};
 use hadar::material::{Library, Material, MaterialRef, Summary};
 use hadar_report::bundle::Bundle;
+use hadar_report::json;
 use hadar_report::size::figures;
 use hadar_report::text::significant;
 use hadar_study::Surface;
@@ -138,7 +139,7 @@ fn show(material: &Material, library: &Library, global: &Global) -> Result<()> {
     for (nu, e) in wavenumber_cm1.iter().zip(&emissivity).step_by(step) {
         let _ = writeln!(out, "  {nu:>18.0}  {:>15.2}  {e:>10.4}", 1e4 / nu);
     }
-    let json = as_json(&Shown { summary, wavenumber_cm1, emissivity })?;
+    let json = json::value(&Shown { summary, wavenumber_cm1, emissivity })?;
     global.answer_with(json, &out, &library.work())
 }
 

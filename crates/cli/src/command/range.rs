@@ -5,6 +5,7 @@ use super::several;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_report::range::MapFiles;
+use hadar_report::words::Say;
 use hadar_report::{air_ranging, range};
 use hadar_scenario::range::Subject;
 use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario};
@@ -84,7 +85,7 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
     let mut result = study.range(&plan, sink, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = match plan.verdict_alone {
-        true => result.verdict.sentence.to_string(),
+        true => result.verdict.sentence.say(),
         false => range::text(&result),
     };
     result.stats.add(&global.report(&text, |out| range::bundle(&result, out, maps.as_ref()))?);

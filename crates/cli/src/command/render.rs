@@ -5,6 +5,7 @@ use super::global::Global;
 use clap::{Args, ValueEnum};
 use hadar::error::{Error, Result};
 use hadar_report::cube_format::CubeFormat;
+use hadar_report::json;
 use hadar_report::render::{self, Layout};
 use hadar_scenario::RenderScenario;
 use hadar_study::render::{RenderPlan, RenderStudy};
@@ -55,8 +56,6 @@ pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
     bar.finish();
     let text = render::text(&result);
     let work = global.report(&text, |out| render::bundle(&result, layout, format, out))?;
-    let json = serde_json::to_value(&result)
-        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-    global.answer_with(json, &text, &work)?;
+    global.answer_with(json::value(&result)?, &text, &work)?;
     Ok(ExitCode::SUCCESS)
 }

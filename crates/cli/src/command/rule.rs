@@ -225,9 +225,8 @@ fn tested(answer: &RuleAnswer, global: &Global) -> Result<u8> {
     }
     let tests = answer.tested();
     let all = tests.iter().all(|test| test.passes);
-    let warnings: Vec<Warning> = answer.sentence.idle.iter().cloned().collect();
-    let idle: String = warnings.iter().map(|warning| format!("{warning}\n")).collect();
-    let text = idle + &rule::tests(&tests);
+    let warnings: Vec<Warning> = answer.sentence.idle.into_iter().map(Warning::NotInForce).collect();
+    let text = rule::tests(&tests, answer.sentence.idle);
     global.answer(&Output { tests, warnings }, &text, &answer.stats)?;
     Ok(if all { 0 } else { 3 })
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar_report::size;
+use hadar_report::words::Say;
 use hadar_study::Verdict;
 use hadar_study::sweep::Question;
 use std::io::IsTerminal as _;
@@ -36,7 +37,7 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
         && global.skipping() == Skipping::On
         && let Some(result) = study.verdict_alone()?
     {
-        global.answer(&result, &result.verdict.sentence.to_string(), &result.stats)?;
+        global.answer(&result, &result.verdict.sentence.say(), &result.stats)?;
         return Ok(code(args, &result.verdict));
     }
     // Curves are for files and programs: nobody reads them off a terminal.

@@ -4,15 +4,17 @@ mod journal;
 mod work;
 
 use self::journal::{Entry, Hashes, Journal};
-use super::global::{By, Global, as_json};
+use super::global::{By, Global};
 use super::provenance;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
 use hadar::inputs::{self, inputs_of};
 use hadar_report::bundle::About;
+use hadar_report::json;
 use hadar_report::manifest::{Input, VERSION, sha256, sha256_of_file};
 use hadar_report::sweep::{self, Gathered, Swept};
+use hadar_report::words;
 use hadar_scenario::Written;
 use hadar_study::Remembered;
 use hadar_study::sweep::{Asking, Axis, Cases, Plan, Question};
@@ -97,6 +99,7 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
         skipping: global.skipping(),
         seed: global.seed,
         columns: &columns,
+        voice: words::voice,
     };
     global.inputs_are_safe()?;
     let (hashes, sweep) = (Hashes::default(), common(&file, question, &asking, global)?);
@@ -192,7 +195,7 @@ fn answered(
         first_failure: failures.first().map(|(_, message)| *message),
         files,
     };
-    global.answer_with(as_json(&summary)?, &text, stats)?;
+    global.answer_with(json::value(&summary)?, &text, stats)?;
     // A sweep in which nothing went well is a mistake in what all rows share.
     let lost = failed > 0 && answered == 0 && to_go == 0;
     Ok(if lost { ExitCode::from(1) } else { ExitCode::SUCCESS })

@@ -2,8 +2,9 @@
 
 use crate::support::documented;
 use crate::support::folder::{Folder, SCENARIO};
+use hadar_report::explain;
+use hadar_report::words::warnings;
 use hadar_scenario::keys::{self, Silent, Value};
-use hadar_study::explain;
 use hadar_study::warning::Code;
 use serde_json::Value as Json;
 use std::collections::BTreeSet;
@@ -14,7 +15,7 @@ use std::process::Command;
 /// What stands in `results.tsv` is what the fields say in the sources; `HADAR_WRITE=1` writes it anew.
 #[test]
 fn keys_of_answers_are_told_as_in_the_sources() {
-    let path = hadar_testing::repository().join("crates/study/src/explain/results.tsv");
+    let path = hadar_testing::repository().join("crates/report/src/explain/results.tsv");
     let told = documented::keys();
     if std::env::var_os("HADAR_WRITE").is_some() {
         fs::write(&path, &told).unwrap();
@@ -115,7 +116,7 @@ fn every_word_is_explained() {
         assert_eq!(folder.json(&["explain", word])["word"], word);
     }
     let code = Code::NearestAtEdge;
-    assert!(folder.run(&["explain", code.name()]).stdout.contains(code.remedy()));
+    assert!(folder.run(&["explain", code.name()]).stdout.contains(warnings::of_code(code).remedy));
     let shown = folder.json(&["explain", "camera.noise_bandwidth"]);
     assert_eq!(shown["keys"][0]["paths"][0], "camera.noise_bandwidth");
     assert_eq!(shown["keys"][0]["example"], "noise_bandwidth = \"175 kHz\"");

@@ -2,6 +2,7 @@
 
 use crate::support::folder::Folder;
 use hadar::material::Library;
+use hadar_report::words::Say;
 use hadar_scenario::{Rule, Scenario};
 use hadar_study::{ApartAnswer, Extent, Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
 use serde_json::Value;
@@ -396,7 +397,7 @@ fn where_nothing_differs_no_camera_does() {
         assert!(!camera.fixes.as_ref().unwrap().any);
     }
     assert_eq!(answer.requirement.hardware_m2_s, None);
-    let sentence = whole(&text, &RuleAsked::default()).sentence.to_string();
+    let sentence = whole(&text, &RuleAsked::default()).sentence.say();
     assert_eq!(sentence, "None of 2 cameras meets the rule: flir-a325sc, ideal-pnrd.");
 }
 

@@ -133,6 +133,9 @@ pub struct Found {
     pub maps: Maps,
 }
 
+/// The key of an error about how many groups are asked for.
+pub const COUNT: &str = "clusters.count";
+
 /// Groups the pixels of a cube and finds the emissivity of each group; the library of `setting` is not looked at. `done` is told how
 /// many rows are finished in the end.
 ///
@@ -185,7 +188,8 @@ pub fn library_from_cube(
                 "{most} clusters of {pixels} pixels ({without} more send what they are lit by, or are no surface)"
             ),
             "ask for fewer clusters than pixels",
-        ));
+        )
+        .for_key(COUNT));
     }
     let without_nem = fitted.pixels() - profiles.pixels.len();
     let starts = maker.starts(&profiles, most)?;

@@ -8,9 +8,10 @@ use crate::report;
 use crate::vectors::{Topic, VERSION, topics};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
+use hadar_cli::Global;
 use hadar_cli::evidence::AccuracyArgs;
-use hadar_cli::{Global, as_json};
 use hadar_report::bundle::Bundle;
+use hadar_report::json;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -136,7 +137,7 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let mut work = Work::default();
     work.compute(Thing::Sections, tasks.len() as u64);
     work.spare(Thing::Sections, Reason::NotAsked, (all().len() - tasks.len()) as u64);
-    global.answer_with(as_json(&output)?, &text, &work)?;
+    global.answer_with(json::value(&output)?, &text, &work)?;
     let failed = output.stress.is_some_and(|stress| stress.failures > 0)
         || output.brute_force.is_some_and(|found| found.failures > 0);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
@@ -178,7 +179,7 @@ fn vectors(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let mut work = Work::default();
     work.compute(Thing::Sections, 1);
     work.spare(Thing::Sections, Reason::NotAsked, all().len() as u64);
-    global.answer_with(as_json(&output)?, &report::vectors_text(&topics), &work)?;
+    global.answer_with(json::value(&output)?, &report::vectors_text(&topics), &work)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,7 @@
 //! A study of ranging by air as text: the answer, errors over distances, bands, the estimator, what it rests on.
 
 use crate::text::footing::{ASSUMPTIONS, warnings};
+use crate::words::Say;
 use hadar::words::{length, share, significant};
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 use std::fmt::Write as _;
@@ -13,7 +14,7 @@ const LISTED: usize = 5;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &AirRanging) -> String {
-    let mut out = format!("{}\n\n", result.verdict.sentence);
+    let mut out = format!("{}\n\n", result.verdict.sentence.say());
     out.push_str(&distances(result));
     out.push_str(&bands(result));
     out.push_str(&best(result));

@@ -1,6 +1,7 @@
 //! Two cameras side by side: their figures, and what each does before the same scene.
 
-use super::{Sheet, value};
+use super::Sheet;
+use crate::json::value;
 use hadar::error::Result;
 use hadar::instrument::comparison::{Comparison, SCENE_K, compare};
 use hadar::instrument::{Camera, Equivalents, Readout};
@@ -219,7 +220,7 @@ impl SideBySide {
             "a": a,
             "b": b,
             "ratios": ratios,
-            "caveats": self.caveats(),
+            "caveats": value(&self.caveats())?,
         }))
     }
 }

@@ -138,7 +138,8 @@ fn flags(result: &Decomposed) -> String {
             flag::NO_FIT => "no material of the library fits (p below 1e-4)",
             flag::UNDECIDED => "several materials are left by 95 %",
             flag::SKIPPED => "left out: a sample is missing",
-            _ => "the temperature could be anything: nothing is emitted",
+            flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
+            _ => row.flag,
         };
         let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
     }
@@ -242,7 +243,9 @@ fn assumptions(result: &Decomposed) -> String {
         .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
     let noise = match scenario.cube.unit {
         CubeUnit::Radiance => "the stated noise, the same for all samples",
-        _ => "Poisson counts with the stated electronic noise, variance from the model",
+        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
+            "Poisson counts with the stated electronic noise, variance from the model"
+        }
     };
     let library =
         scenario.library.emissivity_error.filter(|error| *error > 0.0).map_or_else(String::new, |error| {

@@ -68,7 +68,8 @@ pub struct Difference {
     pub made_by: [Vec<String>; 2],
     /// The verdicts, where they are others.
     pub verdict: Option<Changed>,
-    /// Whether a 'Yes' is a 'No' or the other way; of other verdicts whether the sentence is another.
+    /// Whether a 'Yes' is a 'No' or the other way; where nothing is decided, and of the text of a folder, whether the words are
+    /// others.
     pub verdict_changed: bool,
     /// Keys of the question.
     pub question: Vec<Changed>,
@@ -112,7 +113,10 @@ impl Difference {
                 before: Some(before.verdict.clone()),
                 after: Some(after.verdict.clone()),
             }),
-            verdict_changed: word(&before.verdict) != word(&after.verdict),
+            verdict_changed: match (&before.decided, &after.decided) {
+                (Some(before), Some(after)) => before != after,
+                _ => word(&before.verdict) != word(&after.verdict),
+            },
             question: changed(&before.question, &after.question),
             inputs: changed(&before.inputs, &after.inputs),
             compared: before.figures.keys().chain(after.figures.keys()).collect::<BTreeSet<_>>().len(),
@@ -135,7 +139,7 @@ impl Difference {
     }
 }
 
-/// A sentence's Yes or No, or itself.
+/// The Yes or No of the text of a folder, or the sentence itself.
 fn word(sentence: &str) -> &str {
     let first = sentence.split([':', '.']).next().unwrap_or_default();
     if ["Yes", "No"].contains(&first) { first } else { sentence }

@@ -43,6 +43,9 @@ pub struct Side {
     /// What answers of its kind consist of: keys of the JSON, tables of the folder.
     pub(super) parts: BTreeSet<String>,
     pub(super) verdict: String,
+    /// What it decides: whether a requirement is met and whether subject to something, of a rule by every camera. `None` where an
+    /// answer decides nothing, and of a folder, whose answer is text.
+    pub(super) decided: Option<Vec<Value>>,
     pub(super) question: BTreeMap<String, String>,
     pub(super) inputs: BTreeMap<String, String>,
     pub(super) figures: BTreeMap<String, Figure>,
@@ -142,6 +145,7 @@ impl Side {
                 (.., Some(Some(Value::Bool(yes)))) => (if *yes { "Yes" } else { "No" }).to_owned(),
                 _ => String::new(),
             };
+        side.decided = decided(&answer);
         for (key, value) in &answer {
             match key.as_str() {
                 "hadar" | "schema" | "stats" | "set" | "sentence" => {}
@@ -186,6 +190,31 @@ impl Side {
         }
         Ok(())
     }
+}
+
+/// What an answer decides, as its JSON has it.
+fn decided(answer: &Map<String, Value>) -> Option<Vec<Value>> {
+    let of = |decision: &Value, provided: Option<&Value>| {
+        let subject = provided.is_some_and(|provided| !provided.is_null());
+        (!decision.is_null()).then(|| vec![decision.clone(), subject.into()])
+    };
+    let verdict = answer.get("verdict");
+    if let Some(met) = verdict.and_then(|verdict| verdict.get("met")) {
+        return of(met, verdict.and_then(|verdict| verdict.get("provided")));
+    }
+    if let Some(yes) = answer.get("identifiability").and_then(|found| found.get("identifiable")) {
+        return of(yes, None);
+    }
+    let cameras = answer.get("rule").and(answer.get("cameras"))?.as_array()?;
+    let found: Option<Vec<Vec<Value>>> = cameras
+        .iter()
+        .map(|camera| {
+            let mut found = of(camera.get("verdict")?, camera.get("provided"))?;
+            found.push(camera.get("name")?.clone());
+            Some(found)
+        })
+        .collect();
+    found.map(|found| found.concat())
 }
 
 /// Text without quotes, anything else as JSON has it.

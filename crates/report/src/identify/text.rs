@@ -13,7 +13,8 @@ use crate::classes;
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
-use hadar_study::words;
+use crate::words::Say;
+use crate::words::probability as words;
 use hadar_study::{Answers, Check, Identification, Study};
 use std::fmt::Write as _;
 
@@ -102,7 +103,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
         };
         let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
         if let Some(class) = class {
-            let _ = writeln!(out, "{class}");
+            let _ = writeln!(out, "{}", class.say());
         }
         if let (false, Some(limit)) = (no_limit(study).is_empty(), pair.statistical_distance_nearest) {
             let _ = writeln!(

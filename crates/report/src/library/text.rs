@@ -3,7 +3,6 @@
 use crate::text::footing::{read_as, warnings};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_scenario::decompose::CubeUnit;
-use hadar_study::Warning;
 use hadar_study::library::{LibraryFound, TruthOfClusters};
 use std::fmt::Write as _;
 
@@ -26,8 +25,8 @@ pub fn text(result: &LibraryFound) -> String {
 
 fn sentence(result: &LibraryFound) -> String {
     let count = result.clusters.len();
-    let misfit = result.warnings.iter().any(|warning| matches!(warning, Warning::ClusterDoesNotFit { .. }));
-    let but = if misfit { " Not all of them explain their pixels: see the warnings." } else { "" };
+    let fit = result.misfits.is_empty();
+    let but = if fit { "" } else { " Not all of them explain their pixels: see the warnings." };
     let worst = result.clusters.iter().map(|row| row.cluster.sigma_mean).fold(0.0, f64::max);
     format!(
         "{} emissivit{} found in {} pixels ({} decided), mean emissivities known to +- {} at worst.{but}",
@@ -117,7 +116,9 @@ fn assumptions(result: &LibraryFound) -> String {
         .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
     let noise = match scenario.cube.unit {
         CubeUnit::Radiance => "the stated noise, the same for all samples",
-        _ => "Poisson counts with the stated electronic noise",
+        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
+            "Poisson counts with the stated electronic noise"
+        }
     };
     let known = scenario.emissivity;
     format!(

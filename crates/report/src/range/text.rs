@@ -1,6 +1,7 @@
 //! A ranging study in words: the answer, the bounds, what would have to change, what it rests on.
 
 use crate::text::footing::{read_as, warnings};
+use crate::words::Say;
 use hadar::ranging::depth::DepthSolution as Solution;
 use hadar::ranging::derivative::Derivative;
 use hadar::words::{self, quantity, share as percent, significant};
@@ -11,7 +12,7 @@ use std::fmt::Write as _;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &Ranging) -> String {
-    let mut out = format!("{}\n\n", result.verdict.sentence);
+    let mut out = format!("{}\n\n", result.verdict.sentence.say());
     out.extend(result.read.as_ref().map(read_as));
     out.push_str(&bounds(result));
     out.push_str(&cells(result));

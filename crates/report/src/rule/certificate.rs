@@ -6,8 +6,9 @@ use super::{measured, text};
 use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
+use crate::words::Say;
+use crate::words::probability::reliability;
 use hadar_scenario::Units;
-use hadar_study::words::reliability;
 use hadar_study::{ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
 use std::fmt::Write as _;
 
@@ -28,14 +29,14 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     if let Some(text) = &about.text {
         let _ = writeln!(out, "{text}\n");
     }
-    let _ = writeln!(out, "**{}**\n", answer.sentence);
+    let _ = writeln!(out, "**{}**\n", answer.sentence.say());
     for clause in &answer.clauses {
         if let Some(name) = &clause.name {
             let _ = writeln!(out, "## {name}\n");
             if let Some(text) = &clause.text {
                 let _ = writeln!(out, "{text}\n");
             }
-            let _ = writeln!(out, "{}\n", clause.sentence);
+            let _ = writeln!(out, "{}\n", clause.sentence.say());
         }
         if let Some(stop) = &clause.stop {
             let _ = writeln!(out, "Stop: {}.\n", decisions(stop, units));
@@ -64,7 +65,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     if !warned.is_empty() {
         out.push_str("## Warnings\n\n");
         warned.iter().for_each(|warning| {
-            let _ = writeln!(out, "- [{}] {warning}", warning.code().name());
+            let _ = writeln!(out, "- [{}] {}", warning.code().name(), warning.say());
         });
         out.push('\n');
     }
@@ -103,7 +104,7 @@ fn budgets(clause: &ClauseAnswer, out: &mut String) {
 
 /// A clause that tells materials apart.
 fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
-    let _ = writeln!(out, "> {}\n", apart.requirement.quotable);
+    let _ = writeln!(out, "> {}\n", apart.requirement.quotable.say());
     out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
     out.push_str("|---|---|---|---|---|---|---|---|---|\n");
     apart.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
@@ -115,7 +116,7 @@ fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
 
 /// A clause that demands a quantity.
 fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
-    let _ = writeln!(out, "> Demanded: {}.\n", measured.definition);
+    let _ = writeln!(out, "> Demanded: {}.\n", measured.definition.say());
     let head =
         ["camera", "meets", "margin", measured::measure(measured.quantity), "evidence", "limiting scene"];
     let _ = writeln!(out, "| {} |\n|---|---|---|---|---|---|", head.join(" | "));

@@ -1,9 +1,10 @@
 //! `--check`: a line a camera, what is known of it and how.
 
 use super::measured::{guarded, measure, measured_scene, undecided};
-use super::text::{fails_by, without_placeholders};
-use super::words::in_words;
+use super::text::{fails_by, idle, without_placeholders};
 use crate::text::significant;
+use crate::words::Say;
+use crate::words::shortfall::in_words;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
@@ -12,7 +13,7 @@ use std::fmt::Write as _;
 /// A line for every camera; of a rule with clauses, a line for each of them below it.
 #[must_use]
 pub fn check(answer: &RuleAnswer) -> String {
-    let idle = answer.sentence.idle.as_ref().map_or_else(String::new, |warning| format!("{warning}\n"));
+    let idle = idle(answer.sentence.idle);
     if let Some(only) = answer.only() {
         let required = only.requirement.distance;
         let lines =
@@ -83,7 +84,8 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
                 format!("met, but searched and not proved: {least} where it is least{guarded}")
             }
         };
-        let proviso = camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {proviso}"));
+        let proviso =
+            camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {}", proviso.say()));
         known + &proviso
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;

@@ -1,8 +1,10 @@
 //! Clauses that demand a quantity, and how well margins are known, as text.
 
+use super::columns::columns;
 use super::stop::{approach, metres};
-use super::words::{columns, in_words};
 use crate::text::numbers::{numbers, quantity, significant};
+use crate::words::Say;
+use crate::words::shortfall::in_words;
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
@@ -24,7 +26,7 @@ pub(super) fn of_measured(measured: &MeasuredAnswer, units: Units) -> String {
         ]
     }));
     let mut out = columns(&rows, &[1, 2]);
-    let _ = writeln!(out, "  demanded: {}\n", measured.definition);
+    let _ = writeln!(out, "  demanded: {}\n", measured.definition.say());
     for camera in &measured.cameras {
         let mut lines = Vec::new();
         lines.extend(camera.approach.as_ref().map(|seen| ("until then", approach(seen, units))));

@@ -7,7 +7,9 @@
 //!
 //! Source: in-toto attestation framework, Statement v1 and predicate `test-result` v0.1 (github.com/in-toto/attestation).
 
+use crate::json;
 use crate::manifest::{Input, Provenance, SCHEMA, VERSION, sha256};
+use crate::words::Say;
 use hadar::error::{Error, Result};
 use hadar_scenario::rule::Verdict;
 use hadar_study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
@@ -37,7 +39,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
             "interval": camera.interval,
             "limiting_clause": camera.limiting_clause,
             "evidence": camera.grade.name(),
-            "provided": camera.provided.map(|proviso| proviso.to_string()),
+            "provided": camera.provided.map(|proviso| proviso.say()),
         })
     });
     let set = &study.rule().scenario.source.settings;
@@ -56,15 +58,15 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
             "from": day(about.from),
             "until": day(about.until),
         },
-        "sources": as_value(&answer.rule.sources)?,
-        "sentence": answer.sentence.to_string(),
+        "sources": json::value(&answer.rule.sources)?,
+        "sentence": answer.sentence.say(),
         "cameras": cameras.collect::<Vec<_>>(),
         "clauses": clauses,
-        "warnings": as_value(&super::text::together(answer))?,
-        "inputs": as_value(&provenance.inputs)?,
+        "warnings": json::value(&super::text::together(answer))?,
+        "inputs": json::value(&provenance.inputs)?,
     });
     if let Some(rule) = record.get_mut("rule").and_then(Value::as_object_mut).filter(|_| !set.is_empty()) {
-        rule.insert("set".into(), as_value(set)?);
+        rule.insert("set".into(), json::value(set)?);
     }
     Ok(record)
 }
@@ -79,7 +81,7 @@ fn of_clause(clause: &ClauseAnswer) -> Result<Value> {
         "name": clause.name,
         "kind": clause.kind,
         "text": clause.text,
-        "stop": as_value(&clause.stop)?,
+        "stop": json::value(&clause.stop)?,
         "quantity": quantity,
         "demanded": demanded,
         "lines": lines.collect::<Result<Vec<_>>>()?,
@@ -94,38 +96,36 @@ fn of_line(clause: &ClauseAnswer, index: usize, line: &Line<'_>) -> Result<Value
             (
                 own.map(|own| own.statistical_distance),
                 own.and_then(|own| own.lower_bound).map(|bound| bound / apart.requirement.distance),
-                own.map_or(Ok(Value::Null), |own| as_value(&own.limiting))?,
+                own.map_or(Ok(Value::Null), |own| json::value(&own.limiting))?,
             )
         }
         Found::Measured(measured) => {
             let own = measured.cameras.get(index);
-            (own.and_then(|own| own.value), None, own.map_or(Ok(Value::Null), |own| as_value(&own.limiting))?)
+            (
+                own.and_then(|own| own.value),
+                None,
+                own.map_or(Ok(Value::Null), |own| json::value(&own.limiting))?,
+            )
         }
     };
     Ok(json!({
         "camera": line.camera,
         "verdict": line.verdict.name(),
-        "fails_by": as_value(&line.fails_by)?,
-        "undecided_by": as_value(&line.undecided_by)?,
+        "fails_by": json::value(&line.fails_by)?,
+        "undecided_by": json::value(&line.undecided_by)?,
         "reached": reached,
         "margin": line.margin,
         "margin_proved": proved,
-        "uncertainty": as_value(&line.uncertainty)?,
+        "uncertainty": json::value(&line.uncertainty)?,
         "evidence": line.grade.name(),
-        "provided": line.provided.map(|proviso| proviso.to_string()),
+        "provided": line.provided.map(|proviso| proviso.say()),
         "limiting_scene": scene,
     }))
 }
 
-fn as_value(value: &impl serde::Serialize) -> Result<Value> {
-    serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
-}
-
 /// A record as it is written.
 pub(super) fn text(record: &Value) -> Result<String> {
-    let text = serde_json::to_string_pretty(record)
-        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-    Ok(text + "\n")
+    Ok(json::pretty(record)? + "\n")
 }
 
 /// The statement about a certificate of such a text.

@@ -1,9 +1,10 @@
 //! Where the figures of a rule are from, and what its tests say, as text.
 
+use super::text::idle;
 use crate::text::significant;
 use hadar_scenario::Rule;
 use hadar_scenario::rule::{Figure, Ground};
-use hadar_study::{TestResult, Told};
+use hadar_study::{NotInForce, TestResult, Told};
 use std::fmt::Write as _;
 
 /// Every figure below what stands behind it.
@@ -57,11 +58,12 @@ pub(super) fn dates(rule: &Rule) -> Vec<String> {
 
 /// A line a test, and what was found instead.
 #[must_use]
-pub fn tests(results: &[TestResult]) -> String {
+pub fn tests(results: &[TestResult], of_idle: Option<NotInForce>) -> String {
     let failed = results.iter().filter(|result| !result.passes).count();
-    let mut out = match failed {
-        0 => format!("All {} tests of the rule hold.\n", results.len()),
-        failed => format!("{failed} of {} tests of the rule do not hold.\n", results.len()),
+    let mut out = idle(of_idle);
+    let _ = match failed {
+        0 => writeln!(out, "All {} tests of the rule hold.", results.len()),
+        failed => writeln!(out, "{failed} of {} tests of the rule do not hold.", results.len()),
     };
     for result in results {
         let clause = result.clause.as_ref().map_or_else(String::new, |name| format!(", {name}"));

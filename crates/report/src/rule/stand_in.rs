@@ -1,14 +1,15 @@
 //! The thermal stand-in as text, table and picture: how exact it must be so that no camera of the rule tells it from a person.
 
+use super::text::idle;
 use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, LineFigure, Series};
 use crate::table::{Table, number, optional};
 use crate::text::footing::warnings;
 use crate::text::significant;
+use crate::words::probability::reliability;
 use hadar::error::Result;
 use hadar_study::warning::Code;
-use hadar_study::words::reliability;
 use hadar_study::{StandIn, StandInAnswer};
 use std::fmt::Write as _;
 
@@ -16,8 +17,7 @@ use std::fmt::Write as _;
 #[must_use]
 pub fn stand_in(answer: &StandInAnswer) -> String {
     let units = answer.units;
-    let idle = answer.warnings.iter().filter(|warning| warning.code() == Code::NotInForce);
-    let mut out: String = idle.map(|warning| format!("{warning}\n")).collect();
+    let mut out = idle(answer.idle);
     out.push_str(&sentence(answer));
     let _ = write!(
         out,
@@ -44,7 +44,7 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
             },
         ]
     }));
-    out.push_str(&super::words::columns(&rows, &[3, 4, 5]));
+    out.push_str(&super::columns::columns(&rows, &[3, 4, 5]));
     out.push_str(
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
          as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \

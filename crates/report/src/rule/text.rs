@@ -1,21 +1,25 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
+use super::columns::columns;
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
-use super::words::{columns, in_words, in_words_of_kind};
 use crate::companion;
 use crate::size::rows::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
+use crate::words::Say;
+use crate::words::probability::{demanded, reliability};
+use crate::words::rule::in_words_of_kind;
+use crate::words::shortfall::in_words;
+use crate::words::warnings::say_the_same;
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
-use hadar_study::words::{demanded, reliability};
 use hadar_study::{
-    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy,
-    Shortfall, Warning,
+    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce, RuleAnswer,
+    RuleStudy, Shortfall, Warning,
 };
 use std::fmt::Write as _;
 
@@ -23,7 +27,7 @@ use std::fmt::Write as _;
 #[must_use]
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     let units = answer.rule.scenario.units();
-    let mut out = format!("{}\n\n", answer.sentence);
+    let mut out = format!("{}\n\n", answer.sentence.say());
     if answer.only().is_none() {
         out.push_str(&overview(answer));
     }
@@ -33,7 +37,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
             if let Some(text) = &clause.text {
                 let _ = writeln!(out, "  {text}");
             }
-            let _ = writeln!(out, "  {}\n", clause.sentence);
+            let _ = writeln!(out, "  {}\n", clause.sentence.say());
         }
         if let Some(stop) = &clause.stop {
             let _ = writeln!(out, "Stop\n  {}\n", decisions(stop, units));
@@ -48,7 +52,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         .iter()
         .filter_map(|clause| {
             let name = clause.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-            Some(format!("  {name}{}", clause.apart()?.requirement.quotable))
+            Some(format!("  {name}{}", clause.apart()?.requirement.quotable.say()))
         })
         .collect();
     if !quotables.is_empty() {
@@ -73,7 +77,7 @@ fn overview(answer: &RuleAnswer) -> String {
     rows.extend(answer.cameras.iter().map(|camera| {
         let verdict = match (camera.verdict, &camera.provided) {
             (Verdict::Meets, None) => "yes".to_owned(),
-            (Verdict::Meets, Some(proviso)) => format!("yes, if {proviso}"),
+            (Verdict::Meets, Some(proviso)) => format!("yes, if {}", proviso.say()),
             (Verdict::Undecided, _) => format!("undecided: {}", camera.undecided.join(", ")),
             (Verdict::Fails, _) => format!("no: {}", camera.fails.join(", ")),
         };
@@ -116,13 +120,18 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
     out
 }
 
+/// The line above what is said of a rule that does not hold, if it does not.
+pub(super) fn idle(of: Option<NotInForce>) -> String {
+    of.map_or_else(String::new, |idle| format!("{}\n", idle.say()))
+}
+
 /// All warnings; what is said of several cameras is said once, with their names.
 pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let mut said: Vec<(&Warning, Vec<&str>)> = Vec::new();
     let lines: Vec<_> = answer.clauses.iter().flat_map(|clause| clause.lines()).collect();
     for camera in &lines {
         for warning in camera.warnings {
-            match said.iter_mut().find(|(known, _)| known.says_as(warning)) {
+            match said.iter_mut().find(|(known, _)| say_the_same(known, warning)) {
                 Some((_, names)) if names.contains(&camera.camera) => {}
                 Some((_, names)) => names.push(camera.camera),
                 None => said.push((warning, vec![camera.camera])),
@@ -141,7 +150,7 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
 pub(crate) fn meets(camera: &CameraVerdict) -> String {
     let said = match (camera.verdict, &camera.provided) {
         (Verdict::Meets, None) => "yes".into(),
-        (Verdict::Meets, Some(proviso)) => format!("yes, if {proviso}"),
+        (Verdict::Meets, Some(proviso)) => format!("yes, if {}", proviso.say()),
         (Verdict::Undecided, _) => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
         (Verdict::Fails, _) => format!("no: {}", fails_by(camera)),
     };
@@ -152,7 +161,9 @@ pub(crate) fn meets(camera: &CameraVerdict) -> String {
 pub(super) fn fails_by(camera: &CameraVerdict) -> String {
     let LimitingScene { target, alternative, .. } = &camera.limiting;
     let words = camera.fails_by.iter().map(|reason| match reason {
-        Shortfall::Distance if camera.bands == 1 => "one band cannot tell materials".into(),
+        Shortfall::Distance if camera.bands == 1 => {
+            format!("one band cannot tell {target} from {alternative}")
+        }
         Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
         other => in_words(&[*other]),
     });
@@ -196,7 +207,10 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
     if !spoiled.is_empty() {
-        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| match longest {
+        // It is that of blur and full well alone.
+        let by_exposure = spoiled.iter().any(|by| matches!(by, Shortfall::MotionBlur | Shortfall::FullWell));
+        let longest = camera.longest_exposure_s.filter(|_| by_exposure);
+        let longest = longest.map_or_else(String::new, |longest| match longest {
             0.0 => ": the frames alone take too long, however short the exposures".into(),
             longest => format!(": exposures of {} and more are too long", quantity(longest, "s")),
         });
@@ -214,7 +228,7 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
 
 /// How sure the limiting scene is, and what that is worth where figures are uncertain.
 pub(super) fn certified(camera: &CameraVerdict) -> String {
-    let said = camera.certificate.to_string();
+    let said = camera.certificate.say();
     if camera.uncertainty.is_none() { said } else { said + ", its figures as they are stated" }
 }
 
@@ -269,7 +283,7 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
-    let mut lines = vec![found, part.definition.to_string()];
+    let mut lines = vec![found, part.definition.say()];
     if let Some(near) = &part.neighbourhood {
         lines.push(format!(
             "nine tenths of these scenes are within {} K of equilibrium with the surroundings, unlit share up to {}",
@@ -280,7 +294,7 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let within = part.fraction_within_emissivity_error;
     if within > 0.0 {
         let of = share(within) + &error(part.standard_error_within_emissivity_error);
-        lines.push(format!("in {of} {}", part.emissivity_error));
+        lines.push(format!("in {of} {}", part.emissivity_error.say()));
     }
     lines
 }

@@ -3,8 +3,8 @@
 use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
 use crate::text::numbers::significant;
+use crate::words::probability::percent;
 use hadar_scenario::Units;
-use hadar_study::words::percent;
 use hadar_study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
 

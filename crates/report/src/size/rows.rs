@@ -1,10 +1,11 @@
 //! The numbers of a sizing one by one: what each is called, its value with its unit, and the key of the JSON that it stands at.
 
 use crate::text::numbers::{quantity, significant};
+use crate::words::probability::probability;
+use crate::words::size::no_limit;
 use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Units;
-use hadar_study::words::probability;
-use hadar_study::{PairResult, Sizing, Study, no_limit};
+use hadar_study::{PairResult, Sizing, Study};
 
 /// A number that is shown.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]

@@ -4,10 +4,11 @@ use super::rows;
 use crate::text::footing::{assumptions, gaussian, warnings};
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
+use crate::words::Say;
+use crate::words::probability::demanded_probability;
 use crate::{classes, companion};
 use hadar::words::share;
 use hadar_scenario::Units;
-use hadar_study::words::demanded_probability;
 use hadar_study::{PairResult, Sizing, Study};
 use std::fmt::Write as _;
 
@@ -20,7 +21,7 @@ const DROWNED: f64 = 2.0;
 #[must_use]
 pub fn text(result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
-    let _ = writeln!(out, "{}\n", result.verdict.sentence);
+    let _ = writeln!(out, "{}\n", result.verdict.sentence.say());
     let limiting = rows::limiting(result);
     if let Some(pair) = limiting {
         out.push_str(&readings(pair, result, study));

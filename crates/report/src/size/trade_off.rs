@@ -6,8 +6,8 @@
 use crate::figures::Plot;
 use crate::plot::{self, Axis, Band, LineFigure, Marker, Rule, Series, Style};
 use crate::table::{Table, number, optional};
-use crate::text::shortfalls::no;
 use crate::text::{quantity, significant};
+use crate::words::shortfall::no;
 use hadar::policy::{CapCode, Quantity, TradeOff, trade_off::Point};
 use hadar_study::Sizing;
 

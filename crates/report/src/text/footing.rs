@@ -1,9 +1,11 @@
 //! What results rest on, and what their reader must know.
 
 use super::numbers::listed;
+use crate::words::Say;
 use hadar::instrument::Readout;
 use hadar_formats::cube::Found;
 use hadar_scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario, Setting};
+use hadar_study::warning::by_code;
 use hadar_study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -154,14 +156,12 @@ pub(crate) fn warnings(warnings: &[Warning]) -> String {
     }
     let mut out = format!("{WARNINGS}\n");
     // One line per code: a whole library would otherwise bury the answer.
-    for (i, warning) in warnings.iter().enumerate() {
-        if warnings[..i].iter().any(|earlier| earlier.code() == warning.code()) {
-            continue;
-        }
-        let more = warnings[i + 1..].iter().filter(|later| later.code() == warning.code()).count();
-        let rest =
-            if more > 0 { format!(" (and {more} more of this kind, see --json)") } else { String::new() };
-        let _ = writeln!(out, "  [{}] {warning}{rest}", warning.code().name());
+    for (code, said) in by_code(warnings) {
+        let rest = match said.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {more} more of this kind, see --json)"),
+        };
+        let _ = writeln!(out, "  [{}] {}{rest}", code.name(), said[0].say());
     }
     out
 }

@@ -56,7 +56,7 @@ pub struct AirRanging {
 pub struct AirVerdict {
     /// Whether what is demanded is met at the target's own distance; `None` where nothing is.
     pub met: Option<bool>,
-    /// In words.
+    /// What is said, in JSON a sentence.
     pub sentence: AirFinding,
 }
 

@@ -1,7 +1,6 @@
 //! What the members of two classes say together.
 
 use hadar::identifiability::multi::ClassDistances;
-use std::fmt::{self, Display, Formatter};
 
 /// A class in an answer; a material is one of itself.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -104,26 +103,5 @@ impl ClassAnswer {
     #[must_use]
     pub fn chance_one_more_is_nearer(side: &ClassSide) -> Option<f64> {
         (side.is_class && !side.mean).then(|| 1.0 / (side.spectra as f64 + 1.0))
-    }
-}
-
-/// How many spectra a verdict rests on, and which two decide.
-impl Display for ClassAnswer {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let rests = |side: &ClassSide| match (side.is_class, side.mean) {
-            (false, _) => side.name.clone(),
-            (true, true) => format!("the mean of {} spectra of {}", side.spectra, side.name),
-            (true, false) if side.spectra == 1 => format!("1 spectrum of {}", side.name),
-            (true, false) => format!("{} spectra of {}", side.spectra, side.name),
-        };
-        let [own, other] = &self.worst;
-        write!(f, "It rests on {} and {}", rests(&self.target), rests(&self.alternative))?;
-        if self.pairs > 1 {
-            write!(f, "; the hardest of {} pairs is {own} against {other}", self.pairs)?;
-        }
-        match &self.mixtures {
-            Some(_) => f.write_str(", and mixtures are counted in."),
-            None => f.write_str("."),
-        }
     }
 }

@@ -1,7 +1,5 @@
 //! What can be told in a companion table: measures, what each is worth, its caveat, and why a number may be missing.
 
-use std::fmt::{self, Display, Formatter};
-
 /// What a number is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -26,21 +24,10 @@ impl Kind {
             Self::Bound => "bound",
         }
     }
-
-    /// In words.
-    #[must_use]
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::RuleOfThumb => "rule of thumb",
-            Self::ObserverModel => "observer model",
-            Self::Bound => "bound",
-        }
-    }
 }
 
 /// What is told in a row; kind, quantities and caveat follow from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Measure {
     /// Pixels and cycles across the target.
     PixelsOnTarget,
@@ -121,9 +108,8 @@ impl Measure {
     }
 }
 
-/// What the reader of a row must know. Its `Display` is a sentence.
+/// What the reader of a row must know.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Caveat {
     /// Geometry alone.
     Geometry,
@@ -168,40 +154,8 @@ impl Caveat {
     }
 }
 
-impl Display for Caveat {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Geometry => {
-                "geometry alone: no noise, contrast, air, blur or motion; the same whatever the target's temperature and material"
-            }
-            Self::FieldOfViewDiffers => {
-                "the camera's field of view over its pixels is another angle than its pixel over its focal length: one of \
-                 the figures is wrong, and with it every range of geometry"
-            }
-            Self::NetdAlone => {
-                "computed at the background temperature of ASTM E1543, whose scope is scanning systems; 'intercomparisons \
-                 based solely on NETD figures may be misleading'"
-            }
-            Self::Observers => {
-                "fitted to people before displays; the cycles are those of the pixels, without noise, contrast and blur; shape, \
-                 not material"
-            }
-            Self::Mrtd => {
-                "the eye is in the factor of perception, which is a choice; differences below 0.2 degC are insignificant \
-                 (ASTM E1213); a lens without aberrations; what is behind the target must differ by so much"
-            }
-            Self::Limit => "no algorithm is right more often by one pixel; a limit, not a promise; material, not shape",
-            Self::AllAlike => {
-                "no algorithm is right more often by all pixels of a square target whose pixels are all in the state of the \
-                 scenario, their noise independent; a limit, not a promise; material, not shape"
-            }
-        })
-    }
-}
-
-/// Why there is no number. Its `Display` is the reason.
+/// Why there is no number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Unknown {
     /// No camera.
     NoCamera,
@@ -235,20 +189,5 @@ impl Unknown {
             Self::FinerThanLens => "finer-than-lens",
             Self::NotCompared => "not-compared",
         }
-    }
-}
-
-impl Display for Unknown {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NoCamera => "there is no camera",
-            Self::NoSize => "the size of the target is not given",
-            Self::NoDistance => "the distance of the target is not given",
-            Self::NoLight => "the camera counts no photons of a blackbody at that temperature",
-            Self::BeyondNumbers => "size over distance is beyond all numbers",
-            Self::FinerThanPixels => "such bars are finer than the pixels sample",
-            Self::FinerThanLens => "the lens leaves nothing of such bars",
-            Self::NotCompared => "nothing was told from anything",
-        })
     }
 }

@@ -42,7 +42,7 @@ struct Caveats;
 
 impl Serialize for Caveats {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(Caveat::ALL.iter().map(|caveat| (caveat.code(), caveat.to_string())))
+        serializer.collect_map(Caveat::ALL.iter().map(|caveat| (caveat.code(), *caveat)))
     }
 }
 
@@ -138,7 +138,7 @@ impl Serialize for CompanionRow {
         out.serialize_field("conditions", &Named(&self.conditions))?;
         out.serialize_field("caveat", self.measure.caveat().code())?;
         out.serialize_field("unknown", &self.unknown().map(Unknown::code))?;
-        out.serialize_field("reason", &self.unknown().map(|unknown| unknown.to_string()))?;
+        out.serialize_field("reason", &self.unknown())?;
         out.end()
     }
 }

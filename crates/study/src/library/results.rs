@@ -34,6 +34,9 @@ pub struct LibraryFound {
     pub without_nem: usize,
     /// The clusters, that of the most pixels first.
     pub clusters: Vec<ClusterRow>,
+    /// Places of those whose pixels one emissivity does not explain.
+    #[serde(skip)]
+    pub misfits: Vec<usize>,
     /// Every count that was tried, where there were several.
     pub tried: Vec<Tried>,
     /// Prior probability of each cluster in a pixel, in any scale: that of its mean emissivity.
@@ -141,7 +144,7 @@ pub(super) fn summary(
     found: Found,
     truth: Option<TruthOfClusters>,
     seconds: f64,
-    mut warnings: Vec<Warning>,
+    (misfits, mut warnings): (Vec<usize>, Vec<Warning>),
 ) -> LibraryFound {
     let Found { clusters, prior, tried, drawn, without_nem, maps, .. } = found;
     let bands = &measured.bands;
@@ -189,6 +192,7 @@ pub(super) fn summary(
         drawn,
         without_nem,
         clusters: rows,
+        misfits,
         tried,
         prior,
         flags: skipped,

@@ -125,7 +125,7 @@ pub struct DepthVerdict {
     pub signal: Signal,
 }
 
-/// What there is to be said of depth. Its `Display` is a sentence.
+/// What there is to be said of depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DepthFinding {
     /// Windows were held against the demand.

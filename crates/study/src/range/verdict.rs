@@ -1,5 +1,6 @@
 //! The answer in a sentence, what diffraction adds, and what the reader must know.
 
+use super::Overfull;
 use super::looked_up::{RangeStudy, SECTIONS};
 use super::results::{BoundMaps, DepthFinding, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use super::subject::{Depth, Measured, Resolved};
@@ -132,6 +133,13 @@ impl RangeStudy {
     }
 }
 
+impl RangeStudy {
+    /// The brightest pixel, where it holds more than its well.
+    pub(crate) fn overfull(&self, result: &Ranging) -> Option<Overfull> {
+        Overfull::of(result.maps.brightest?, self.camera.as_ref()?)
+    }
+}
+
 /// What the reader must know.
 pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
     let mut warnings = match &study.subject {
@@ -154,12 +162,7 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
         let (signal, left_out) = (found.signal.name(), all.windows - found.windows);
         warnings.push(Warning::DarkSamples { signal, left_out, windows: all.windows });
     }
-    if let (Some(full_well), Some(counts)) =
-        (study.camera.as_ref().and_then(|camera| camera.full_well), result.maps.brightest)
-        && counts > full_well
-    {
-        warnings.push(Warning::PixelFull { counts, full_well });
-    }
+    warnings.extend(study.overfull(result).map(Overfull::remark));
     if let Resolved::Cube(_) = &study.subject
         && let Some(cube) = by(Signal::HeatCube)
     {

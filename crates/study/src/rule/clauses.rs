@@ -9,6 +9,7 @@ use crate::companion::Companion;
 use crate::proviso::Proviso;
 use crate::{Shortfall, Warning};
 use hadar::demand::Work;
+use hadar::ranging::depth::Demand;
 use hadar_scenario::rule::Verdict;
 use hadar_scenario::{Date, Rule};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -115,10 +116,46 @@ pub struct MeasuredAnswer {
     pub quantity: Measure,
     /// How much of it, in the unit of the quantity.
     pub demanded: f64,
-    /// What that means, in words.
-    pub definition: String,
+    /// What that means, in JSON in words.
+    pub definition: Definition,
     /// Every camera, in the order of the rule.
     pub cameras: Vec<MeasuredVerdict>,
+}
+
+/// What a quantity that a clause demands means.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Definition {
+    /// Pixels across a size at the greatest distance, by geometry and motion alone.
+    Pixels {
+        /// Pixels demanded.
+        pixels: f64,
+        /// Size of the target, m.
+        size_m: f64,
+    },
+    /// Standard deviations of an unbiased estimate of the temperature, the emissivity known.
+    Temperature {
+        /// How many.
+        coverage_factor: f64,
+        /// What they must be within, K.
+        error_k: f64,
+        /// Whether there are errors of the emissivities, which are not carried into it.
+        without_emissivity_errors: bool,
+    },
+    /// The least error of a depth.
+    Depth {
+        /// What is looked at.
+        object: &'static str,
+        /// The error demanded.
+        error: Demand,
+        /// The share of the windows that must reach it.
+        share: f64,
+        /// Distances that it is looked at from.
+        distances: usize,
+        /// Whether the rule has air, which is not in it.
+        without_air: bool,
+        /// Whether there are uncertain figures, which are not carried into it.
+        without_uncertainty: bool,
+    },
 }
 
 /// A quantity that a clause demands.

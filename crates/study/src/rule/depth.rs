@@ -9,9 +9,10 @@
 use super::apart::steps;
 use super::approach::{Approach, Moving, contradiction, spoiled};
 use super::cameras::Named;
-use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
-use crate::range::{RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::warning::by_code;
 use crate::{Shortfall, Warning};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
@@ -42,11 +43,14 @@ struct Before {
 }
 
 /// What is found from one distance.
+#[derive(Clone)]
 struct Seen {
     met: bool,
     margin: f64,
     /// Median of the object's windows, m; as asked for where none shows it.
     distance_m: f64,
+    overfull: Option<Overfull>,
+    /// What is to be said of it.
     warnings: Vec<Warning>,
 }
 
@@ -96,31 +100,23 @@ impl DepthClause {
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
         let mut verdicts = Vec::with_capacity(self.cameras.len());
         for (done, camera) in self.cameras.iter().enumerate() {
-            verdicts.push(self.judged(camera)?);
+            let seen = camera.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
+            verdicts.push(self.judged(camera, seen.collect::<Result<_>>()?)?);
             progress(done + 1);
         }
         let share = self.demand.requirement.share;
-        let (quantity, demanded, error) = match self.demand.requirement.error {
-            Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m, hadar::words::length(error_m)),
-            Demand::Relative(part) => (Measure::RelativeDepthError, part, hadar::words::share(part)),
+        let (quantity, demanded) = match self.demand.requirement.error {
+            Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m),
+            Demand::Relative(part) => (Measure::RelativeDepthError, part),
         };
-        let looks = self.cameras.iter().map(|camera| camera.studies.len()).max().unwrap_or(1);
-        let from = match looks {
-            1 => String::new(),
-            _ => format!(", at {looks} distances from the nearest to the farthest"),
+        let definition = Definition::Depth {
+            object: self.demand.object.name(),
+            error: self.demand.requirement.error,
+            share,
+            distances: self.cameras.iter().map(|camera| camera.studies.len()).max().unwrap_or(1),
+            without_air: self.cameras.iter().any(|camera| camera.air),
+            without_uncertainty: self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()),
         };
-        let mut definition = format!(
-            "least depth error of the {} within {error} in {} of its windows{from}",
-            self.demand.object.name(),
-            hadar::words::share(share)
-        );
-        if self.cameras.iter().any(|camera| camera.air) {
-            definition += " (the air of the rule is not in it: no camera is said to meet it)";
-        }
-        if self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()) {
-            definition +=
-                " (uncertain figures are not carried into it: no camera that has some is said to meet it)";
-        }
         Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
     }
 
@@ -146,19 +142,24 @@ impl DepthClause {
             Demand::Relative(_) => 1,
         };
         let margin = reach.map_or(0.0, |reach| reach.powi(power));
-        Ok(Seen { met, margin, distance_m: depth_m.unwrap_or(distance_m), warnings: found.warnings })
+        let overfull = study.overfull(&found);
+        Ok(Seen {
+            met,
+            margin,
+            distance_m: depth_m.unwrap_or(distance_m),
+            overfull,
+            warnings: found.warnings,
+        })
     }
 
-    fn judged(&self, before: &Before) -> Result<MeasuredVerdict> {
-        let seen = before.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
-        let mut seen = seen.collect::<Result<Vec<_>>>()?;
+    /// The verdict, made of what was found from every distance; what is to be said of it is handed on and decides nothing.
+    fn judged(&self, before: &Before, mut seen: Vec<Seen>) -> Result<MeasuredVerdict> {
         seen.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
-        let mut warnings: Vec<Warning> = Vec::new();
-        for warning in seen.iter().flat_map(|seen| &seen.warnings) {
-            if !warnings.iter().any(|known| known.code() == warning.code()) {
-                warnings.push(warning.clone());
-            }
-        }
+        let overfull = seen.iter().any(|seen| seen.overfull.is_some());
+        // The same is said from every distance.
+        let said = by_code(seen.iter().flat_map(|seen| &seen.warnings)).into_iter();
+        let mut warnings: Vec<Warning> =
+            said.filter_map(|(_, of_code)| of_code.first().copied().cloned()).collect();
         warnings.extend(contradiction(&before.named.camera));
         let worst = seen
             .into_iter()
@@ -174,7 +175,7 @@ impl DepthClause {
             fails_by.push(Shortfall::DepthError);
         }
         fails_by.extend(before.spoiled.iter().copied());
-        if warnings.iter().any(|warning| matches!(warning, Warning::PixelFull { .. })) {
+        if overfull {
             fails_by.push(Shortfall::FullWell);
         }
         // The street has no air, and is rendered for each camera as it is stated: who passes without either may not with them.
@@ -219,5 +220,54 @@ fn distances(clause: &Clause, demand: &DepthDemand, approach: Option<&Approach>)
         [least, most] if least == most => vec![least],
         [least, most] if most < ALIKE * least => vec![least, most],
         ends => steps(ends).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const RULE: &str = "cameras = [\"flir-a325sc\"]\n[target]\nmaterial = \"skin\"\ntemperature = \"33 degC\"\n\
+        [alternatives]\nmaterials = [\"aluminium\"]\n[bands]\nstep = \"20 cm^-1\"\n[[clause]]\nname = \"z\"\n\
+        kind = \"depth-error\"\n[clause.requirement]\ndepth_error = \"0.2 m\"\n[clause.stereo]\nbaseline = \"0.5 m\"\n";
+
+    /// The clause of the rule and its camera, from no distance.
+    fn clause() -> (DepthClause, Before) {
+        let rule = Rule::from_toml(RULE, None).unwrap();
+        let hadar_scenario::rule::Demand::DepthError(demand) = &rule.clauses[0].demand else { panic!() };
+        let library = Library::embedded().unwrap();
+        let clause = DepthClause::new(&rule, &rule.clauses[0], demand, &[], &library).unwrap();
+        let named = super::super::cameras::of(&rule).unwrap().remove(0);
+        (clause, Before { named, studies: Vec::new(), approach: None, spoiled: Vec::new(), air: false })
+    }
+
+    proptest! {
+        /// A verdict that is made without any remark, or with others, is the same.
+        #[test]
+        fn remarks_decide_nothing(
+            looks in prop::collection::vec((any::<bool>(), 0.0..3.0f64, any::<bool>(), 0..3usize), 1..4),
+        ) {
+            let (clause, before) = clause();
+            let overfull = Overfull { counts: 2.0, full_well: 1.0 };
+            let seen: Vec<Seen> = looks
+                .iter()
+                .map(|&(met, margin, full, said)| Seen {
+                    met,
+                    margin,
+                    distance_m: 5.0,
+                    overfull: full.then_some(overfull),
+                    warnings: [overfull.remark(), Warning::NoDepth].into_iter().take(said).collect(),
+                })
+                .collect();
+            let without = seen.iter().map(|one| Seen { warnings: Vec::new(), ..one.clone() }).collect();
+            let (with, without) = (clause.judged(&before, seen).unwrap(), clause.judged(&before, without).unwrap());
+            let full = looks.iter().any(|look| look.2);
+            prop_assert_eq!(with.fails_by.contains(&Shortfall::FullWell), full);
+            prop_assert_eq!(with.verdict, without.verdict);
+            prop_assert_eq!(with.fails_by, without.fails_by);
+            prop_assert_eq!(with.undecided_by, without.undecided_by);
+            prop_assert_eq!((with.margin, with.grade), (without.margin, without.grade));
+        }
     }
 }

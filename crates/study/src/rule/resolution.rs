@@ -7,7 +7,7 @@
 
 use super::approach::{Approach, Moving};
 use super::cameras::Named;
-use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use crate::Shortfall;
@@ -52,11 +52,7 @@ impl Resolution {
     pub(super) fn answer(&self) -> Result<MeasuredAnswer> {
         let judged = |(named, bands): &(Named, usize)| self.judged(named, *bands);
         let cameras = self.cameras.iter().map(judged).collect::<Result<_>>()?;
-        let definition = format!(
-            "{} pixels across {} at the greatest distance, by geometry and motion alone",
-            self.pixels,
-            hadar::words::length(self.size_m)
-        );
+        let definition = Definition::Pixels { pixels: self.pixels, size_m: self.size_m };
         Ok(MeasuredAnswer { quantity: Measure::Pixels, demanded: self.pixels, definition, cameras })
     }
 

@@ -1,5 +1,6 @@
 //! What comes of a rule, as data.
 
+use super::not_in_force::NotInForce;
 use super::uncertainty::MarginUncertainty;
 use crate::proviso::Proviso;
 use crate::size::Solutions;
@@ -12,8 +13,7 @@ use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use std::collections::BTreeMap;
 
-/// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence, and another one where
-/// placeholders decide.
+/// Names of the cameras that meet a rule, and of the others; in JSON a sentence.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WhoMeets {
     /// Those that do, each with what it hangs on.
@@ -27,7 +27,7 @@ pub struct WhoMeets {
     /// Whether it is one clause of several that they meet.
     pub clause: bool,
     /// That the rule does not hold on the day that is asked about.
-    pub idle: Option<Warning>,
+    pub idle: Option<NotInForce>,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
     pub placeholders: Vec<(String, String, [f64; 2])>,
 }
@@ -63,7 +63,7 @@ pub struct RuleRequirement {
     pub quotable: Quotable,
 }
 
-/// What can be quoted of a rule. Its `Display` is a sentence or two.
+/// What can be quoted of a rule; in JSON a sentence or two.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quotable {
     /// Where it is demanded.
@@ -156,7 +156,7 @@ pub struct CameraVerdict {
     pub warnings: Vec<Warning>,
 }
 
-/// How sure a worst case is. Its `Display` is the statement.
+/// How sure a worst case is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certified {
     /// How it is known.
@@ -285,7 +285,7 @@ pub struct NotIdentifiable {
     pub neighbourhood: Option<Neighbourhood>,
 }
 
-/// The camera that no other surpasses. Its `Display` says that it does not tell the pair.
+/// The camera that no other surpasses; in JSON that it does not tell the pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IdealCamera {
     /// f-number.
@@ -322,7 +322,7 @@ pub enum LightTime {
     LongestIntegration,
 }
 
-/// Standard deviation of an emissivity in a band. Its `Display` says that it makes up more than the distance.
+/// Standard deviation of an emissivity in a band; in JSON that it makes up more than the distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EmissivityError(pub f64);
 

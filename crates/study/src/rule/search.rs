@@ -53,6 +53,18 @@ struct Image {
     spoiled: Vec<Shortfall>,
 }
 
+/// What the reader of a verdict must know beside it.
+struct Noted {
+    /// What a 'yes' is subject to.
+    provided: Option<Proviso>,
+    /// Whether the camera is said to meet the requirement without a proof.
+    unproved: bool,
+    /// Whether the noise is that of a brighter scene than the limiting one.
+    noisier: bool,
+    /// Whether small errors of the emissivities change the distance several times over.
+    fragile: bool,
+}
+
 impl Searched {
     /// What the estimate says alone.
     fn estimated(pair: Estimate) -> Self {
@@ -78,9 +90,7 @@ impl TellApart {
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
         let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
-        let mut warnings = self.warnings_of(candidate);
-        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
-        let image = image.unwrap_or_default();
+        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera)).unwrap_or_default();
         let mut others = vec![image.spoiled.clone()];
         let uncertainty = match uncertain.filter(|_| distance > 0.0) {
             Some(uncertain) => {
@@ -102,16 +112,14 @@ impl TellApart {
         let guard = uncertainty.as_ref().map_or(0.0, |found| distance / self.required - found.low);
         let lower_bound = worst.lower_bound.map(|bound| (bound - guard * self.required).max(0.0));
         grade = grade.guarded(verdict, uncertainty.as_ref());
-        if passes && lower_bound.is_none_or(|bound| bound < self.required) {
-            warnings.push(Warning::NotProved);
+        let unproved = passes && lower_bound.is_none_or(|bound| bound < self.required);
+        if unproved {
             grade = grade.max(Grade::Searched);
         }
-        if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
-            warnings.push(Warning::BrightestNoise);
-            // A scene that fails with more noise than it has itself may do with its own.
-            if fails_by.as_slice() == [Shortfall::Distance] {
-                grade = Grade::Searched;
-            }
+        let noisier = at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added);
+        // A scene that fails with more noise than it has itself may do with its own.
+        if noisier && fails_by.as_slice() == [Shortfall::Distance] {
+            grade = Grade::Searched;
         }
         let mut limiting = limiting(
             candidate.distance_matters,
@@ -120,58 +128,29 @@ impl TellApart {
             &worst.pair,
             self.is_unknown(Nuisance::EnvironmentTemperature),
         );
-        let (mut fixes, mut without_placeholders) = (None, None);
-        if let Some(warning) = at.placeholders(surface) {
-            warnings.push(warning);
-            without_placeholders = if alone { None } else { self.without_placeholders(candidate)? };
-        }
+        let without_placeholders = match limiting.placeholders {
+            Some(_) if !alone => self.without_placeholders(candidate)?,
+            _ => None,
+        };
+        let (mut fixes, mut fragile) = (None, false);
         if !alone {
             let shot = at.nearest(surface, f64::INFINITY)?;
             limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
                 .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
             let local = at.local(at.unknowns.clone(), surface, f64::INFINITY)?;
-            if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
-                warnings.push(Warning::FragileScene);
-            }
-            if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
-                let task = at.task(&camera);
-                let mut quantities = at.solutions(&camera, surface)?;
-                // Where the target is and how fast it moves is the rule's to say.
-                quantities
-                    .0
-                    .retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
-                let mut any = false;
-                let mut spoils = BTreeMap::new();
-                for (quantity, solution) in &quantities.0 {
-                    let Some(value) = solution.value else { continue };
-                    let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
-                    // That is not the quantity's doing.
-                    spoiled.retain(|by| *by != Shortfall::MotionUnknown);
-                    // Those of the limiting scene that the brightest one does not know of.
-                    spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
-                        CapCode::Diffraction => Some(Shortfall::Diffraction),
-                        CapCode::Impractical => Some(Shortfall::Impractical),
-                        CapCode::LowestNoise => Some(Shortfall::LowestNoise),
-                        CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
-                    }));
-                    any |= spoiled.is_empty();
-                    if !spoiled.is_empty() {
-                        spoils.insert(quantity.key(), spoiled);
-                    }
-                }
-                fixes = Some(Fixes { any, spoils, quantities });
+            fragile = shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance;
+            if let Some(camera) = at.camera.as_ref().filter(|_| distance < self.required) {
+                fixes = Some(self.fixes(candidate, &at, camera, surface)?);
             }
         }
-        let frames = warnings.iter().find_map(|warning| match *warning {
-            Warning::FramesInMotion(proviso) => Some(proviso),
-            _ => None,
-        });
+        let provided = self.proviso(candidate);
+        let warnings = self.remarks(candidate, &Noted { provided, unproved, noisier, fragile }, &at, surface);
         let bands = at.bands.len();
         Ok(CameraVerdict {
             name: candidate.named.name.clone(),
             passes,
             fails_by,
-            provided: frames.filter(|_| passes),
+            provided: provided.filter(|_| passes),
             bands,
             readout: at.camera.as_ref().map_or(Readout::Simultaneous, |camera| camera.readout),
             sweep_s: at.camera.as_ref().map_or(0.0, |camera| camera.sweep_s(bands)),
@@ -193,6 +172,40 @@ impl TellApart {
             grade,
             warnings,
         })
+    }
+
+    /// What a 'yes' hangs on.
+    fn proviso(&self, candidate: &Candidate) -> Option<Proviso> {
+        let near = candidate.near.first()?;
+        Proviso::of(near.camera.as_ref()?, near.bands.len(), self.pace_m_s()?)
+    }
+
+    /// What each figure of the camera would have to be in the limiting scene, and what that would spoil.
+    fn fixes(&self, candidate: &Candidate, at: &Study, camera: &Camera, surface: &Surface) -> Result<Fixes> {
+        let task = at.task(camera);
+        let mut quantities = at.solutions(camera, surface)?;
+        // Where the target is and how fast it moves is the rule's to say.
+        quantities.0.retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
+        let mut any = false;
+        let mut spoils = BTreeMap::new();
+        for (quantity, solution) in &quantities.0 {
+            let Some(value) = solution.value else { continue };
+            let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+            // That is not the quantity's doing.
+            spoiled.retain(|by| *by != Shortfall::MotionUnknown);
+            // Those of the limiting scene that the brightest one does not know of.
+            spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
+                CapCode::Diffraction => Some(Shortfall::Diffraction),
+                CapCode::Impractical => Some(Shortfall::Impractical),
+                CapCode::LowestNoise => Some(Shortfall::LowestNoise),
+                CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
+            }));
+            any |= spoiled.is_empty();
+            if !spoiled.is_empty() {
+                spoils.insert(quantity.key(), spoiled);
+            }
+        }
+        Ok(Fixes { any, spoils, quantities })
     }
 
     fn is_unknown(&self, nuisance: Nuisance) -> bool {
@@ -228,14 +241,13 @@ impl TellApart {
     }
 
     /// What is to be said of a camera before any scene is searched.
-    fn warnings_of(&self, candidate: &Candidate) -> Vec<Warning> {
+    fn warnings_of(&self, candidate: &Candidate, provided: Option<Proviso>) -> Vec<Warning> {
         let Some(near) = candidate.near.first() else { return Vec::new() };
         let Some(camera) = &near.camera else { return Vec::new() };
         let state =
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
-        let frames = self.pace_m_s().and_then(|speed| Proviso::of(camera, near.bands.len(), speed));
-        warnings.extend(frames.map(Warning::FramesInMotion));
+        warnings.extend(provided.map(Warning::FramesInMotion));
         let farthest_m = candidate.distance_m.map(|[_, most]| most);
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
@@ -244,6 +256,16 @@ impl TellApart {
         if self.moving.is_some() && self.image(candidate, camera).blur.is_none() {
             warnings.push(Warning::RuleMotionBlurUnknown);
         }
+        warnings
+    }
+
+    /// What is to be said of a camera, made of what was found of it.
+    fn remarks(&self, candidate: &Candidate, noted: &Noted, at: &Study, surface: &Surface) -> Vec<Warning> {
+        let mut warnings = self.warnings_of(candidate, noted.provided);
+        warnings.extend(noted.unproved.then_some(Warning::NotProved));
+        warnings.extend(noted.noisier.then_some(Warning::BrightestNoise));
+        warnings.extend(at.placeholders(surface));
+        warnings.extend(noted.fragile.then_some(Warning::FragileScene));
         warnings
     }
 

@@ -16,7 +16,7 @@
 
 use super::apart::{TellApart, steps};
 use super::uncertainty::Uncertain;
-use super::{Kind, RuleStudy};
+use super::{Kind, NotInForce, RuleStudy};
 use crate::{Study, Surface, Warning};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
@@ -57,6 +57,9 @@ pub struct StandInAnswer {
     pub rows: Vec<StandIn>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
+    /// That the rule does not hold on the day that is asked about.
+    #[serde(skip)]
+    pub idle: Option<NotInForce>,
     /// Whether errors of the emissivities, which the rule has, are left out.
     #[serde(skip)]
     pub without_errors: bool,
@@ -180,10 +183,12 @@ impl RuleStudy {
             progress(rows.len(), all);
         }
         let without_errors = scenario.sensitivity.is_some_and(|errors| errors.emissivity_error > 0.0);
+        let idle = self.idle(on);
         let left_out = without_errors.then_some(Warning::EmissivityErrorsLeftOut);
         Ok(StandInAnswer {
             clause: name,
-            warnings: self.idle(on).into_iter().chain(left_out).collect(),
+            idle,
+            warnings: idle.map(Warning::NotInForce).into_iter().chain(left_out).collect(),
             without_errors,
             distance: apart.required,
             detection_probability: detection::probability(apart.required),

@@ -7,7 +7,7 @@
 
 use super::approach::{Approach, Moving, contradiction, spoiled};
 use super::cameras::Named;
-use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
 use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
@@ -81,14 +81,11 @@ impl TemperatureClause {
             verdicts.push(self.judged(camera)?);
             progress(done + 1);
         }
-        let unasked = match self.sensitivity {
-            true => " (errors of the emissivities are not carried into it: no camera is said to meet it)",
-            false => "",
+        let definition = Definition::Temperature {
+            coverage_factor: self.coverage_factor,
+            error_k: self.error_k,
+            without_emissivity_errors: self.sensitivity,
         };
-        let definition = format!(
-            "{} standard deviations of an unbiased estimate of the temperature, the emissivity known, within {} K{unasked}",
-            self.coverage_factor, self.error_k
-        );
         let (quantity, demanded) = (Measure::TemperatureErrorK, self.error_k);
         Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
     }

@@ -150,7 +150,7 @@ impl Plan {
                 let others = first.iter().filter(|setting| setting.key != key).cloned();
                 let error = read(&file.with(others.chain([setting(by, key, value)]))).err();
                 // One that is read, or a message about something else: it is the rows' business.
-                let about = error.filter(|error| error.to_string().starts_with(&own));
+                let about = error.filter(|error| is_about(error, &own));
                 if about.is_none() {
                     refused = None;
                     break;
@@ -163,6 +163,13 @@ impl Plan {
         }
         Ok(())
     }
+}
+
+/// Whether an error is about a key that was set, which has no place in a file.
+fn is_about(error: &Error, own: &str) -> bool {
+    let Error::At { place, .. } = error else { return false };
+    let key = place.key.as_ref().filter(|_| place.path.is_none() && place.line.is_none());
+    key.is_some_and(|key| key.starts_with(own))
 }
 
 fn input<'v>(key: &str, values: impl Iterator<Item = &'v str> + Clone) -> Input {

@@ -4,6 +4,7 @@ use super::record::{Record, record};
 use crate::air_ranging::{AirPlan, AirRangingStudy};
 use crate::decompose::{DecomposeStudy, Keep};
 use crate::range::{RangePlan, RangeStudy};
+use crate::spoken::{Voice, with_voice};
 use crate::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
 use hadar::demand::{Skipping, Work};
 use hadar::error::{Error, Result};
@@ -53,6 +54,8 @@ pub struct Asking<'a> {
     pub remembered: &'a Remembered,
     /// The columns that are wanted; all but items of lists where there are none.
     pub columns: &'a [String],
+    /// The words of the sentences that are columns.
+    pub voice: Voice,
 }
 
 /// What a row says, and what it took.
@@ -228,7 +231,7 @@ impl Question {
     }
 
     fn told(self, found: &impl Serialize, work: &Work, asking: &Asking<'_>) -> Result<Answer> {
-        let json = serde_json::to_value(found)
+        let json = with_voice(asking.voice, || serde_json::to_value(found))
             .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
         let items: Vec<String> =
             asking.items().cloned().chain(self.lists().iter().map(|list| (*list).to_owned())).collect();

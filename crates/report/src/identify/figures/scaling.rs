@@ -85,18 +85,19 @@ pub(crate) fn band_number(scaling: &Scaling, study: &Study) -> Option<Plot> {
         if bands.shot_noise_median.iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
     ));
     let shot = (at_photons(&bands.shot_noise), at_photons(&bands.shot_noise_median));
-    let mut curves = vec![("least, shot noise alone", &shot.0, 0), ("median, shot noise alone", &shot.1, 0)];
+    let mut curves =
+        vec![("least, shot noise alone", &shot.0, 0, false), ("median, shot noise alone", &shot.1, 0, true)];
     if noisy {
-        curves.push(("least, noise of the camera", &bands.camera, 1));
-        curves.push(("median, noise of the camera", &bands.camera_median, 1));
+        curves.push(("least, noise of the camera", &bands.camera, 1, false));
+        curves.push(("median, noise of the camera", &bands.camera_median, 1, true));
     }
     let mut drawn: Vec<&Vec<f64>> = Vec::new();
-    for (label, values, colour) in curves {
+    for (label, values, colour, is_median) in curves {
         // An alternative that is the same leaves nothing in any number of bands; one alone is its own median.
         if values.iter().any(|value| *value > 0.0) && !drawn.contains(&values) {
             drawn.push(values);
             let curve = Series::line(label, x.clone(), values.clone()).style(Style::Marked).colour(colour);
-            figure = figure.series(if label.starts_with("median") { curve.open() } else { curve });
+            figure = figure.series(if is_median { curve.open() } else { curve });
         }
     }
     if photons.is_some() {

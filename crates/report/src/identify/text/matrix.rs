@@ -2,7 +2,7 @@
 
 use super::terms::{camera, no_limit};
 use crate::text::numbers::{listed, shortened, significant};
-use hadar_study::words;
+use crate::words::probability as words;
 use hadar_study::{Apart, Matrix, Study};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -13,7 +13,7 @@ pub(super) fn camera(study: &Study) -> &str {
 
 /// What must be added to an answer that is not by the nearest distance.
 pub(super) fn no_limit(study: &Study) -> String {
-    hadar_study::no_limit(study.scenario().requirement.by)
+    crate::words::size::no_limit(study.scenario().requirement.by)
         .map_or_else(String::new, |reading| format!(", by {reading}"))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::simulate::thermometry::{decisive, rising};
 use crate::text::significant;
+use crate::words::Say;
 use hadar::fisher::Nuisance;
 use hadar::fisher::precision::Sight;
 use hadar_scenario::Units;
@@ -105,7 +106,7 @@ pub fn text(result: &Thermometry) -> String {
     if !result.warnings.is_empty() {
         out.push_str("\nWarnings\n");
         for warning in &result.warnings {
-            let _ = writeln!(out, "  {warning} [{}]", warning.code().name());
+            let _ = writeln!(out, "  {} [{}]", warning.say(), warning.code().name());
         }
     }
     out

@@ -3,6 +3,7 @@
 use super::super::page::markdown;
 use super::found::{BANDS, Found, TRIALS};
 use hadar::words::{length, significant};
+use hadar_report::words::Say;
 use hadar_study::air_ranging::{AirPoint, AirRanging};
 
 /// Pixels of the window that is compared with published figures.
@@ -38,7 +39,7 @@ pub(super) fn quick(main: &AirRanging) -> String {
     let (low, high, holds) = ratios(main);
     format!(
         "{} Maximum likelihood over the bound at the first {} distances: {low:.2} to {high:.2} (1 within the 95 % interval of {holds}).",
-        main.verdict.sentence,
+        main.verdict.sentence.say(),
         main.witness.len()
     )
 }
@@ -51,7 +52,7 @@ pub(super) fn finding(found: &Found) -> String {
     format!(
         "{} The best {BANDS} bands: +- {}{}. Without sky the model is off by {} at 100 m. Maximum likelihood over the bound from 15 to 150 m: {low:.2} \
          to {high:.2} (1 within the 95 % interval at {holds} of {} distances).",
-        main.verdict.sentence,
+        main.verdict.sentence.say(),
         metres(best.and_then(|best| best.sigma_m)),
         if best.is_some_and(|best| best.exact) { ", proved to be the best choice" } else { "" },
         bias(&main.at),

@@ -3,6 +3,7 @@
 use super::row::{CAMERAS, Row};
 use crate::reproduce::studies::page::markdown;
 use hadar::words::{share, significant};
+use hadar_report::words::Say;
 use hadar_study::ClassAnswer;
 
 fn photons(row: &Row) -> String {
@@ -12,7 +13,7 @@ fn photons(row: &Row) -> String {
 /// What came out, in a few sentences.
 pub(super) fn finding(rows: &[Row]) -> String {
     let each = rows.iter().map(|row| {
-        let members = row.classes.first().map_or_else(String::new, |answer| format!(" ({answer})"));
+        let members = row.classes.first().map_or_else(String::new, |answer| format!(" ({})", answer.say()));
         format!("{}: {} photons{members}", row.what, photons(row))
     });
     each.collect::<Vec<_>>().join("\n")

@@ -2,8 +2,6 @@
 //! [`hadar::words`].
 
 use hadar::identifiability::detection;
-use hadar::ranging::depth::Demand;
-use hadar::words::{length, significant};
 
 /// Decimals of a demanded share beyond which more nines say nothing.
 const MOST_DECIMALS: usize = 12;
@@ -40,14 +38,6 @@ pub fn percent(share: f64) -> String {
     let missing = 1.0 - share;
     let decimals = if missing > 0.0 && missing < 5e-4 { (-missing.log10() - 1e-9).ceil() - 2.0 } else { 1.0 };
     format!("{:.*} %", decimals.clamp(1.0, MOST_DECIMALS as f64) as usize, 100.0 * share)
-}
-
-/// The error of a depth that somebody demands.
-pub(crate) fn error_of(demand: Demand) -> String {
-    match demand {
-        Demand::Absolute(error_m) => length(error_m),
-        Demand::Relative(share) => format!("{} % of it", significant(100.0 * share, 3)),
-    }
 }
 
 fn in_percent(distance: f64, most: usize) -> String {

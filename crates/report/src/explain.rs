@@ -1,11 +1,12 @@
 //! What a word means: a key of a file, the code of a warning, a key of an answer.
 //!
-//! Keys of files are those of the readers' own table ([`keys`]), codes those of the catalogue of warnings. Keys of answers are
+//! Keys of files are those of the readers' own table ([`keys`]), codes those of the table of warnings, with their [words](crate::words::warnings). Keys of answers are
 //! told by the documentation of the fields that they are made of: `results.tsv` is collected from the sources by a test, which
 //! fails where it is not what the sources say; `named.tsv` has those that are no fields.
 
-use crate::warning::Code;
+use crate::words::warnings;
 use hadar_scenario::keys::{self, Place, Silent};
+use hadar_study::warning::Code;
 use serde::Serialize;
 
 const RESULTS: &str = include_str!("explain/results.tsv");
@@ -94,14 +95,15 @@ impl From<&Place> for ExplainedKey {
 
 impl From<Code> for ExplainedCode {
     fn from(code: Code) -> Self {
-        Self { code: code.name(), meaning: code.meaning(), remedy: code.remedy() }
+        let words = warnings::of_code(code);
+        Self { code: code.name(), meaning: words.meaning, remedy: words.remedy }
     }
 }
 
 /// All that is explained: what `hadar explain --all` prints, and a page or a guide is made of.
 ///
 /// ```
-/// let reference = hadar_study::explain::all();
+/// let reference = hadar_report::explain::all();
 /// assert!(reference.keys.iter().any(|key| key.paths.iter().any(|path| path == "camera.exposure")));
 /// assert!(reference.warnings.iter().any(|warning| warning.code == "nearest-at-edge"));
 /// ```
@@ -125,7 +127,7 @@ pub fn results() -> impl Iterator<Item = ResultKey> {
 /// What a key of an answer means, in each part of an answer that has it; a path means its last key.
 ///
 /// ```
-/// use hadar_study::explain::result;
+/// use hadar_report::explain::result;
 /// assert!(result("pairs[0].distance_nearest").iter().all(|one| one.meaning.contains("earest")));
 /// ```
 #[must_use]

@@ -1,0 +1,66 @@
+//! How well the distance can be read from the air, in a sentence.
+
+use super::Say;
+use super::demand::error_of;
+use hadar::words::{length, significant};
+use hadar_study::air_ranging::{AirFinding, BlindChange};
+
+impl Say for AirFinding {
+    fn say(&self) -> String {
+        match self {
+            Self::Seen { distance_m, sigma_m, unknown, demand } => {
+                let start = match demand {
+                    None => "At",
+                    Some((_, true, _)) => "Yes: at",
+                    Some((_, false, _)) => "No: at",
+                };
+                let mut out = format!(
+                    "{start} {} m the distance is known to +- {} at best",
+                    significant(*distance_m, 3),
+                    length(*sigma_m)
+                );
+                if sigma_m > distance_m {
+                    out += ", which is more than itself, so not at all,";
+                }
+                out += " from one pixel and one reading";
+                out += &match unknown.split_last() {
+                    None => ", all else known".into(),
+                    Some((last, [])) => format!(", {last} unknown"),
+                    Some((last, others)) => format!(", {} and {last} unknown", others.join(", ")),
+                };
+                if let Some((demand, _, met_between_m)) = demand {
+                    out += &format!(" ({} demanded", error_of(*demand));
+                    out += &match met_between_m {
+                        Some([near, far]) => {
+                            format!(", met from {} to {} m)", significant(*near, 3), significant(*far, 3))
+                        }
+                        None => ", met at no distance asked for)".into(),
+                    };
+                }
+                out + "."
+            }
+            Self::Unchanged { distance_m } => format!(
+                "At {} m nothing tells the distance: the target looks like the air, so that more or less of it changes nothing.",
+                significant(*distance_m, 3)
+            ),
+            Self::Imitated { distance_m, by } => {
+                format!("At {} m nothing tells the distance: {}.", significant(*distance_m, 3), imitated(by))
+            }
+        }
+    }
+}
+
+/// What imitates a change of the distance.
+fn imitated(by: &[BlindChange]) -> String {
+    let change = |change: &BlindChange| {
+        format!("{} by {} per metre", change.unknown, significant(change.change_per_m, 2))
+    };
+    match by.len() {
+        0 => "other unknowns imitate any change of it".into(),
+        1..=4 => {
+            let changes: Vec<String> = by.iter().map(change).collect();
+            format!("a change of {} imitates any change of it", changes.join(", "))
+        }
+        more => format!("changes of {more} unknowns together imitate any change of it"),
+    }
+}

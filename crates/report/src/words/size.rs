@@ -1,0 +1,255 @@
+//! The verdict on a camera in a sentence.
+
+use super::Say;
+use super::probability::{demanded, reliability};
+use super::shortfall::clauses;
+use hadar::fisher::Nuisance;
+use hadar::words::significant;
+use hadar_scenario::DistanceKind;
+use hadar_study::{Answer, Finding, MixtureAnswer};
+
+impl Say for Finding {
+    fn say(&self) -> String {
+        let mut out = match &self.classes {
+            None => answered(self),
+            Some(classes) => {
+                let of_all = Self {
+                    target: classes.target.name.clone(),
+                    alternative: self.alternative.is_some().then(|| classes.alternative.name.clone()),
+                    ..self.clone()
+                };
+                let verdict = match &classes.mixtures {
+                    Some(found)
+                        if classes.statistical
+                            && found.distance_lower < self.required
+                            && found.distance >= self.required =>
+                    {
+                        not_proved_of_mixtures(&of_all, &classes.alternative.name, found)
+                    }
+                    _ => answered(&of_all),
+                };
+                format!("{verdict} {}", classes.say())
+            }
+        };
+        if let Some([one, other]) = self.placeholders {
+            out += &format!(
+                " Both are entered as one number ({one} and {other}): that says nothing of real surfaces."
+            );
+        }
+        out
+    }
+}
+
+/// Mixtures of which more is found than is proved.
+fn not_proved_of_mixtures(finding: &Finding, alternative: &str, found: &MixtureAnswer) -> String {
+    format!(
+        "No: that {} tells {} from {alternative} with {} reliability is so for the worst mixture found (d = {}), but no more than d = {} is \
+         proved of all mixtures.",
+        finding.camera,
+        finding.target,
+        demanded(finding.required),
+        significant(found.distance, 3),
+        significant(found.distance_lower, 3)
+    )
+}
+
+/// A 'yes', with what it is subject to.
+fn yes(finding: &Finding) -> String {
+    finding.provided.map_or_else(|| "Yes".into(), |proviso| format!("Yes, if {}", proviso.say()))
+}
+
+/// What was found of one pair of spectra.
+fn answered(finding: &Finding) -> String {
+    let Finding { camera, target, .. } = finding;
+    let other = finding.alternative.as_deref().unwrap_or("every alternative");
+    let wanted = demanded(finding.required);
+    if let Some(reading) = no_limit(finding.by) {
+        return by_local(finding, reading, other, &wanted);
+    }
+    match &finding.answer {
+        Answer::NothingDiffers => {
+            format!("No camera can tell {target} from {other} here: nothing in the spectrum differs.")
+        }
+        Answer::UnknownsExplain => format!(
+            "No camera can tell {target} from {other} here: the unknowns explain every difference in the spectrum."
+        ),
+        Answer::TooFewBands { bands, unknowns } => {
+            let (yes, colon) = if camera.is_empty() {
+                (format!("No camera can tell {target} from {other} here"), String::new())
+            } else {
+                ("No".into(), format!(": {camera} cannot tell {target} from {other}"))
+            };
+            let (unknown, are) = together(unknowns);
+            let many = match bands {
+                1 => "one band".into(),
+                bands => format!("{bands} bands"),
+            };
+            format!("{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
+        }
+        Answer::Takes { photons, .. } => format!(
+            "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
+            significant(*photons, 3)
+        ),
+        Answer::Judged { enough, spoiled, reached, .. } => {
+            let (yes, can) = match (enough, spoiled.is_empty()) {
+                (true, true) => (yes(finding), "can"),
+                (true, false) => ("No".into(), "could"),
+                (false, _) => ("No".into(), "cannot"),
+            };
+            let end = match reached {
+                _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
+                Some(reached) => format!("; it reaches {} at most.", reliability(*reached)),
+                None => ".".into(),
+            };
+            format!("{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability{end}")
+        }
+    }
+}
+
+/// What a reading that is no limit is called; nothing of the limit.
+#[must_use]
+pub const fn no_limit(by: DistanceKind) -> Option<&'static str> {
+    match by {
+        DistanceKind::Nearest => None,
+        DistanceKind::Local => Some("the paper's local distance, which is no limit and can err either way"),
+        DistanceKind::LocalUnknownGain => Some(
+            "the paper's local distance with unknown gain (S29), which is no limit and can err either way",
+        ),
+    }
+}
+
+/// By a reading that is no limit: what it says, what it is, and what the limit is. It rules nothing out.
+fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> String {
+    let Finding { camera, target, .. } = finding;
+    match &finding.answer {
+        Answer::NothingDiffers => format!(
+            "{target} is not told from {other} here by {reading}: to first order nothing in the spectrum differs."
+        ),
+        Answer::UnknownsExplain => format!(
+            "{target} is not told from {other} here by {reading}: to first order the unknowns explain every \
+             difference in the spectrum."
+        ),
+        Answer::TooFewBands { bands, unknowns } => {
+            let (unknown, are) = together(unknowns);
+            format!(
+                "No: {target} is not told from {other} here by {reading}: there are {bands} bands, and {unknown} {are} \
+                 unknown."
+            )
+        }
+        Answer::Takes { photons, limit } => {
+            let photons = significant(*photons, 3);
+            let limit = limit.map_or_else(|| "no number suffices".into(), |limit| significant(limit, 3));
+            format!(
+                "Telling {target} from {other} with {wanted} reliability takes {photons} photons by {reading}; by the \
+                 nearest, the limit, {limit}."
+            )
+        }
+        Answer::Judged { enough, spoiled, reached, limit } => {
+            let (yes, tells) = match (enough, spoiled.is_empty()) {
+                (true, true) => (yes(finding), "tells"),
+                (true, false) => ("No".into(), "would tell"),
+                (false, _) => ("No".into(), "does not tell"),
+            };
+            let but = match *enough && !spoiled.is_empty() {
+                true => format!(", but {}", clauses(spoiled)),
+                false => String::new(),
+            };
+            let end = match (reached, limit) {
+                (Some(reached), Some(limit)) => {
+                    let [reached, limit] = [reached, limit].map(|d| reliability(*d));
+                    format!(": it reads {reached}; the limit, by the nearest distance, is {limit}.")
+                }
+                _ => ".".into(),
+            };
+            format!(
+                "{yes}: {camera} {tells} {target} from {other} with {wanted} reliability{but}, by {reading}{end}"
+            )
+        }
+    }
+}
+
+/// Unknowns in a sentence, and the verb that goes with them.
+fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
+    let names: Vec<&str> = unknowns.iter().map(|nuisance| nuisance.name()).collect();
+    match names.as_slice() {
+        [] => ("nothing".into(), "is"),
+        [one] => ((*one).into(), "is"),
+        [most @ .., last] => (format!("{} and {last}", most.join(", ")), "are"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hadar_study::{Proviso, Shortfall};
+
+    fn finding(answer: Answer) -> Finding {
+        Finding {
+            camera: "ours".into(),
+            target: "skin".into(),
+            alternative: Some("aluminium".into()),
+            required: 1.0,
+            by: DistanceKind::Nearest,
+            answer,
+            placeholders: None,
+            classes: None,
+            provided: None,
+        }
+    }
+
+    fn judged(enough: bool, spoiled: Vec<Shortfall>) -> Finding {
+        finding(Answer::Judged { enough, spoiled, reached: Some(2.0), limit: Some(2.0) })
+    }
+
+    #[test]
+    fn a_yes_says_what_it_is_subject_to() {
+        let yes = judged(true, Vec::new());
+        assert_eq!(
+            yes.say(),
+            "Yes: ours can tell skin from aluminium with 84.1 % reliability; it reaches 97.7 % at most."
+        );
+        let provided = Some(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 });
+        let said = Finding { provided, placeholders: Some([0.95, 0.9]), ..yes }.say();
+        assert!(
+            said.starts_with("Yes, if its 4 frames can be registered (62 ms, a way of 0.83 m): "),
+            "{said}"
+        );
+        let end = "Both are entered as one number (0.95 and 0.9): that says nothing of real surfaces.";
+        assert!(said.ends_with(end), "{said}");
+    }
+
+    /// No shortfall is called by another's name.
+    #[test]
+    fn a_no_names_what_spoils_the_image() {
+        use Shortfall as S;
+        let all = [
+            (S::Distance, "distance is below"),
+            (S::Pixels, "too few pixels"),
+            (S::TemperatureError, "temperature is not known"),
+            (S::DepthError, "distance is not known"),
+            (S::DecisionTime, "read later"),
+            (S::MotionBlur, "moves by a pixel or more"),
+            (S::MotionUnknown, "not known without target.distance"),
+            (S::FullWell, "full well"),
+            (S::FrameRate, "longer than a frame"),
+            (S::Diffraction, "the lens blurs"),
+            (S::Impractical, "no camera is built"),
+            (S::LowestNoise, "read noise"),
+        ];
+        for (by, part) in all {
+            let said = judged(true, vec![by]).say();
+            let start = "No: ours could tell skin from aluminium with 84.1 % reliability, but ";
+            assert!(said.starts_with(start) && said.contains(part), "{said}");
+            assert_eq!(all.iter().filter(|(_, part)| said.contains(part)).count(), 1, "{said}");
+        }
+    }
+
+    #[test]
+    fn one_band_is_not_enough_while_something_is_unknown() {
+        let unknowns = vec![Nuisance::Temperature, Nuisance::Lighting];
+        let said = finding(Answer::TooFewBands { bands: 1, unknowns }).say();
+        let start =
+            "No: one band cannot tell materials while temperature and lighting are unknown: ours cannot";
+        assert!(said.starts_with(start), "{said}");
+    }
+}

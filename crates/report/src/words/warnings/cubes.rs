@@ -1,0 +1,161 @@
+//! Cubes and what is estimated from them: emissivities, materials, objects.
+
+use super::block::{short, words};
+use hadar::words::significant;
+
+words! {
+    AxesInDoubt {
+        meaning: "The first axis of a cube is so short that it may be that of the bands.",
+        remedy: "Write cube.axes, \"bands,rows,columns\" or \"rows,columns,bands\".",
+        AxesInDoubt { rows, columns, bands } => format!(
+            "the cube was read as {rows} rows x {columns} columns x {bands} bands, though its first axis is the shortest by far"
+        ),
+    }
+    BandOrderTaken {
+        meaning: "Bands are stated as wavelengths, and the file of the cube does not say in which order it \
+            has them.",
+        remedy: "Write the cube with its wavelengths, as an ENVI file, or turn its bands round if they \
+            begin with the shortest.",
+        BandOrderTaken => "the bands are written as wavelengths, but the cube's file does not say them: its first band was taken as that of the \
+             longest wavelength",
+    }
+    WavelengthsUnused {
+        meaning: "The file of a cube lists wavelengths or wavenumbers without a unit, which are not used.",
+        remedy: "Write the unit into the file, as `wavelength units = Micrometers` in an ENVI header; in \
+            NPZ and MATLAB call the list `wavelengths_um`.",
+        WavelengthsUnused => "the cube's file lists its wavelengths or wavenumbers without a unit, so that they were not used: its first band was taken \
+             as that of the longest wavelength; write the unit into the file",
+    }
+    CubeDark {
+        meaning: "Pixels of a cube are 0 in all bands: nothing was measured there.",
+        remedy: "Check the file and what was read of it; write NaN where nothing was measured.",
+        CubeDark { view, pixels, of } if pixels == of => {
+            format!("all samples of the {view} view are 0: it is empty")
+        },
+        CubeDark { view, pixels, of } => {
+            format!("{pixels} of {of} pixels of the {view} view that were looked at are 0 in all bands")
+        },
+    }
+    CubeSaturated {
+        meaning: "Many pixels of a cube have a sample at one and the same value, the largest of all: \
+            readings that were cut off there.",
+        remedy: "Shorten the exposure, or write NaN where readings are cut off.",
+        CubeSaturated { view, pixels, of, value, largest } => format!(
+            "{pixels} of {of} pixels of the {view} view that were looked at have a sample at {}, the largest value of all{}: where \
+             readings are cut off their texture is gone, and edges are there that are none",
+            short(*value),
+            if *largest { " and of the file's type" } else { "" }
+        ),
+    }
+    WindowsMissing {
+        meaning: "Windows with a missing sample have no bound, and NaN in the maps.",
+        remedy: "Nothing; or fill missing samples, or make the window smaller.",
+        WindowsMissing { windows, of } => format!(
+            "{windows} of {of} windows hold a sample that is missing: they have no bound, and NaN in the maps"
+        ),
+    }
+    PixelsSkipped {
+        meaning: "Pixels of a cube were left out since a sample of them is missing.",
+        remedy: "Nothing; or name bands that are always missing in cube.bad_bands.",
+        PixelsSkipped { pixels, of } => {
+            format!("{pixels} of {of} pixels have a sample that is no number; they were left out")
+        },
+    }
+    LibraryDoesNotFit {
+        meaning: "Pixels of a cube are explained by no material of the library.",
+        remedy: "Add materials, state how wrong the library is with library.emissivity_error, or check the \
+            unit and the light.",
+        LibraryDoesNotFit { pixels, of } => {
+            format!("{pixels} of {of} pixels are explained by no material of the library (p below 1e-4)")
+        },
+    }
+    LibraryTakenAsExact {
+        meaning: "The emissivities of the library are taken as exact: intervals do not hold what errors of \
+            them do.",
+        remedy: "State library.emissivity_error where the spectra are measured ones.",
+        LibraryTakenAsExact => "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
+    }
+    NoRelativeEmissivity {
+        meaning: "Pixels of a cube send what they are lit by, or what no surface sends: no emissivity \
+            follows from one of them alone.",
+        remedy: "Nothing if they are few; else check unit and surroundings, or look when the scene is \
+            warmer than its sky.",
+        NoRelativeEmissivity { pixels, of } => format!(
+            "{pixels} of {of} pixels that were looked at have no emissivity by themselves: they send what they are lit by, or \
+             what no surface sends"
+        ),
+    }
+    OneCluster {
+        meaning: "One emissivity stands for all pixels, whatever they are.",
+        remedy: "Write clusters.count = [1, 8], unless the cube shows one material.",
+        OneCluster => "one emissivity stands for all pixels, whatever they are made of",
+    }
+    ClustersWithoutPixels {
+        meaning: "Clusters were left without a pixel: the others explain all of them better.",
+        remedy: "Ask for fewer, or for a range of counts.",
+        ClustersWithoutPixels { left, asked } => {
+            format!("of {asked} clusters {left} have pixels; the others were left out")
+        },
+    }
+    MagnitudeHardlyTold {
+        meaning: "The magnitude of an emissivity is hardly told from the temperatures of its pixels: the \
+            prior holds it.",
+        remedy: "State unknown.lighting_total, fewer surroundings, or [emissivity] as well as you know it; \
+            look under a sky with lines, at pixels of different lighting.",
+        MagnitudeHardlyTold { clusters, sigma } => format!(
+            "the magnitude of {} is hardly told from the temperatures (mean emissivity +- {} at most): what was said of \
+             emissivities beforehand holds it",
+            clusters.join(", "),
+            significant(*sigma, 2)
+        ),
+    }
+    ClusterDoesNotFit {
+        meaning: "The pixels of a cluster scatter about one emissivity by more than their noise: several \
+            materials, or a group that was not found.",
+        remedy: "Ask for more clusters or a range of counts; check unit, noise and light; do not use the \
+            emissivities of these.",
+        ClusterDoesNotFit { clusters, chi_square } => format!(
+            "the pixels of {} are not explained by one emissivity each (chi2/nu up to {}): they are several materials or none that was \
+             found, and their errors do not hold",
+            clusters.join(", "),
+            significant(*chi_square, 3)
+        ),
+    }
+    MirrorNotExcluded {
+        meaning: "Several surroundings light a pixel with nothing said of their total: what mirrors them is \
+            not told from what is as warm.",
+        remedy: "State unknown.lighting_total, or name fewer surroundings.",
+        MirrorNotExcluded { surroundings } => format!(
+            "{surroundings} surroundings light a pixel as much as they like: a mirror of them looks as well as a warm surface does, so that \
+             emissivities and temperatures may be wrong altogether, by far more than their errors"
+        ),
+    }
+    ClustersNotSettled {
+        meaning: "The last round of grouping and fitting still changed something.",
+        remedy: "Compare with another --seed; ask for fewer clusters.",
+        ClustersNotSettled { rounds } => {
+            format!("after {rounds} rounds clusters and emissivities still changed")
+        },
+    }
+    ObjectsUndecided {
+        meaning: "Objects rest on pixels whose material is not decided: several are left, or none fits.",
+        remedy: "Do not act on them: look closer, expose longer, or add what is there to the library.",
+        ObjectsUndecided { objects, of } => format!(
+            "in {objects} of {of} objects less than half of the pixels have one material left: their category is the likelier one, and no \
+             finding"
+        ),
+    }
+    SpatialPrior {
+        meaning: "Materials, posteriors and temperatures rest on a prior over the image: what is small and \
+            hardly differs from its surroundings is lost.",
+        remedy: "Compare with the answer without [spatial]; trust an object of few pixels only if it is in \
+            both.",
+        SpatialPrior { changed, pixels, settled } => {
+            let but = if *settled { "" } else { "; its last sweep still changed something" };
+            format!(
+                "materials, candidates and temperatures rest on a prior over the image, which changed the material of {changed} \
+                 of {pixels} pixels{but}"
+            )
+        },
+    }
+}

@@ -1,0 +1,62 @@
+//! Rules: their days, their envelopes, their cameras.
+
+use super::block::{short, words};
+use crate::words::Say;
+use hadar_study::{NotInForce, Proviso};
+
+words! {
+    NotInForce {
+        meaning: "The rule does not hold on the day that was asked about: nothing is demanded.",
+        remedy: "Nothing; or ask about another day with --on.",
+        NotInForce(idle) => idle.say(),
+    }
+    EmissivityErrorsLeftOut {
+        meaning: "The rule has errors of emissivities, and this answer takes all spectra to be exact.",
+        remedy: "Ask for a tolerance of the emissivity that holds them.",
+        EmissivityErrorsLeftOut => "errors of the emissivities, [sensitivity], are not in it: all spectra are taken to be exact",
+    }
+    NotProved {
+        meaning: "That no scene of the envelope is below the requirement was searched for, not proved.",
+        remedy: "Narrow the envelope, so that the search can prove it.",
+        NotProved => "that no scene of the envelope is below the requirement was searched, not proved",
+    }
+    BrightestNoise {
+        meaning: "Noise that depends on the scene is taken where it is largest, so that the distance is a \
+            lower bound.",
+        remedy: "Nothing; the verdict is on the safe side.",
+        BrightestNoise => "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
+             what would fix the camera is computed in the limiting scene itself",
+    }
+    FramesInMotion {
+        meaning: "The frames of a camera are added up while something moves: motion blur takes them to be \
+            laid over each other.",
+        remedy: "Lay the frames over each other, or take fewer.",
+        FramesInMotion(Proviso { frames, time_s, way_m }) => format!(
+            "its {frames} frames take {} s, at the demanded speed a way of {} m: they must be laid over each other, and the \
+             scene must not change; motion blur counts each by itself",
+            short(*time_s),
+            short(*way_m)
+        ),
+    }
+    NoiseMovesWithFigure {
+        meaning: "A figure of the camera is set in the place of the file's, and its noise is not stated for \
+            a value of it: the noise moves with it.",
+        remedy: "Write the condition into the file beside the noise.",
+        NoiseMovesWithFigure { figure, condition } => format!(
+            "camera.{figure} is set, and camera.{condition} is not stated: the noise is taken to hold for what is set, as in a file \
+             that says so, and another {figure} is another noise"
+        ),
+    }
+}
+
+impl Say for NotInForce {
+    fn say(&self) -> String {
+        let Self { day, from, until } = self;
+        let but = match (from, until) {
+            (Some(from), _) if day < from => format!(", it holds from {from}"),
+            (_, Some(until)) => format!(", it held until {until}"),
+            _ => String::new(),
+        };
+        format!("the rule does not hold on {day}{but}")
+    }
+}
