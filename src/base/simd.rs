@@ -22,7 +22,7 @@ macro_rules! dispatched {
                 scope: std::marker::PhantomData<&'a ()>,
             }
             impl<'a> $crate::simd::pulp::NullaryFnOnce for Kernel<'a> {
-                type Output = $crate::dispatched_output!($($ret)?);
+                type Output = $crate::simd::dispatched_output!($($ret)?);
                 #[inline(always)]
                 fn call(self) -> Self::Output {
                     let Self { $($arg,)* scope: _ } = self;
@@ -46,9 +46,9 @@ macro_rules! dispatched_output {
     };
 }
 
-pub use crate::dispatched;
 #[doc(hidden)]
 pub use pulp;
+pub use {dispatched, dispatched_output};
 
 /// Doubles per cache line, and per chunk of a loop with sums.
 pub const LANES: usize = 8;
@@ -97,7 +97,7 @@ impl Largest {
         self.0 = std::array::from_fn(|i| if x[i].abs() > so_far[i] { x[i].abs() } else { so_far[i] });
     }
 
-    /// Never inlined, for the reason given at [`crate::sum::CompensatedLanes::value`].
+    /// Never inlined, for the reason given at `CompensatedLanes::value`.
     #[inline(never)]
     pub fn value(&self) -> f64 {
         self.0.iter().fold(0.0, |largest, x| x.max(largest))

@@ -10,7 +10,7 @@ mod decompose;
 mod diff;
 pub mod evidence;
 mod explain;
-mod flags;
+pub(crate) mod flags;
 pub(crate) mod global;
 mod identify;
 mod init;
@@ -104,7 +104,7 @@ pub fn main() -> ExitCode {
 }
 
 /// What a process ends with: its answer's exit code, or 1 or 2 behind a message of what is wrong.
-fn answered<C>(
+pub(crate) fn answered<C>(
     parsed: std::result::Result<(C, Global), clap::Error>,
     run: impl FnOnce(&C, &Global) -> Result<ExitCode>,
 ) -> ExitCode {
@@ -130,7 +130,9 @@ fn line() -> clap::Command {
 }
 
 /// The words of this process, read by a command line.
-fn parsed_by<C: FromArgMatches>(line: &clap::Command) -> std::result::Result<(C, Global), clap::Error> {
+pub(crate) fn parsed_by<C: FromArgMatches>(
+    line: &clap::Command,
+) -> std::result::Result<(C, Global), clap::Error> {
     let words = std::env::args_os().collect::<Vec<_>>();
     let found = line.clone().try_get_matches_from(&words).map_err(|error| {
         let words: Vec<String> =
@@ -142,7 +144,7 @@ fn parsed_by<C: FromArgMatches>(line: &clap::Command) -> std::result::Result<(C,
 }
 
 /// Starts the threads and the list of what is read; with `checks_out` refuses a folder that a report may not be written to.
-fn prepared(global: &Global, checks_out: bool) -> Result<Noting> {
+pub(crate) fn prepared(global: &Global, checks_out: bool) -> Result<Noting> {
     if let Some(threads) = global.threads.filter(|threads| *threads > threads::MOST) {
         let expected = format!("at most {}, or 0 for all cores", threads::MOST);
         return Err(Error::out_of_range("--threads", threads as f64, "", expected));

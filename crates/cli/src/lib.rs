@@ -5,8 +5,10 @@
 //! defined once.
 
 mod command;
+mod evidence_program;
 
 pub use command::evidence;
 pub use command::global::Global;
 pub use command::main;
 pub use command::progress::Bar;
+pub use evidence_program::evidence_main;

@@ -3,13 +3,14 @@
 mod accuracy;
 mod reproduce;
 
-use hadar_cli::evidence::{self, Question};
+use hadar_cli::evidence::Question;
+use hadar_cli::evidence_main;
 use std::process::ExitCode;
 
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    evidence::main(|question, global| match question {
+    evidence_main(|question, global| match question {
         Question::Reproduce(args) => reproduce::run(args, global),
         Question::Accuracy(args) => accuracy::run(args, global),
     })

@@ -5,10 +5,8 @@
 //! program of that name in the folder of `hadar` is run with the same arguments. It refuses them if it was built from another
 //! commit: its reports would name a commit that did not make them.
 
-use super::global::Global;
 use super::provenance::COMMIT;
-use super::{answered, flags, parsed_by, prepared};
-use clap::{Args, CommandFactory as _, Parser, Subcommand};
+use clap::{Args, Subcommand};
 use hadar::error::{Error, Result};
 use hadar_report::manifest::VERSION;
 use std::env::consts::EXE_SUFFIX;
@@ -18,11 +16,11 @@ use std::path::Path;
 use std::process::{self, ExitCode};
 
 /// The program.
-const PROGRAM: &str = "hadar-evidence";
+pub(crate) const PROGRAM: &str = "hadar-evidence";
 /// What builds it.
 const BUILT_BY: &str = "cargo build --release -p hadar-evidence";
 /// Tells the program which build of `hadar` hands over to it.
-const HANDED_OVER_BY: &str = "HADAR_HANDED_OVER_BY";
+pub(crate) const HANDED_OVER_BY: &str = "HADAR_HANDED_OVER_BY";
 
 /// What is asked of `hadar-evidence`.
 #[derive(Debug, Subcommand)]
@@ -70,25 +68,6 @@ pub struct AccuracyArgs {
     pub scene: Option<u64>,
 }
 
-/// The command line of the program itself.
-#[derive(Debug, Parser)]
-#[command(name = PROGRAM, version, about = "What answers `hadar reproduce` and `hadar accuracy`")]
-struct Cli {
-    #[command(subcommand)]
-    question: Question,
-}
-
-/// Runs the command line of this process as `hadar-evidence`, which answers by `answer`.
-#[must_use]
-pub fn main(answer: impl FnOnce(&Question, &Global) -> Result<ExitCode>) -> ExitCode {
-    answered(parsed_by::<Cli>(&flags::added(Cli::command())), |cli, global| {
-        same_build(std::env::var_os(HANDED_OVER_BY))?;
-        // Figures of the paper have a folder each, which their command checks.
-        let _noting = prepared(global, matches!(cli.question, Question::Accuracy(_)))?;
-        answer(&cli.question, global)
-    })
-}
-
 /// Hands the words of this process over to `hadar-evidence` in the folder of this program; its exit code.
 ///
 /// # Errors
@@ -120,7 +99,7 @@ fn build() -> String {
 }
 
 /// Refuses to answer for a `hadar` of another build.
-fn same_build(handed_over_by: Option<OsString>) -> Result<()> {
+pub(crate) fn same_build(handed_over_by: Option<OsString>) -> Result<()> {
     match handed_over_by {
         Some(other) if other != *build() => Err(Error::malformed(
             format!("{PROGRAM} is {}, and the `hadar` that asks it is {}", build(), other.display()),

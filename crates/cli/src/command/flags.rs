@@ -60,7 +60,7 @@ fn taken(path: &str) -> impl Iterator<Item = &'static str> {
 }
 
 /// The command line with every flag where it belongs.
-pub(super) fn added(command: Command) -> Command {
+pub(crate) fn added(command: Command) -> Command {
     let flags = Global::augment_args(Command::new(""));
     let flag = |id: &str| flags.get_arguments().find(|flag| flag.get_id() == id).cloned();
     let printed: Vec<Arg> = PRINTED.iter().filter_map(|id| flag(id)).collect();
