@@ -78,7 +78,7 @@ fn the_answer_is_that_of_the_engine() {
     let answer: Json = serde_json::from_str(&answer).unwrap();
     let library = Library::embedded().unwrap();
     let study = Study::new(&Scenario::from_toml(SCENARIO, None).unwrap(), &library).unwrap();
-    let own = serde_json::to_value(study.size_with_curves().unwrap()).unwrap();
+    let own = hadar_report::json::value(&study.size_with_curves().unwrap()).unwrap();
     for key in ["verdict", "requirement", "camera", "pairs", "solve_for", "trade_offs", "sensitivity"] {
         assert_eq!(answer[key], own[key], "{key}");
     }

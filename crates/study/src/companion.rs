@@ -57,7 +57,8 @@ impl Study {
     ///
     /// ```
     /// use hadar::material::Library;
-    /// use Study;
+    /// use hadar_scenario::Scenario;
+    /// use hadar_study::Study;
     ///
     /// let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\ndistance = \"30 m\"\n\
     ///             [alternatives]\nmaterials = [\"aluminium\"]\n[camera]\npreset = \"flir-a325sc\"";

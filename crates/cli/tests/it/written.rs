@@ -35,7 +35,7 @@ fn a_folder_of_the_user_is_refused_and_stays_as_it_is() {
     ] {
         let said = folder.refusal(arguments);
         assert!(
-            said.contains("name another folder") || said.contains("part of the path is a file"),
+            said.contains("name another folder") || said.contains("this is a file; name a folder"),
             "{said}"
         );
     }

@@ -211,7 +211,7 @@ mod tests {
         let provided = Some(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 });
         let said = Finding { provided, placeholders: Some([0.95, 0.9]), ..yes }.say();
         assert!(
-            said.starts_with("Yes, if its 4 frames can be registered (62 ms, a way of 0.83 m): "),
+            said.starts_with("Yes, if its 4 frames can be registered (62.0 ms, a way of 83 cm): "),
             "{said}"
         );
         let end = "Both are entered as one number (0.95 and 0.9): that says nothing of real surfaces.";

@@ -154,7 +154,8 @@ impl Study {
     ///
     /// ```
     /// use hadar::material::Library;
-    /// use Study;
+    /// use hadar_scenario::Scenario;
+    /// use hadar_study::Study;
     /// let text = r#"
     ///     [target]
     ///     material = "silicon-carbide"
