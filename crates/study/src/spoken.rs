@@ -1,7 +1,7 @@
 //! Answers are data, and whoever renders them supplies the words.
 //!
 //! The JSON of an answer has sentences in it, and this package knows none. A part of an answer that has a sentence serialises it through
-//! [`serialize`] as a [`Phrase`], which the [`Voice`] of the one who writes puts into words: `hadar_report::words::voice` in every program
+//! `serialize` as a [`Phrase`], which the [`Voice`] of the one who writes puts into words: `hadar_report::words::voice` in every program
 //! here. Whoever serialises without one gets the same keys, with `null` where a sentence would be. The parts themselves do not know that
 //! they are spoken of: how they serialise stands here.
 

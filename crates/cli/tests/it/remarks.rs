@@ -105,7 +105,7 @@ fn nothing_reads_remarks_back() {
     assert!(all.len() > 300, "{}", all.len());
     let (mut wrong, mut raised) = (Vec::new(), 0);
     for path in all {
-        let name = path.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
+        let name = path.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");
         if THEIRS.iter().any(|theirs| name.starts_with(theirs)) {
             continue;
         }
@@ -127,7 +127,7 @@ fn the_json_of_answers_is_written_in_one_place() {
     FOLDERS.iter().for_each(|folder| sources(&root.join(folder), &mut all));
     let writes = |path: &PathBuf| code(&fs::read_to_string(path).unwrap()).contains("serde_json::to_");
     let found: Vec<_> =
-        all.iter().filter(|path| writes(path)).map(|path| path.strip_prefix(&root).unwrap()).collect();
+        all.iter().filter(|path| writes(path)).map(|path| path.strip_prefix(root).unwrap()).collect();
     let expected = ["crates/report/src/json.rs", "crates/study/src/sweep/question.rs"].map(Path::new);
     assert!(found.len() == 2 && expected.iter().all(|one| found.contains(one)), "{found:?}");
 }

@@ -205,7 +205,7 @@ fn listed(
         let found = format!("mixtures of the class `{name}`");
         return Err(Error::malformed(found, "leave mixtures out: a pixel is taken to be of one member"));
     }
-    let class = hadar_formats::members(&spec, library)?;
+    let class = hadar_formats::members(spec, library)?;
     let remark = |reason: &String| Warning::Material {
         material: name.clone(),
         remark: format!("passed over: {reason}"),
