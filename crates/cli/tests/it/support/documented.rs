@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-const FOLDERS: [&str; 8] = [
+const FOLDERS: [&str; 9] = [
     "src",
+    "crates/formats/src",
     "crates/estimate/src",
     "crates/simulate/src",
     "crates/scenario/src",
