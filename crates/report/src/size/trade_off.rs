@@ -112,17 +112,19 @@ pub(super) fn trade_off(curve: &TradeOff, result: &Sizing) -> Plot {
     }
     if let Some(point) = just_enough(curve) {
         let value = point.y.unwrap_or(f64::NAN);
-        let label = match y {
-            Quantity::Speed => format!("{} at {}", in_words(y, value), in_words(x, point.x)),
-            _ => in_words(y, value),
-        };
-        figure = figure.marker(Marker::new(label, point.x * sx, value * sy));
+        figure =
+            figure.marker(Marker::new(just_enough_label(curve, point.x, value), point.x * sx, value * sy));
     }
     Plot {
         name: format!("trade_off_{}_{}", name(x), name(y)).into(),
         figure: figure.into(),
         table: table(curve),
     }
+}
+
+fn just_enough_label(curve: &TradeOff, at: f64, value: f64) -> String {
+    let enough = in_words(curve.y, value);
+    if curve.y == Quantity::Speed { format!("{enough} at {}", in_words(curve.x, at)) } else { enough }
 }
 
 fn table(curve: &TradeOff) -> Table {
