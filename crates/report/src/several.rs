@@ -73,9 +73,12 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         .map_or_else(Vec::new, |cameras| cameras.iter().map(|camera| camera["passes"] == true).collect());
     let hang =
         answer["cameras"].as_array().is_some_and(|all| all.iter().any(|one| !one["provided"].is_null()));
+    // A rule without a camera, or on a day on which it does not hold, is met by none.
+    let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
-        (Question::Rule, "verdict") if meets.iter().all(|meets| *meets) && hang => "yes, if".into(),
-        (Question::Rule, "verdict") => meets.iter().all(|meets| *meets).into(),
+        (Question::Rule, "verdict") if !is_in_force(answer) => "no, not in force".into(),
+        (Question::Rule, "verdict") if met && hang => "yes, if".into(),
+        (Question::Rule, "verdict") => met.into(),
         (Question::Rule, "meet it") => {
             format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
         }
@@ -84,6 +87,15 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         _ => found(paths).unwrap_or_default(),
     };
     columns(question).iter().map(of).collect()
+}
+
+/// Whether a rule holds on the day for which it was asked; every day where none was named. Dates are written as year, month, day.
+fn is_in_force(answer: &Value) -> bool {
+    let day = |place: &str| answer.pointer(place).and_then(Value::as_str);
+    day("/on").is_none_or(|on| {
+        day("/rule/rule/from").is_none_or(|from| from <= on)
+            && day("/rule/rule/until").is_none_or(|until| on <= until)
+    })
 }
 
 /// The answer about a rule with the camera of the largest margin first.
@@ -201,5 +213,20 @@ mod tests {
         let answer = json!({ "cameras": [camera("a", 0.5), camera("b", 2.0)] });
         let cells: Vec<String> = cells(Question::Rule, &answer).iter().map(shown).collect();
         assert_eq!(cells, ["no", "1 of 2", "b", "2.000", "-"]);
+    }
+
+    /// Only a rule that holds on the day, of at least one camera, all of which pass, is a 'yes'.
+    #[test]
+    fn a_rule_that_is_not_in_force_or_has_no_camera_is_no_yes() {
+        let verdict = |on: &str, cameras: Value| {
+            let answer = json!({
+                "rule": { "rule": { "until": "2020-01-01" } }, "on": on, "cameras": cameras,
+            });
+            cells(Question::Rule, &answer).remove(0)
+        };
+        let passes = || json!([{ "name": "a", "passes": true, "margin": 2.0 }]);
+        assert_eq!(verdict("2020-01-02", passes()), "no, not in force");
+        assert_eq!(verdict("2020-01-01", passes()), true);
+        assert_eq!(verdict("2020-01-01", json!([])), false);
     }
 }

@@ -316,6 +316,9 @@ impl Serialize for RuleAnswer {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         map.serialize_entry("rule", &self.rule)?;
+        if let Some(day) = self.on {
+            map.serialize_entry("on", &day.to_string())?;
+        }
         map.serialize_entry("sentence", &self.sentence)?;
         match (self.only(), self.clauses.first()) {
             (Some(only), Some(clause)) => {
