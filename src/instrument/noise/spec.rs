@@ -4,10 +4,11 @@ use crate::error::{Error, Result, check};
 use crate::order;
 
 /// How the noise of a camera is stated.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum NoiseSpec {
     /// No electronic noise at all.
+    #[default]
     None,
     /// Noise-equivalent temperature difference.
     Netd {
