@@ -1,6 +1,6 @@
 //! What a clause demands beside telling materials apart: pixels, a temperature, a distance.
 
-use crate::entries::{Document, Entries, Part};
+use crate::entries::{Document, Entries};
 use crate::paths::Paths;
 use crate::range::{DepthRequirement, Stereo, read as depth, write as depth_written};
 use crate::scene::{SceneSpec, scene, scene_written};
@@ -97,28 +97,29 @@ impl Demand {
 impl Demand {
     /// Its tables; `None` of what `[requirement]` of the scenario says.
     pub(super) fn written(&self, paths: Paths<'_>) -> Option<Document> {
-        let requirement = |entries: Entries| ("requirement", Part::Table(entries));
+        let requirement = |entries: Entries| Some(Document::default().put("requirement", entries));
         match self {
             Self::TellApart | Self::FalseAlarm => None,
             Self::Resolution { pixels, size_m } => {
-                Some(vec![requirement(Entries::default().put("pixels", *pixels).put_quantity(
+                requirement(Entries::default().put("pixels", *pixels).put_quantity(
                     "size",
                     Dimension::Length,
                     Some(*size_m),
-                ))])
+                ))
             }
-            Self::TemperatureError { error_k, coverage_factor } => Some(vec![requirement(
+            Self::TemperatureError { error_k, coverage_factor } => requirement(
                 Entries::default()
                     .put_quantity("temperature_error", Dimension::TemperatureDifference, Some(*error_k))
                     .put("coverage_factor", *coverage_factor),
-            )]),
-            Self::DepthError(demand) => Some(vec![
-                requirement(
-                    depth_written::requirement(demand.requirement).put("object", demand.object.name()),
-                ),
-                ("scene", Part::Table(scene_written(&demand.scene, paths))),
-                ("stereo", Part::Table(depth_written::stereo(&demand.stereo))),
-            ]),
+            ),
+            Self::DepthError(demand) => {
+                let own = depth_written::requirement(demand.requirement).put("object", demand.object.name());
+                requirement(own).map(|document| {
+                    document
+                        .put("scene", scene_written(&demand.scene, paths))
+                        .put("stereo", depth_written::stereo(&demand.stereo))
+                })
+            }
         }
     }
 }
