@@ -243,31 +243,20 @@ pub enum Reliability {
     },
 }
 
-/// Which distance a requirement is about; what they are is said with the distances themselves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum DistanceKind {
-    /// To the nearest state of the alternative: the limit that no test exceeds.
-    #[default]
-    Nearest,
-    /// Its tangent at the target, with the unknowns of the scenario.
-    Local,
-    /// The same with the gain unknown too: the paper's S29.
-    LocalUnknownGain,
-}
-
-impl DistanceKind {
-    /// All of them, the default first.
-    pub const ALL: [Self; 3] = [Self::Nearest, Self::Local, Self::LocalUnknownGain];
-
-    /// The name in a scenario, e.g. `local-unknown-gain`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Nearest => "nearest",
-            Self::Local => "local",
-            Self::LocalUnknownGain => "local-unknown-gain",
-        }
+hadar::named! {
+    /// Which distance a requirement is about; what they are is said with the distances themselves.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum DistanceKind {
+        /// To the nearest state of the alternative: the limit that no test exceeds.
+        #[default]
+        Nearest = "nearest",
+        /// Its tangent at the target, with the unknowns of the scenario.
+        Local = "local",
+        /// The same with the gain unknown too: the paper's S29.
+        LocalUnknownGain = "local-unknown-gain",
     }
+    /// The name in a scenario, e.g. `local-unknown-gain`.
+    name
 }
 
 /// What is demanded (`[requirement]`).

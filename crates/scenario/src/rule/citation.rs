@@ -47,36 +47,23 @@ pub enum Ground {
     Choice(String),
 }
 
-/// How a document was read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
-    /// In the text itself.
-    Seen,
-    /// In an excerpt or abstract.
-    Excerpt,
-    /// In somebody's copy or summary, not the issuer's; a summary's words are quoted then.
-    Copy,
-    /// From memory.
-    Recalled,
-    /// Computed from numbers that were seen.
-    Computed,
-}
-
-impl Mark {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Seen, Self::Excerpt, Self::Copy, Self::Recalled, Self::Computed];
-
-    /// The name in a rule, e.g. `seen`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Seen => "seen",
-            Self::Excerpt => "excerpt",
-            Self::Copy => "copy",
-            Self::Recalled => "recalled",
-            Self::Computed => "computed",
-        }
+hadar::named! {
+    /// How a document was read.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Mark {
+        /// In the text itself.
+        Seen = "seen",
+        /// In an excerpt or abstract.
+        Excerpt = "excerpt",
+        /// In somebody's copy or summary, not the issuer's; a summary's words are quoted then.
+        Copy = "copy",
+        /// From memory.
+        Recalled = "recalled",
+        /// Computed from numbers that were seen.
+        Computed = "computed",
     }
+    /// The name in a rule, e.g. `seen`.
+    name
 }
 
 impl Citation {

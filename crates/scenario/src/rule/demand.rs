@@ -49,28 +49,20 @@ pub struct DepthDemand {
     pub object: DepthObject,
 }
 
-/// An object of the street whose distance is that of the clause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DepthObject {
-    /// The person.
-    Person,
-    /// The car.
-    Car,
+hadar::named! {
+    /// An object of the street whose distance is that of the clause.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum DepthObject {
+        /// The person.
+        Person = "person",
+        /// The car.
+        Car = "car",
+    }
+    /// The name in a rule, which is that of the rendered surface.
+    name
 }
 
 impl DepthObject {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Person, Self::Car];
-
-    /// The name in a rule, which is that of the rendered surface.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Person => "person",
-            Self::Car => "car",
-        }
-    }
-
     /// Its distance in a street, m.
     pub fn distance_m(self, scene: &mut SceneSpec) -> &mut Option<f64> {
         match self {
