@@ -13,6 +13,8 @@ pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
 mod named;
+pub mod order;
+pub mod parallel;
 pub mod random;
 pub mod root;
 pub mod simd;

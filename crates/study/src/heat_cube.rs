@@ -9,6 +9,7 @@ use hadar::error::{Error, Result};
 use hadar::grid::Grid;
 use hadar::instrument::View;
 use hadar::material::Library;
+use hadar::order;
 use hadar::planck;
 use hadar::spectrum::{Bands, interpolated};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
@@ -228,7 +229,7 @@ pub(super) fn spectrum(path: &Path, column: &str, nodes_cm1: &[f64]) -> Result<V
         return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
     };
     let mut rows = rows.clone();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut rows, |a| a.0);
     on_nodes(&rows, nodes_cm1).map_err(|error| error.in_file(path))
 }
 

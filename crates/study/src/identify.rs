@@ -33,10 +33,10 @@ use hadar::identifiability::Status;
 use hadar::identifiability::detection;
 use hadar::identifiability::multi;
 use hadar::instrument::Camera;
+use hadar::parallel;
 use hadar::policy;
 use hadar::scene::Parameter;
 use hadar_scenario::DistanceKind;
-use rayon::prelude::*;
 
 impl Study {
     /// Distances to every alternative; with a camera also what it makes of them.
@@ -46,11 +46,11 @@ impl Study {
     pub fn identify(&self) -> Result<Identification> {
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
-        let found = self.alternatives.par_iter().enumerate().map(|(index, alternative)| {
+        let found = parallel::booked(self.alternatives.len(), |index| {
             let mixtures = self.classes.get(index).and_then(|answer| answer.mixtures.as_ref());
-            demand::ledger_of(|| self.against(index).pair(alternative, mixtures))
-        });
-        let (pairs, pair_warnings): (Vec<_>, Vec<_>) = demand::gathered(found)?.into_iter().unzip();
+            self.against(index).pair(&self.alternatives[index], mixtures)
+        })?;
+        let (pairs, pair_warnings): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let limiting =
             self.limiting(&pairs).map_or_else(String::new, |index| pairs[index].alternative.clone());
         let mut warnings = self.warnings.clone();

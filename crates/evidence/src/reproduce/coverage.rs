@@ -8,12 +8,12 @@
 //! response they hold more or less often, by the bias of its smoothness. A stream of the generator for each experiment.
 
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::planck;
 use hadar::random::generator;
 use hadar_estimate::calibrate::response::Response;
 use hadar_estimate::calibrate::spectrometer::Calibration;
 use hadar_estimate::calibrate::twin::{FilterWheelTwin, SpectrometerTwin, normal};
-use rayon::prelude::*;
 
 /// ± so many deviations are a 95 % interval.
 const REACH: f64 = 1.959_963_984_540_054;
@@ -133,7 +133,7 @@ pub(crate) fn spectrometer(
         }));
         Ok([response, offset, radiance, emissivity, surroundings])
     };
-    let shares: Vec<[f64; 5]> = (0..experiments).into_par_iter().map(one).collect::<Result<_>>()?;
+    let shares: Vec<[f64; 5]> = parallel::try_map(experiments, one)?;
     let [response, offset, radiance, emissivity, surroundings] =
         [0, 1, 2, 3, 4].map(|i| Coverage::of(shares.iter().map(move |share| share[i])));
     Ok(SpectrometerCoverage { response, offset, radiance, emissivity, surroundings })
@@ -187,7 +187,7 @@ pub(crate) fn filter_wheel(
         }));
         Ok([response, radiance])
     };
-    let shares: Vec<[f64; 2]> = (0..experiments).into_par_iter().map(one).collect::<Result<_>>()?;
+    let shares: Vec<[f64; 2]> = parallel::try_map(experiments, one)?;
     let [response, radiance] = [0, 1].map(|i| Coverage::of(shares.iter().map(move |share| share[i])));
     Ok(FilterWheelCoverage { response, radiance })
 }

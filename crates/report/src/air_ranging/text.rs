@@ -2,6 +2,7 @@
 
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use crate::words::Say;
+use hadar::order;
 use hadar::words::{length, share, significant};
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 use std::fmt::Write as _;
@@ -113,7 +114,7 @@ fn bands(result: &AirRanging) -> String {
         return String::new();
     }
     let mut order: Vec<&AirBand> = result.bands.iter().collect();
-    order.sort_by(|a, b| b.information_per_m2.total_cmp(&a.information_per_m2));
+    order::descending(&mut order, |b| b.information_per_m2);
     let mut out = format!(
         "Bands that tell most of it at {} m, of {}\n  {:>9}  {:>13}  {:>14}  {:>18}\n",
         significant(result.at.distance_m, 3),

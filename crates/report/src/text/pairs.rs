@@ -1,6 +1,7 @@
 //! The target against its alternatives, one line each.
 
 use super::numbers::{numbers, photons, shortened, significant};
+use hadar::order;
 use hadar_scenario::DistanceKind;
 use hadar_study::{NearestProof, PairResult, Study};
 use std::fmt::Write as _;
@@ -33,7 +34,7 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
     out.push_str(if with_camera { "    camera d  told apart" } else { "" });
     out.push_str(if with_camera && by_local { "    limit d\n" } else { "\n" });
     let mut sorted: Vec<&PairResult> = pairs.iter().collect();
-    sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
+    order::ascending(&mut sorted, |pair| decisive(pair));
     for pair in sorted {
         let nearest = &pair.nearest_state;
         let state = study.units().temperature(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2);

@@ -9,6 +9,7 @@ use hadar::calibration::filter_wheel::{FilterWheel, Reading};
 use hadar::cube::{Cube, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
+use hadar::order;
 use hadar::planck;
 use hadar::spectrum::{FilterCurve, interpolated};
 use hadar_estimate::calibrate::response::{FilterRadiance, Response};
@@ -429,7 +430,7 @@ fn typical(path: &Path, centres_cm1: &[f64]) -> Result<Vec<f64>> {
         return Err(error.in_file(path));
     };
     let mut rows = rows.clone();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut rows, |a| a.0);
     let (xs, ys): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
     let (Some(low), Some(high)) = (xs.first(), xs.last()) else {
         return Err(Error::malformed("the table has no rows", "write one for every wavenumber").in_file(path));

@@ -14,11 +14,12 @@
 //! leaving out those of the smallest shares in the best design of those left, a third of the surplus at a time: good, not proved to
 //! be the best set.
 //!
-//! Assumptions: as in [`super::filter_wheel`], exact temperatures, the same noise in every reading of the same time.
+//! Assumptions: as in [`hadar::calibration::filter_wheel`], exact temperatures, the same noise in every reading of the same time.
 
 use hadar::calibration::determined::CurvePrior;
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
 use hadar::error::{Error, Result, check};
+use hadar::order;
 use hadar::planck;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -139,7 +140,7 @@ impl Design {
                 design.shares.iter().filter(|share| share.1 == *q).map(|share| share.2).sum()
             };
             let fewer = left.len() - ((left.len() - count) / 3).max(1);
-            left.sort_by(|a, b| share(b).total_cmp(&share(a)));
+            order::descending(&mut left, share);
             left.truncate(fewer);
             left.sort_unstable();
         }
