@@ -10,7 +10,7 @@
 //!
 //! The best of a list: every pair; more settings by exchange from the best pair, one at a time, until none helps.
 //!
-//! Units and assumptions: as in [`super::blackbody`]; every setting errs for itself.
+//! Units and assumptions: as in [`hadar::calibration::blackbody`]; every setting errs for itself.
 
 use hadar::calibration::blackbody::Blackbodies;
 use hadar::calibration::surface::{Truth, bias, errors};
