@@ -12,6 +12,7 @@ pub mod grid;
 pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
+mod named;
 pub mod order;
 pub mod parallel;
 pub mod random;

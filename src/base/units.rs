@@ -389,35 +389,6 @@ fn number_end(text: &str) -> usize {
     end
 }
 
-macro_rules! quantity {
-    ($name:ident, $check:ident, $quantity:literal, $unit:literal, $doc:literal) => {
-        #[doc = $doc]
-        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, serde::Serialize)]
-        #[serde(transparent)]
-        pub struct $name(f64);
-
-        impl $name {
-            /// Checks and wraps the value.
-            ///
-            /// # Errors
-            /// [`Error::OutOfRange`] if the value is not finite or has the wrong sign.
-            pub fn new(value: f64) -> Result<Self> {
-                check::$check($quantity, value, $unit).map(Self)
-            }
-
-            /// The plain number, in the unit of the type.
-            #[must_use]
-            pub const fn get(self) -> f64 {
-                self.0
-            }
-        }
-    };
-}
-
-quantity!(Kelvin, positive, "temperature", "K", "An absolute temperature above 0 K, in K.");
-quantity!(Metres, positive, "length", "m", "A length above 0, in m.");
-quantity!(Seconds, positive, "time", "s", "A duration above 0, in s.");
-
 /// x·2^power in steps that do not overflow before the result does.
 pub(crate) fn times_power_of_two(x: f64, power: i32) -> f64 {
     let half = power / 2;

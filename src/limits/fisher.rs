@@ -26,33 +26,21 @@ pub use crate::instrument::Counting;
 use crate::error::{Error, Result, check};
 use crate::scene::Parameter;
 
-/// A kind of nuisance: unknown, but not what is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Nuisance {
-    /// Target temperature; prior in K.
-    Temperature,
-    /// Lighting factors, one per environment object; prior dimensionless.
-    Lighting,
-    /// Overall scale of the signal; prior dimensionless (relative).
-    Gain,
-    /// Temperatures of the environment objects; prior in K.
-    EnvironmentTemperature,
-}
-
-impl Nuisance {
-    /// All kinds, in their fixed order.
-    pub const ALL: [Self; 4] = [Self::Temperature, Self::Lighting, Self::Gain, Self::EnvironmentTemperature];
-
-    /// The name used in scenario files.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Temperature => "temperature",
-            Self::Lighting => "lighting",
-            Self::Gain => "gain",
-            Self::EnvironmentTemperature => "environment-temperature",
-        }
+crate::named! {
+    /// A kind of nuisance: unknown, but not what is asked for.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    pub enum Nuisance {
+        /// Target temperature; prior in K.
+        Temperature = "temperature",
+        /// Lighting factors, one per environment object; prior dimensionless.
+        Lighting = "lighting",
+        /// Overall scale of the signal; prior dimensionless (relative).
+        Gain = "gain",
+        /// Temperatures of the environment objects; prior in K.
+        EnvironmentTemperature = "environment-temperature",
     }
+    /// The name used in scenario files.
+    name
 }
 
 /// The set of nuisances with their priors: what is not known besides the material.

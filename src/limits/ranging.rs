@@ -10,7 +10,7 @@
 //! * [`reconstruction`]: the same for a scattered signal that is itself estimated from the bands;
 //! * [`air`]: depth from one view, by what the air on the path takes away and adds;
 //! * [`levels`]: what is left of it in an image of grey levels;
-//! * [`texture`], [`metrics`]: other measures of texture, and of the error of a depth map.
+//! * [`metrics`]: measures of the error of a depth map.
 //!
 //! Assumptions: parallel, calibrated, rectified cameras (no vergence), matching along x alone; no bias bound.
 //!
@@ -25,4 +25,3 @@ pub mod metrics;
 pub mod noise;
 pub mod psf;
 pub mod reconstruction;
-pub mod texture;

@@ -46,29 +46,19 @@ use table::same;
 /// By how much rounding may take a computed emissivity out of [0, 1].
 const ROUNDING: f64 = 1e-9;
 
-/// What to assume outside the range in which a material is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Extrapolation {
-    /// The emissivity at the end of the range.
-    Hold,
-    /// The straight line through the spectrum at the end and at its last row before the end (1 cm⁻¹
-    /// before, if it has no rows).
-    Linear,
-}
-
-impl Extrapolation {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Hold, Self::Linear];
-
-    /// The name in scenario files and manifests.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Hold => "hold",
-            Self::Linear => "linear",
-        }
+crate::named! {
+    /// What to assume outside the range in which a material is known.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Extrapolation {
+        /// The emissivity at the end of the range.
+        Hold = "hold",
+        /// The straight line through the spectrum at the end and at its last row before the end (1 cm⁻¹
+        /// before, if it has no rows).
+        Linear = "linear",
     }
+    /// The name in scenario files and manifests.
+    name
 }
 
 /// A surface with a spectral emissivity and where that is known from.

@@ -5,12 +5,10 @@
 //! * [`spectrometer`]: response and offset of a spectrometer, radiance, emissivity and surroundings (S52–S58);
 //! * [`photon_transfer`]: variance against mean, of repeated frames or of neighbours in one frame;
 //! * [`find_stripes`]: lines whose gain and offset are off, which [`Destriped::corrected`] takes out;
-//! * [`twin`]: a filter-wheel camera and a spectrometer whose truth is known;
-//! * [`coverage`]: how often intervals hold it.
+//! * [`twin`]: a filter-wheel camera and a spectrometer whose truth is known.
 //!
 //! Bounds are in [`hadar::calibration`], which uses none of this.
 
-pub mod coverage;
 mod noise;
 pub mod response;
 pub mod spectrometer;

@@ -1,13 +1,8 @@
 //! Temperature and emissivity told apart without a library, and a library out of a heat cube.
 //!
-//! A surface sends S = e·B(T) + (1 − e)·X: W bands have W + 1 unknowns, and what tells them apart has to be assumed. The assumptions
-//! that are in use:
-//!
-//! * [`nem()`]: the largest emissivity of all bands is known (normalised emissivity method); [`ratio`]: what of it does not hang on that;
-//! * [`mmd()`]: the least emissivity follows from how much the emissivities differ, by a relation that other spectra have (TES);
-//! * [`smoothest()`]: the emissivity has none of the lines of the light that it scatters (ISSTES, ARTEMISS);
-//! * [`gaussian()`]: it is drawn from a Gaussian prior, a smooth one or that of principal components of other spectra. What is known
-//!   by such a prior has a bound, [`hadar::fisher::emissivity`], which this estimate reaches.
+//! A surface sends S = e·B(T) + (1 − e)·X: W bands have W + 1 unknowns, and what tells them apart has to be assumed. [`nem()`] assumes
+//! that the largest emissivity of all bands is known (normalised emissivity method); [`ratio`] is what of it does not hang on that. What
+//! is known by a Gaussian prior has a bound, [`hadar::fisher::emissivity`].
 //!
 //! Many pixels of a few materials tell more: [`library_from_cube`] groups them by their relative emissivities and fits one emissivity
 //! for each group, with a temperature and a lighting of every pixel, to all of them at once.
@@ -15,19 +10,13 @@
 //! Source: paper, supplement SV C; Gillespie et al., IEEE Trans. Geosci. Remote Sens. 36, 1113 (1998), doi:10.1109/36.700995, and
 //! 'Temperature/Emissivity Separation Algorithm Theoretical Basis Document', version 2.4 (1999).
 
-mod gaussian;
 mod group;
 mod k_means;
 mod library;
-mod mmd;
 mod nem;
 mod radiometry;
 mod sample;
-mod smoothest;
 
-pub use gaussian::gaussian;
 pub use k_means::{Means, k_means};
 pub use library::{Asked, COUNT, Cluster, Found, Tried, library_from_cube};
-pub use mmd::{Mmd, mmd};
 pub use nem::{Separated, Surface, nem, ratio};
-pub use smoothest::smoothest;

@@ -10,6 +10,7 @@
 //! [`FurtherStudy`] are questions of this project beyond the paper's figures: no part of `all`, no lines of the ledger.
 
 mod candidates;
+mod coverage;
 mod edfig1;
 mod edfig5;
 mod edfig6;
@@ -35,6 +36,7 @@ mod scene;
 mod studies;
 mod tabs2;
 mod tabs5;
+mod texture;
 mod textured;
 
 pub(crate) use ledger::{Line, Verdict, markdown, table};

@@ -7,8 +7,8 @@ mod read;
 mod write;
 
 use super::range::Subject;
-use super::{RangeScenario, Scenario, Source};
-use hadar::error::{Error, Place, Result};
+use super::{RangeScenario, Scenario};
+use hadar::error::{Error, Result};
 pub use hadar::ranging::air::SmoothEmissivity;
 pub use hadar::ranging::depth::Demand;
 
@@ -16,6 +16,26 @@ pub use hadar::ranging::depth::Demand;
 const MOST_TRIALS: usize = 1_000_000;
 
 /// Everything a scenario of ranging by air says, defaults filled in.
+///
+/// ```
+/// use hadar_scenario::AirRangingScenario;
+/// let text = r#"
+///     signal = "air"
+///     [target]
+///     material = "skin"
+///     temperature = "37 degC"
+///     distance = "50 m"
+///     [atmosphere]
+///     model = "us-standard"
+///     [camera]
+///     preset = "flir-a325sc"
+/// "#;
+/// let scenario = AirRangingScenario::from_toml(text, None)?;
+/// assert_eq!((scenario.distances_m[0], scenario.unknown.emissivity), (5.0, None));
+/// let error = AirRangingScenario::from_toml(&text.replace("50 m", "0 m"), None).unwrap_err();
+/// assert!(error.to_string().starts_with("line 6: target.distance: `0 m` is out of range"));
+/// # Ok::<(), hadar::Error>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct AirRangingScenario {
     /// Target (with its distance), surroundings, air, bands, camera, and what of them is unknown.
@@ -83,17 +103,5 @@ impl RangingScenario {
             return Err(Error::malformed(found, "leave it out, or give a [scene]"));
         }
         Ok(())
-    }
-}
-
-impl AirRangingScenario {
-    /// Where a key stands, as [`Scenario::place`].
-    #[must_use]
-    pub fn place(&self, key: &str) -> Place {
-        self.source().place(key)
-    }
-
-    fn source(&self) -> &Source {
-        &self.scene.source
     }
 }

@@ -31,7 +31,7 @@ impl AtmosphereSpec {
         let section = entry.section()?;
         section.at_most_one(&["model", "table"])?;
         let temperature_k = section.quantity("temperature")?;
-        let model = section.read("model", |entry| Ok(entry.text("\"us-standard\"")?.trim().to_owned()))?;
+        let model = section.text("model", "\"us-standard\"")?;
         let source = match (model, section.read("table", file)?) {
             (Some(name), _) => AtmosphereSource::Model(name),
             (None, Some(path)) => AtmosphereSource::Table(path),

@@ -6,8 +6,8 @@
 use super::camera::read;
 use super::keys::files;
 use super::kind::Kind;
-use super::read::document;
-use super::section::{Entry, Section};
+use super::reader::open;
+use super::section::Entry;
 use super::stated_camera::StatedCamera;
 use super::{Source, Written};
 use hadar::error::{Place, Result};
@@ -29,11 +29,10 @@ impl StatedCameras {
     /// # Errors
     /// The first thing that is wrong, with file, line and key.
     pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Cameras, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::CAMERAS)?;
-        let items = root.require("camera")?.items("each camera as [[camera]], in double brackets")?;
-        let cameras = items.iter().map(camera).collect::<Result<_>>()?;
+        let (cameras, source) = open(written, (Kind::Cameras, MINIMUM, &files::CAMERAS), |root| {
+            let items = root.require("camera")?.items("each camera as [[camera]], in double brackets")?;
+            items.iter().map(camera).collect()
+        })?;
         Ok(Self { cameras, source })
     }
 
@@ -47,12 +46,12 @@ impl StatedCameras {
 fn camera(item: &Entry<'_>) -> Result<StatedCamera> {
     let spec = read(item)?;
     let section = item.table()?;
-    let text = |entry: &Entry<'_>| Ok(entry.text("\"…\"")?.trim().to_owned());
+    let text = |entry: &Entry<'_>| entry.name("\"…\"");
     let provenance = section.read("provenance", |entry| {
         entry.items("provenance = [\"data sheet of 2024\"]")?.iter().map(text).collect::<Result<Vec<_>>>()
     })?;
     Ok(StatedCamera {
-        name: section.require("name")?.text("\"ours\"")?.trim().to_owned(),
+        name: section.require("name")?.name("\"ours\"")?,
         description: section.read("description", text)?.unwrap_or_default(),
         document: section.read("document", text)?,
         provenance: provenance.unwrap_or_default(),

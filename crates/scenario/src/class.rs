@@ -3,7 +3,7 @@
 //! A class may stand wherever a material of target, alternatives, envelope or library may. Its members are names of the library,
 //! patterns for these, files, folders, or patterns for the files of a folder.
 
-use super::entries::Entries;
+use super::entries::{Entries, Part};
 use super::paths::{Paths, file, is_path};
 use super::section::{Entry, Section, without_repetition};
 use super::{ClassSpec, MaterialRef, Spread};
@@ -60,8 +60,13 @@ fn member(entry: &Entry<'_>) -> Result<MaterialRef> {
     if is_path(text) { file(entry).map(MaterialRef::File) } else { Ok(MaterialRef::Name(text.to_owned())) }
 }
 
-/// The table of a class.
-pub(super) fn written(class: &ClassSpec, paths: Paths<'_>) -> Entries {
+/// The tables of classes, if there are any.
+pub(super) fn all_written(classes: &BTreeMap<String, ClassSpec>, paths: Paths<'_>) -> Option<Part> {
+    let one = |(name, spec): (&String, &_)| (name.clone(), written(spec, paths));
+    (!classes.is_empty()).then(|| Part::Named(classes.iter().map(one).collect()))
+}
+
+fn written(class: &ClassSpec, paths: Paths<'_>) -> Entries {
     let names: Vec<String> = class.materials.iter().map(|material| paths.material(material)).collect();
     let (error, length) = match class.spread {
         Some(Spread::Stated { emissivity_error, correlation_cm1 }) => {

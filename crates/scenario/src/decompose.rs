@@ -11,13 +11,34 @@ pub(super) mod write;
 pub use category::{CategorySpec, SegmentationSpec};
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
-use hadar::error::Place;
 use hadar_estimate::decompose::SpatialPrior;
 use hadar_formats::cube::Axes;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Everything a decomposition scenario says.
+///
+/// ```
+/// use hadar_scenario::DecomposeScenario;
+/// let text = r#"
+///     [cube]
+///     data = "counts.npy"
+///     counts_per_photon_radiance = 2e-14
+///     [bands]
+///     start = "720 cm^-1"
+///     stop = "1250 cm^-1"
+///     step = "10 cm^-1"
+///     [[environment]]
+///     temperature = "-10 degC"
+///     [library]
+///     materials = ["skin", "aluminium"]
+/// "#;
+/// let scenario = DecomposeScenario::from_toml(text, None)?;
+/// assert_eq!(scenario.unknown.temperature_k, [200.0, 400.0]);
+/// let error = DecomposeScenario::from_toml(&text.replace("2e-14", "-1"), None).unwrap_err();
+/// assert!(error.to_string().starts_with("line 4: cube.counts_per_photon_radiance: "));
+/// # Ok::<(), hadar::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct DecomposeScenario {
     /// What it is about, for headings.
@@ -172,12 +193,4 @@ pub struct TruthSpec {
     pub lighting: Vec<PathBuf>,
     /// A number for each pixel's category.
     pub category: Option<PathBuf>,
-}
-
-impl DecomposeScenario {
-    /// Where a key stands, as [`super::Scenario::place`].
-    #[must_use]
-    pub fn place(&self, key: &str) -> Place {
-        self.source.place(key)
-    }
 }

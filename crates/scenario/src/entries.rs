@@ -36,8 +36,47 @@ struct Entry {
     dimension: Option<Dimension>,
 }
 
-/// The parts of a scenario in the order in which they are written.
-pub(super) type Document = Vec<(&'static str, Part)>;
+/// The parts of a file in the order in which they are written.
+#[derive(Default, PartialEq)]
+pub(super) struct Document(pub(super) Vec<(&'static str, Part)>);
+
+impl Document {
+    /// A document that begins with a title, if there is one.
+    pub(super) fn titled(title: Option<&String>) -> Self {
+        Self(title.map(|title| ("title", Part::Value(title.as_str().into()))).into_iter().collect())
+    }
+
+    /// With a table, or tables.
+    pub(super) fn put(mut self, name: &'static str, part: impl Into<Part>) -> Self {
+        self.0.push((name, part.into()));
+        self
+    }
+
+    pub(super) fn put_if(self, name: &'static str, part: Option<impl Into<Part>>) -> Self {
+        match part {
+            Some(part) => self.put(name, part),
+            None => self,
+        }
+    }
+
+    /// These, then others.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        self.0.extend(other.0);
+        self
+    }
+}
+
+impl From<Entries> for Part {
+    fn from(table: Entries) -> Self {
+        Self::Table(table)
+    }
+}
+
+impl From<Vec<Entries>> for Part {
+    fn from(tables: Vec<Entries>) -> Self {
+        Self::Tables(tables)
+    }
+}
 
 /// A document as TOML, quantities as their author wrote them in `source`.
 pub(super) fn text(document: Document, source: &Source) -> String {
@@ -48,7 +87,7 @@ pub(super) fn text(document: Document, source: &Source) -> String {
 
 /// A document below the table of a header, read from the table of a name.
 fn lay(text: &mut String, document: Document, [header, read]: [&str; 2], source: &Source) {
-    for (name, part) in document {
+    for (name, part) in document.0 {
         let (header, read) = (dotted(header, name), dotted(read, name));
         match part {
             Part::Value(value) => text.push_str(&format!("{name} = {value}\n")),
@@ -116,7 +155,7 @@ impl Serialize for Map<'_> {
         for entry in self.0 {
             map.serialize_entry(entry.key, &entry.value)?;
         }
-        for (name, part) in self.1 {
+        for (name, part) in &self.1.0 {
             match part {
                 Part::Value(value) => map.serialize_entry(name, value)?,
                 Part::Table(entries) => map.serialize_entry(name, entries)?,

@@ -10,7 +10,6 @@
 
 use std::collections::BTreeMap;
 
-use hadar::error::Place;
 pub use hadar::fisher::Nuisance;
 pub use hadar::instrument::{CameraSpec, Efficiency, Readout};
 pub use hadar::material::{ClassSpec, Extrapolation, MaterialRef, Spread};
@@ -32,6 +31,7 @@ pub mod library;
 mod paths;
 pub mod range;
 mod read;
+mod reader;
 pub mod render;
 pub mod rule;
 pub mod scene;
@@ -52,7 +52,7 @@ pub use decompose::DecomposeScenario;
 pub use envelope::Envelope;
 pub use library::LibraryScenario;
 pub use range::RangeScenario;
-pub use read::command_for;
+pub use reader::command_for;
 pub use render::RenderScenario;
 pub use rule::Rule;
 pub use scene::SceneSpec;
@@ -67,6 +67,33 @@ pub use written::{STDIN, Written};
 /// Everything a scenario file says, defaults filled in.
 ///
 /// Two scenarios are equal when they ask the same question: where they were read from does not count.
+///
+/// ```
+/// use hadar_scenario::{MaterialRef, Scenario};
+/// let text = r#"
+///     [target]
+///     material = "skin"
+///     temperature = "37 degC"
+/// "#;
+/// let scenario = Scenario::from_toml(text, None).unwrap();
+/// assert_eq!(scenario.target.material, MaterialRef::Name("skin".to_owned()));
+/// assert_eq!(scenario.target.temperature_k, 310.15);
+///
+/// let error = Scenario::from_toml(&text.replace(" degC", ""), None).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "line 4: target.temperature: `37` is a number without a unit; write \"37 degC\" or \"310.15 K\""
+/// );
+/// ```
+///
+/// ```
+/// use hadar_scenario::Scenario;
+/// let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"";
+/// let scenario = Scenario::from_toml(text, None).unwrap();
+/// let filled = scenario.to_toml();
+/// assert!(filled.contains("nuisances = [\"temperature\", \"lighting\"]"));
+/// assert_eq!(Scenario::from_toml(&filled, None).unwrap(), scenario);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Scenario {
     /// What the scenario is about, for headings.
@@ -100,13 +127,6 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Where `key` stands (`target.material`, `environment[0].material`, `alternatives.materials[1]`), to be
-    /// put on an error with [`hadar::Error::at`]. A key that was not written has the line of its table.
-    #[must_use]
-    pub fn place(&self, key: &str) -> Place {
-        self.source.place(key)
-    }
-
     /// The units in which it was written.
     #[must_use]
     pub fn units(&self) -> Units {
@@ -223,31 +243,20 @@ pub enum Reliability {
     },
 }
 
-/// Which distance a requirement is about; what they are is said with the distances themselves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum DistanceKind {
-    /// To the nearest state of the alternative: the limit that no test exceeds.
-    #[default]
-    Nearest,
-    /// Its tangent at the target, with the unknowns of the scenario.
-    Local,
-    /// The same with the gain unknown too: the paper's S29.
-    LocalUnknownGain,
-}
-
-impl DistanceKind {
-    /// All of them, the default first.
-    pub const ALL: [Self; 3] = [Self::Nearest, Self::Local, Self::LocalUnknownGain];
-
-    /// The name in a scenario, e.g. `local-unknown-gain`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Nearest => "nearest",
-            Self::Local => "local",
-            Self::LocalUnknownGain => "local-unknown-gain",
-        }
+hadar::named! {
+    /// Which distance a requirement is about; what they are is said with the distances themselves.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum DistanceKind {
+        /// To the nearest state of the alternative: the limit that no test exceeds.
+        #[default]
+        Nearest = "nearest",
+        /// Its tangent at the target, with the unknowns of the scenario.
+        Local = "local",
+        /// The same with the gain unknown too: the paper's S29.
+        LocalUnknownGain = "local-unknown-gain",
     }
+    /// The name in a scenario, e.g. `local-unknown-gain`.
+    name
 }
 
 /// What is demanded (`[requirement]`).

@@ -11,6 +11,28 @@ use super::{BandsSpec, CameraSpec, Source};
 use hadar::fisher::emissivity::Smoothness;
 
 /// Everything that the file says.
+///
+/// ```
+/// use hadar_scenario::LibraryScenario;
+/// let text = r#"
+///     [cube]
+///     data = "counts.npy"
+///     counts_per_photon_radiance = 2e-14
+///     [bands]
+///     start = "720 cm^-1"
+///     stop = "1250 cm^-1"
+///     step = "10 cm^-1"
+///     [[environment]]
+///     temperature = "-10 degC"
+///     [clusters]
+///     count = [2, 8]
+/// "#;
+/// let scenario = LibraryScenario::from_toml(text, None)?;
+/// assert_eq!(scenario.clusters.count, [2, 8]);
+/// let error = LibraryScenario::from_toml(&text.replace("[2, 8]", "0"), None).unwrap_err();
+/// assert!(error.to_string().starts_with("line 12: clusters.count: "));
+/// # Ok::<(), hadar::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LibraryScenario {
     /// What it is about, for headings.

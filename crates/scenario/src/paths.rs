@@ -42,7 +42,7 @@ pub(super) fn is_path(text: &str) -> bool {
 
 /// The name of an array in a file of several (`variable`).
 pub(super) fn variable(section: &Section<'_>) -> Result<Option<String>> {
-    section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))
+    section.text("variable", "\"S\"")
 }
 
 /// Which dimension of an array is which (`axes`).

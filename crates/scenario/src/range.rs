@@ -7,7 +7,6 @@ pub(super) mod read;
 pub(super) mod write;
 
 use super::{BandsSpec, CameraSpec, SceneSpec, Source};
-use hadar::error::Place;
 pub use hadar::ranging::depth::Demand;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
@@ -16,6 +15,31 @@ use hadar_formats::cube::Axes;
 use std::path::PathBuf;
 
 /// Everything a ranging scenario says, defaults filled in.
+///
+/// ```
+/// use hadar_scenario::RangeScenario;
+/// let text = r#"
+///     [scene]
+///     person_temperature = "37 degC"
+///     [camera]
+///     preset = "flir-a325sc"
+///     [stereo]
+///     baseline = "0.2 m"
+/// "#;
+/// let scenario = RangeScenario::from_toml(text, None)?;
+/// assert_eq!(scenario.stereo.window.rows(), 5);
+/// let error = RangeScenario::from_toml(&text.replace("0.2 m", "0 m"), None).unwrap_err();
+/// assert!(error.to_string().starts_with("line 7: stereo.baseline: `0 m` is out of range"));
+/// # Ok::<(), hadar::Error>(())
+/// ```
+/// ```
+/// use hadar_scenario::RangeScenario;
+/// let text = "[cube]\nleft = \"/data/left.npy\"\n[stereo]\nbaseline = \"0.2 m\"\nfocal_length = \"14 mm\"\npixel = \"12 um\"\n";
+/// let scenario = RangeScenario::from_toml(text, None)?;
+/// let again = RangeScenario::from_toml(&scenario.to_toml(), None)?;
+/// assert_eq!((&again.subject, &again.stereo), (&scenario.subject, &scenario.stereo));
+/// # Ok::<(), hadar::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct RangeScenario {
     /// What it is about, for headings.
@@ -119,12 +143,4 @@ pub struct DepthRequirement {
     pub error: Demand,
     /// Share of the windows that must reach it, in (0, 1].
     pub share: f64,
-}
-
-impl RangeScenario {
-    /// Where a key stands, as [`super::Scenario::place`].
-    #[must_use]
-    pub fn place(&self, key: &str) -> Place {
-        self.source.place(key)
-    }
 }

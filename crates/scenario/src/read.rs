@@ -1,107 +1,29 @@
 //! Reads a scenario: every key checked, every error one line with file, line and key.
 
 use std::collections::BTreeMap;
-use std::path::Path;
-
-use toml::de::DeTable;
 
 use super::envelope::LIGHTING_ROUNDING;
 use super::keys::files;
 use super::kind::Kind;
 use super::paths::material;
+use super::reader::file;
 use super::section::{Entry, Section, without_repetition};
-use super::source::LineStarts;
 use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
     Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
-    Written,
 };
 use super::{camera, class};
 use hadar::error::{Error, Result};
-use hadar::instrument::figures::BLANK;
-use hadar::units::decimal_comma;
 
 pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
+file!(Scenario, source, (Kind::Scenario, MINIMUM, &files::SCENARIO));
+
 impl Scenario {
-    /// Reads a scenario file. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key: the file itself (missing, a
-    /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
-    /// unit or outside its range, or values that contradict each other.
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
+    fn of_root(root: &Section<'_>) -> Result<Self> {
+        let scenario = of_root(root, requirement)?;
+        Ok(Self { camera: root.read("camera", camera::read)?, ..scenario })
     }
-
-    /// Reads a scenario from text. `path` is the file it is from, which messages name and relative paths
-    /// start from; without it they start from the current directory.
-    ///
-    /// # Errors
-    /// As [`Scenario::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_scenario::{MaterialRef, Scenario};
-    /// let text = r#"
-    ///     [target]
-    ///     material = "skin"
-    ///     temperature = "37 degC"
-    /// "#;
-    /// let scenario = Scenario::from_toml(text, None).unwrap();
-    /// assert_eq!(scenario.target.material, MaterialRef::Name("skin".to_owned()));
-    /// assert_eq!(scenario.target.temperature_k, 310.15);
-    ///
-    /// let error = Scenario::from_toml(&text.replace(" degC", ""), None).unwrap_err();
-    /// assert_eq!(
-    ///     error.to_string(),
-    ///     "line 4: target.temperature: `37` is a number without a unit; write \"37 degC\" or \"310.15 K\""
-    /// );
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads a scenario with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Scenario::from_file`], except those of the file itself.
-    pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Scenario, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::SCENARIO)?;
-        let mut scenario = of_root(&root, requirement)?;
-        scenario.camera = root.read("camera", camera::read)?;
-        scenario.source = source;
-        Ok(scenario)
-    }
-}
-
-/// The command that answers a file, if there is one for its kind.
-///
-/// # Errors
-/// What is no TOML.
-pub fn command_for(written: &Written) -> Result<Option<&'static str>> {
-    Ok(Kind::command_for(&parse(&written.text, &written.source())?))
-}
-
-/// The tables of a file that is of a kind and has its least in it, whose lines `source` then knows.
-pub(super) fn document<'t>(
-    written: &'t Written,
-    (kind, minimum): (Kind, &str),
-    source: &mut Source,
-) -> Result<DeTable<'t>> {
-    let text = written.text.as_str();
-    if text.trim().is_empty() {
-        return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
-    }
-    let mut document = parse(text, source)?;
-    source.note_lines(text, &document);
-    kind.check(&document, source)?;
-    for setting in &written.settings {
-        setting.put(&mut document)?;
-        source.note_setting(setting);
-    }
-    Ok(document)
 }
 
 /// All of a scenario but its camera and its source, what is demanded as `requirement` reads it.
@@ -109,14 +31,11 @@ pub(super) fn of_root(
     root: &Section<'_>,
     requirement: impl FnOnce(&Entry<'_>) -> Result<Requirement>,
 ) -> Result<Scenario> {
-    let target = match root.get("target") {
-        Some(entry) => target(&entry)?,
-        None => return Err(root.fail("target", Error::malformed("the table is missing", MINIMUM))),
-    };
+    let target = target(&root.table("target", MINIMUM)?)?;
     let unknown = root.read("unknown", unknown)?.unwrap_or_default();
     let environment = environment(root, unknown.lighting_total)?;
     Ok(Scenario {
-        title: root.read("title", |entry| Ok(entry.text("\"Person or robot?\"")?.to_owned()))?,
+        title: root.title("\"Person or robot?\"")?,
         classes: class::read(root)?,
         target,
         envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
@@ -131,35 +50,6 @@ pub(super) fn of_root(
         sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
         source: Source::default(),
     })
-}
-
-/// The table behind the text, or the first thing that is not TOML.
-fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
-    let (document, errors) = DeTable::parse_recoverable(text);
-    let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
-    let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
-        return Ok(document.into_inner());
-    };
-    let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
-    let line = LineStarts::of(text).line(offset(first));
-    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
-        let error =
-            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
-        return Err(error.on_line(line).at(source.place("")));
-    }
-    // `f_number = 1,3`: a list of nothing, and a number.
-    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
-    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
-        return Err(error.on_line(line).at(source.place("")));
-    }
-    let error = Error::malformed(
-        format!("this is not TOML: {message}"),
-        match message.as_str() {
-            "duplicate key" => "write each key and each [table] once",
-            _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
-        },
-    );
-    Err(error.on_line(line).at(source.place("")))
 }
 
 pub(super) fn target(entry: &Entry<'_>) -> Result<Target> {

@@ -25,16 +25,14 @@ pub use test::{RuleTest, Verdict};
 
 use super::Scenario;
 use super::camera::written;
-use super::entries::{self, Document, Entries, Part};
+use super::entries::{Document, Entries, Part};
 use super::keys::files;
 use super::kind::Kind;
 use super::paths::Paths;
-use super::read::{MINIMUM, document};
+use super::read::MINIMUM;
+use super::reader::file;
 use super::section::{Entry, Section};
-use super::written::Written;
 use hadar::error::{Error, Place, Result};
-use serde::{Serialize, Serializer};
-use std::path::Path;
 use toml::value::Date;
 
 /// 95 % of a Gaussian.
@@ -69,6 +67,23 @@ impl About {
 }
 
 /// Everything a rule file says, defaults filled in.
+///
+/// ```
+/// use hadar_scenario::Rule;
+/// let text = r#"
+///     cameras = ["flir-a325sc", "ideal-pnrd"]
+///     [target]
+///     material = "skin"
+///     temperature = "37 degC"
+///     [envelope]
+///     temperature = ["30 degC", "37 degC"]
+/// "#;
+/// let rule = Rule::from_toml(text, None)?;
+/// assert_eq!(rule.cameras.len(), 2);
+/// let error = Rule::from_toml(&text.replace("[\"30", "[\"40"), None).unwrap_err().to_string();
+/// assert!(error.starts_with("line 7: envelope.temperature: the range goes from 40 degC to 37 degC"), "{error}");
+/// # Ok::<(), hadar::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Rule {
     /// What it says of itself.
@@ -87,52 +102,12 @@ pub struct Rule {
     pub sources: Vec<Citation>,
     /// What is expected of its cameras.
     pub tests: Vec<RuleTest>,
-    /// The file as it was read.
-    pub text: String,
 }
 
+file!(Rule, scenario.source, (Kind::Rule, MINIMUM, &files::RULE));
+
 impl Rule {
-    /// Reads a rule file. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// As [`Scenario::from_file`]; no camera at all.
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
-    }
-
-    /// Reads a rule from text, of the file `path` if it is from one.
-    ///
-    /// # Errors
-    /// As [`Rule::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_scenario::Rule;
-    /// let text = r#"
-    ///     cameras = ["flir-a325sc", "ideal-pnrd"]
-    ///     [target]
-    ///     material = "skin"
-    ///     temperature = "37 degC"
-    ///     [envelope]
-    ///     temperature = ["30 degC", "37 degC"]
-    /// "#;
-    /// let rule = Rule::from_toml(text, None)?;
-    /// assert_eq!(rule.cameras.len(), 2);
-    /// let error = Rule::from_toml(&text.replace("[\"30", "[\"40"), None).unwrap_err().to_string();
-    /// assert!(error.starts_with("line 7: envelope.temperature: the range goes from 40 degC to 37 degC"), "{error}");
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads it with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`].
-    pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Rule, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::RULE)?;
+    fn of_root(root: &Section<'_>) -> Result<Self> {
         let about = root.read("rule", about)?.unwrap_or_default();
         let coverage_factor = root.read("uncertainty", |entry| entry.section()?.number("coverage_factor"))?;
         let coverage_factor = coverage_factor.flatten().unwrap_or(COVERAGE_FACTOR);
@@ -142,21 +117,11 @@ impl Rule {
             let key = if root.get("cameras").is_some() { "cameras" } else { "" };
             return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
         }
-        let (scenario, clauses) = clause::read(&root, &source)?;
-        let tests = test::read(&root, &cameras, &clauses)?;
-        let sources = citation::read(&root, &document, &source)?;
+        let (scenario, clauses) = clause::read(root)?;
+        let tests = test::read(root, &cameras, &clauses)?;
+        let sources = citation::read(root)?;
         let stand_in = root.read("stand_in", StandInSpec::read)?;
-        Ok(Self {
-            about,
-            coverage_factor,
-            scenario,
-            stand_in,
-            clauses,
-            cameras,
-            sources,
-            tests,
-            text: written.text.clone(),
-        })
+        Ok(Self { about, coverage_factor, scenario, stand_in, clauses, cameras, sources, tests })
     }
 
     /// Leaves out, in all clauses, alternatives whose spectra do not cover the bands, if that is asked for.
@@ -168,7 +133,7 @@ impl Rule {
     /// Its figures as its file has them.
     #[must_use]
     pub fn figures(&self) -> Vec<Figure> {
-        citation::of_text(&self.text, &self.scenario.source)
+        citation::of(&self.scenario.source)
     }
 
     /// Whether its demands are those of `[[clause]]` tables.
@@ -205,21 +170,8 @@ impl Rule {
         scenario
     }
 
-    /// The rule as TOML for a file in `directory`, every default filled in; see [`Scenario::to_toml_beside`].
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        entries::text(self.document(Paths { beside: absolute.as_deref() }), &self.scenario.source)
-    }
-
-    /// The rule as TOML, every default filled in, with absolute paths.
-    #[must_use]
-    pub fn to_toml(&self) -> String {
-        entries::text(self.document(Paths { beside: None }), &self.scenario.source)
-    }
-
     fn document(&self, paths: Paths<'_>) -> Document {
-        let mut document = Scenario { camera: None, ..self.scenario.clone() }.document(paths);
+        let document = Scenario { camera: None, ..self.scenario.clone() }.document(paths);
         let camera = |camera: &RuleCamera| {
             Entries::default()
                 .put_if("name", camera.name.as_deref())
@@ -234,27 +186,23 @@ impl Rule {
             .put_if("status", self.about.status.as_deref())
             .put_if("from", self.about.from.map(|day| day.to_string()))
             .put_if("until", self.about.until.map(|day| day.to_string()));
-        document.push(("rule", Part::Table(about)));
-        if self.cameras.iter().any(|camera| !camera.uncertainty.is_empty()) {
-            let entries = Entries::default().put("coverage_factor", self.coverage_factor);
-            document.push(("uncertainty", Part::Table(entries)));
-        }
-        if self.has_clauses() {
-            let clause = |clause: &Clause| clause.document(&self.scenario, paths);
-            document.push(("clause", Part::Documents(self.clauses.iter().map(clause).collect())));
-        } else if let Some(stop) = self.clauses.iter().find_map(|clause| clause.stop) {
-            document.push(("stop", Part::Table(stop.entries())));
-        }
-        if let Some(spec) = &self.stand_in {
-            document.push(("stand_in", Part::Table(spec.written(paths))));
-        }
-        document.push(("camera", Part::Tables(self.cameras.iter().map(camera).collect())));
+        let uncertain = self.cameras.iter().any(|camera| !camera.uncertainty.is_empty());
+        let clause = |clause: &Clause| clause.document(&self.scenario, paths);
+        let clauses = || Part::Documents(self.clauses.iter().map(clause).collect());
+        let stop = self.clauses.iter().find_map(|clause| clause.stop).filter(|_| !self.has_clauses());
         let tests: Vec<_> =
             self.tests.iter().map(|test| test.entries(&self.cameras, &self.clauses)).collect();
-        if !tests.is_empty() {
-            document.push(("test", Part::Tables(tests)));
-        }
         document
+            .put("rule", about)
+            .put_if(
+                "uncertainty",
+                uncertain.then(|| Entries::default().put("coverage_factor", self.coverage_factor)),
+            )
+            .put_if("clause", self.has_clauses().then(clauses))
+            .put_if("stop", stop.map(|stop| stop.entries()))
+            .put_if("stand_in", self.stand_in.as_ref().map(|spec| spec.written(paths)))
+            .put("camera", self.cameras.iter().map(camera).collect::<Vec<_>>())
+            .put_if("test", (!tests.is_empty()).then_some(tests))
     }
 }
 
@@ -279,16 +227,8 @@ impl PartialEq for Rule {
     }
 }
 
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for Rule {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        entries::entries(self.document(Paths { beside: None }), serializer)
-    }
-}
-
 fn about(entry: &Entry<'_>) -> Result<About> {
     let section = entry.section()?;
-    let text = |key, example: &str| section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
     let from = section.read("from", Entry::date)?;
     let until = section.read("until", Entry::date)?;
     if let Some((from, until)) = from.zip(until).filter(|(from, until)| until < from) {
@@ -296,11 +236,11 @@ fn about(entry: &Entry<'_>) -> Result<About> {
         return Err(section.fail("until", Error::malformed(found, "correct one of the two dates")));
     }
     Ok(About {
-        name: text("name", "\"Robots that see people at night\"")?,
-        text: text("text", "\"A camera must tell a person from a robot.\"")?,
-        authority: text("authority", "\"City of Lafayette\"")?,
-        version: text("version", "\"1\"")?,
-        status: text("status", "\"in force\"")?,
+        name: section.text("name", "\"Robots that see people at night\"")?,
+        text: section.text("text", "\"A camera must tell a person from a robot.\"")?,
+        authority: section.text("authority", "\"City of Lafayette\"")?,
+        version: section.text("version", "\"1\"")?,
+        status: section.text("status", "\"in force\"")?,
         from,
         until,
     })

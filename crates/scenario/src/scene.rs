@@ -6,7 +6,7 @@ mod read;
 mod write;
 
 pub(crate) use read::{scene, scene_of};
-pub(crate) use write::{objects as objects_written, scene as scene_written};
+pub(crate) use write::{document as scene_document, scene as scene_written};
 
 use super::MaterialRef;
 use std::path::PathBuf;

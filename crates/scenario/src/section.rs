@@ -103,6 +103,15 @@ impl<'a> Section<'a> {
         row.ok_or_else(|| self.fail(key, no_row()))
     }
 
+    /// The table itself.
+    pub(super) fn document(&self) -> &'a DeTable<'a> {
+        self.table
+    }
+
+    pub(super) fn source(&self) -> &'a Source {
+        self.source
+    }
+
     /// The keys of the table itself.
     pub(super) fn keys(&self) -> impl Iterator<Item = &'a str> {
         self.table.keys().map(|key| key.get_ref().as_ref())
@@ -127,6 +136,22 @@ impl<'a> Section<'a> {
     /// The value of `key` as `read` takes it, if the key is there.
     pub(super) fn read<T>(&self, key: &str, read: impl FnOnce(&Entry<'a>) -> Result<T>) -> Result<Option<T>> {
         self.get(key).map(|entry| read(&entry)).transpose()
+    }
+
+    /// A table that must be there; `instead` is what to write.
+    pub(super) fn table(&self, key: &str, instead: &str) -> Result<Entry<'a>> {
+        let missing = || self.fail(key, Error::malformed("the table is missing", instead));
+        self.get(key).ok_or_else(missing)
+    }
+
+    /// The title of a file.
+    pub(super) fn title(&self, example: &str) -> Result<Option<String>> {
+        self.read("title", |entry| Ok(entry.text(example)?.to_owned()))
+    }
+
+    /// Text without the blanks around it; `example` is one to write.
+    pub(super) fn text(&self, key: &str, example: &str) -> Result<Option<String>> {
+        self.read(key, |entry| entry.name(example))
     }
 
     /// A quantity with its unit.
@@ -290,6 +315,11 @@ impl<'a> Entry<'a> {
             return Err(self.fail(Error::malformed("the text is empty", instead)));
         }
         Ok(text)
+    }
+
+    /// The same without the blanks around it.
+    pub(super) fn name(&self, example: &str) -> Result<String> {
+        Ok(self.text(example)?.trim().to_owned())
     }
 
     /// A message is one line, so what it repeats must be.

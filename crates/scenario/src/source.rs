@@ -24,6 +24,8 @@ const LONGEST_TEXT: usize = 40;
 pub struct Source {
     /// The scenario file as it was named, `None` for text from elsewhere.
     pub path: Option<PathBuf>,
+    /// Its text.
+    pub text: Arc<str>,
     /// Line of each key that was written, e.g. `target.material` or `environment[0].lighting`.
     pub lines: BTreeMap<String, usize>,
     /// Short texts, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.

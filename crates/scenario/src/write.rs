@@ -3,12 +3,9 @@
 //! Quantities are strings, in the TOML as their author wrote them, else and in JSON in the unit used inside with all
 //! digits: reading gives the same bits back.
 
-use std::path::Path;
-
-use serde::ser::{Serialize, Serializer};
 use toml::Value;
 
-use super::entries::{Document, Entries, Part, entries, text};
+use super::entries::{Document, Entries};
 use super::paths::Paths;
 use super::{
     Alternatives, Background, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability,
@@ -17,74 +14,22 @@ use super::{
 use hadar::units::Dimension;
 
 impl Scenario {
-    /// The scenario as TOML, every default filled in; reading it gives an equal scenario. What stays silent
-    /// has no value (a distance, an atmosphere, a camera) or one that others know (a preset's fields, the library's
-    /// materials). Paths of files are absolute, so that it may be put anywhere on the same machine.
-    ///
-    /// ```
-    /// use hadar_scenario::Scenario;
-    /// let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"";
-    /// let scenario = Scenario::from_toml(text, None).unwrap();
-    /// let filled = scenario.to_toml();
-    /// assert!(filled.contains("nuisances = [\"temperature\", \"lighting\"]"));
-    /// assert_eq!(Scenario::from_toml(&filled, None).unwrap(), scenario);
-    /// ```
-    #[must_use]
-    pub fn to_toml(&self) -> String {
-        self.text(Paths { beside: None })
-    }
-
-    /// As [`Scenario::to_toml`], for a file in `directory` that may be moved along with its neighbours: paths
-    /// below `directory` are written relative to it, others absolute.
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        self.text(Paths { beside: absolute.as_deref() })
-    }
-
-    fn text(&self, paths: Paths<'_>) -> String {
-        text(self.document(paths), &self.source)
-    }
-
     pub(super) fn document(&self, paths: Paths<'_>) -> Document {
-        let mut document = Vec::new();
-        if let Some(title) = &self.title {
-            document.push(("title", Part::Value(title.as_str().into())));
-        }
-        if !self.classes.is_empty() {
-            let one = |(name, spec): (&String, &_)| (name.clone(), class::written(spec, paths));
-            document.push(("class", Part::Named(self.classes.iter().map(one).collect())));
-        }
-        document.push(("target", Part::Table(target(&self.target, paths))));
-        if let Some(behind) = &self.background {
-            document.push(("background", Part::Table(background(behind, paths))));
-        }
-        let objects = self.environment.iter().map(|object| environment(object, paths)).collect();
-        document.push(("environment", Part::Tables(objects)));
-        document.push(("alternatives", Part::Table(alternatives(&self.alternatives, paths))));
-        if let Some(spec) = &self.atmosphere {
-            document.push(("atmosphere", Part::Table(spec.written(paths))));
-        }
-        document.push(("bands", Part::Table(self.bands.written(paths))));
-        document.push(("unknown", Part::Table(unknown(&self.unknown, &[], None))));
-        if let Some(spec) = &self.camera {
-            document.push(("camera", Part::Table(camera::written(spec, paths))));
-        }
-        document.push(("requirement", Part::Table(requirement(&self.requirement))));
-        if let Some(envelope) = &self.envelope {
-            document.push(("envelope", Part::Table(envelope.written(paths))));
-        }
-        if let Some(spec) = self.sensitivity {
-            document.push(("sensitivity", Part::Table(spec.entries())));
-        }
-        document
-    }
-}
-
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for Scenario {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        entries(self.document(Paths { beside: None }), serializer)
+        let objects: Vec<Entries> =
+            self.environment.iter().map(|object| environment(object, paths)).collect();
+        Document::titled(self.title.as_ref())
+            .put_if("class", class::all_written(&self.classes, paths))
+            .put("target", target(&self.target, paths))
+            .put_if("background", self.background.as_ref().map(|behind| background(behind, paths)))
+            .put("environment", objects)
+            .put("alternatives", alternatives(&self.alternatives, paths))
+            .put_if("atmosphere", self.atmosphere.as_ref().map(|spec| spec.written(paths)))
+            .put("bands", self.bands.written(paths))
+            .put("unknown", unknown(&self.unknown, &[], None))
+            .put_if("camera", self.camera.as_ref().map(|spec| camera::written(spec, paths)))
+            .put("requirement", requirement(&self.requirement))
+            .put_if("envelope", self.envelope.as_ref().map(|envelope| envelope.written(paths)))
+            .put_if("sensitivity", self.sensitivity.map(|spec| spec.entries()))
     }
 }
 

@@ -109,6 +109,13 @@ impl Written {
     /// Where it is read from, before anything is read.
     pub(super) fn source(&self) -> Source {
         let (path, settings, cameras) = (self.path.clone(), self.settings.clone(), Arc::clone(&self.cameras));
-        Source { path, settings, cameras, files_refused: self.files_refused, ..Source::default() }
+        Source {
+            path,
+            text: self.text.as_str().into(),
+            settings,
+            cameras,
+            files_refused: self.files_refused,
+            ..Source::default()
+        }
     }
 }

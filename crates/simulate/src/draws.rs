@@ -7,8 +7,7 @@
 //!   intensity of thermal light in m modes;
 //! * any of the first and the last with electronic noise: exact counts plus a normal reading error of variance σ².
 //!
-//! [`multinomial`]: a fixed number of photons over the bands; [`electronic`]: readings frame after frame, whose flicker
-//! noise remembers; [`gaussian`]: how far the Gaussian law is from that of photons.
+//! [`multinomial`]: a fixed number of photons over the bands; [`gaussian`]: how far the Gaussian law is from that of photons.
 //!
 //! Counts are doubles: whole numbers up to 2⁵³ ([`LARGEST_EXACT`]), beyond which only multiples of 2, 4, … are met.
 //!
@@ -16,7 +15,6 @@
 //! and Tsang, ACM Trans. Math. Softw. 26, 363 (2000), doi:10.1145/358407.358414 (gamma); generator: Bernstein,
 //! 'ChaCha, a variant of Salsa20' (2008).
 
-pub mod electronic;
 pub mod gaussian;
 pub mod multinomial;
 

@@ -6,9 +6,8 @@
 //! * [`likelihood`]: least squares weighted by the noise, with the other view interpolated.
 //!
 //! Around them: [`trials`] draws noise about the expected counts of both views and repeats the match at given
-//! centres; [`report`] sets bias and variance beside the bound δd ≥ √(1/J_left + 1/J_right); [`locking`] gives
-//! the bias as a function of the sub-pixel part of the true disparity (pixel locking); [`dense`] makes a
-//! disparity map; [`texture`] makes views whose true disparity is exact.
+//! centres; [`report`] sets bias and variance beside the bound δd ≥ √(1/J_left + 1/J_right); [`dense`] makes a disparity
+//! map; [`texture`] makes views whose true disparity is exact.
 //!
 //! Conventions: images `[row][column][band]`, row 0 on top; the left camera at −b/2, the right one at +b/2,
 //! parallel; d = x_left − x_right in pixels.
@@ -24,7 +23,6 @@ mod interpolation;
 mod lanes;
 mod layout;
 pub mod likelihood;
-pub mod locking;
 pub mod report;
 mod search;
 mod strip;

@@ -1,4 +1,4 @@
-//! Rigorous bounds on the error of telling known states apart: two of them, or many.
+//! Rigorous bounds on the error of telling two known states apart.
 //!
 //! Two equally likely product laws p and q over the counts of W bands. The best test errs with
 //! probability ε = ½Σ min(p, q). With C(s) = −ln Σ p^{1−s}q^s (sums over bands; `tilted`):
@@ -17,17 +17,6 @@
 //! [`detection::error_bracket`] is the same Bhattacharyya bracket as a function of a distance: for Poisson
 //! C(½) = ½Σ(√N − √N′)² = d²/2 exactly, d the distance of [`super::nearest`] at that state; for the
 //! other laws d = √(2C(½)) defines what it is asked for here.
-//!
-//! M equally likely known states, ε_ij the error of the pair alone:
-//!
-//! * averaged over the states, the best test errs no more often than (1/M)Σ_{i<j} e^{−C_ij} (the chance
-//!   that j beats i given i plus the reverse is 2ε_ij ≤ e^{−C_ij}; sum over pairs) and than 1 − 1/M, by
-//!   guessing;
-//! * averaged, no test errs less often than (2/M) max ε_ij, nor than the mean of ε_ij over all pairs: a test
-//!   among M is also one between i and j, in which any third answer is an error, so e_i + e_j ≥ 2ε_ij;
-//!   every state is in M − 1 pairs;
-//! * one state alone: the maximum-likelihood test errs on i no more often than Σ_{j≠i} e^{−C_ij} (without
-//!   the ½). No bound below holds for one state: a test that always names it never errs on it.
 //!
 //! Rigorous up to rounding, relative 1e-15·(10 + C)(1 + a), a the largest occupancy per mode of bunched
 //! light. States are known: nothing is fitted, so these are bounds for the nearest states, not of a
@@ -187,51 +176,6 @@ fn ln_lower_bound(s: f64, at: Moments) -> f64 {
     let reach = k * spread;
     let loss = (s * (at.slope + reach)).max((1.0 - s) * (reach - at.slope));
     (-1.0 / (k * k)).ln_1p() - LN_2 - at.exponent - loss
-}
-
-/// Bounds on the error among M known, equally likely states.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct ManyStatesBracket {
-    /// Averaged over the states, no test errs less often.
-    pub average_lower: f64,
-    /// Averaged over the states, the maximum-likelihood test errs no more often.
-    pub average_upper: f64,
-    /// On each state alone, the maximum-likelihood test errs no more often.
-    pub state_upper: Vec<f64>,
-    /// The two states that are the hardest to tell apart (largest lower bound).
-    pub hardest: Option<(usize, usize)>,
-}
-
-/// Bounds for the states whose mean counts are the rows of `means`.
-///
-/// # Errors
-/// As [`KnownStates::new`].
-pub fn many_known_states(means: &[Vec<f64>], statistics: &Statistics) -> Result<ManyStatesBracket> {
-    let count = means.len();
-    let mut state_upper = vec![0.0; count];
-    let (mut hardest, mut largest, mut lowers, mut uppers) = (None, 0.0, 0.0, 0.0);
-    for (i, first) in means.iter().enumerate() {
-        for (j, second) in means.iter().enumerate().skip(i + 1) {
-            let pair = KnownStates::new(first, second, statistics)?.bracket();
-            let confusion = 2.0 * pair.upper;
-            state_upper[i] += confusion;
-            state_upper[j] += confusion;
-            uppers += confusion;
-            lowers += pair.lower;
-            if hardest.is_none() || pair.lower > largest {
-                (hardest, largest) = (Some((i, j)), pair.lower);
-            }
-        }
-    }
-    let m = count.max(1) as f64;
-    let mean = if count > 1 { 2.0 * lowers / (m * (m - 1.0)) } else { 0.0 };
-    Ok(ManyStatesBracket {
-        average_lower: mean.max(2.0 * largest / m),
-        average_upper: (uppers / m).min(1.0 - 1.0 / m),
-        state_upper: state_upper.into_iter().map(|upper: f64| upper.min(1.0)).collect(),
-        hardest,
-    })
 }
 
 #[cfg(test)]

@@ -19,51 +19,30 @@ const SHRINK: f64 = 1.6;
 /// Steps at most.
 const STEPS: usize = 9;
 
-/// A quantity whose part in a verdict is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lever {
-    /// Exposure of a frame.
-    Exposure,
-    /// Side of the pixel.
-    Pixel,
-    /// f-number.
-    FNumber,
-    /// Electronic noise of a reading.
-    Noise,
-    /// Number of averaged frames.
-    Frames,
-    /// Share of the photons that the optics pass.
-    OpticsEfficiency,
-    /// Distance of the target.
-    Distance,
+crate::named! {
+    /// A quantity whose part in a verdict is asked for.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Lever {
+        /// Exposure of a frame.
+        Exposure = "exposure",
+        /// Side of the pixel.
+        Pixel = "pixel",
+        /// f-number.
+        FNumber = "f_number",
+        /// Electronic noise of a reading.
+        Noise = "noise",
+        /// Number of averaged frames.
+        Frames = "frames",
+        /// Share of the photons that the optics pass.
+        OpticsEfficiency = "optics_efficiency",
+        /// Distance of the target.
+        Distance = "distance",
+    }
+    /// Key in the JSON.
+    key
 }
 
 impl Lever {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Exposure,
-        Self::Pixel,
-        Self::FNumber,
-        Self::Noise,
-        Self::Frames,
-        Self::OpticsEfficiency,
-        Self::Distance,
-    ];
-
-    /// Key in the JSON.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Exposure => "exposure",
-            Self::Pixel => "pixel",
-            Self::FNumber => "f_number",
-            Self::Noise => "noise",
-            Self::Frames => "frames",
-            Self::OpticsEfficiency => "optics_efficiency",
-            Self::Distance => "distance",
-        }
-    }
-
     /// Name in a sentence.
     #[must_use]
     pub const fn name(self) -> &'static str {

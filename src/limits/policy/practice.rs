@@ -33,34 +33,24 @@ use crate::instrument::Camera;
 /// Pixels of a cycle.
 pub const PIXELS_PER_CYCLE: f64 = 2.0;
 
-/// What an observer is to do with a target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ObserverTask {
-    /// See that something is there.
-    Detect,
-    /// See which way it stands.
-    Orient,
-    /// See which kind of thing it is.
-    Recognise,
-    /// See which one of its kind it is.
-    Identify,
+crate::named! {
+    /// What an observer is to do with a target.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum ObserverTask {
+        /// See that something is there.
+        Detect = "detect",
+        /// See which way it stands.
+        Orient = "orient",
+        /// See which kind of thing it is.
+        Recognise = "recognise",
+        /// See which one of its kind it is.
+        Identify = "identify",
+    }
+    /// Name, e.g. `detect`.
+    name
 }
 
 impl ObserverTask {
-    /// All of them, the easiest first.
-    pub const ALL: [Self; 4] = [Self::Detect, Self::Orient, Self::Recognise, Self::Identify];
-
-    /// Name, e.g. `detect`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Detect => "detect",
-            Self::Orient => "orient",
-            Self::Recognise => "recognise",
-            Self::Identify => "identify",
-        }
-    }
-
     /// Johnson's N50: cycles across the critical dimension with which one half of all observers are right.
     #[must_use]
     pub const fn johnson_cycles(self) -> f64 {

@@ -30,39 +30,29 @@ use fourier::Fourier;
 use spline::Spline;
 use std::f64::consts::PI;
 
-/// How ∂N/∂x is taken on a grid of pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Derivative {
-    /// (N[x+1] − N[x−1])/2.
-    #[default]
-    Central,
-    /// Five taps, Farid and Simoncelli.
-    Simoncelli,
-    /// Of the interpolating cubic spline.
-    CubicSpline,
-    /// Of the trigonometric interpolation.
-    Fourier,
+crate::named! {
+    /// How ∂N/∂x is taken on a grid of pixels.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Derivative {
+        /// (N[x+1] − N[x−1])/2.
+        #[default]
+        Central = "central",
+        /// Five taps, Farid and Simoncelli.
+        Simoncelli = "simoncelli",
+        /// Of the interpolating cubic spline.
+        CubicSpline = "cubic-spline",
+        /// Of the trigonometric interpolation.
+        Fourier = "fourier",
+    }
+    /// The name in a scenario.
+    name
 }
 
 /// Farid and Simoncelli's first derivative, of the pixels at a distance of 1 and 2 to the right.
 const TAPS: [f64; 2] = [0.276_691, 0.109_604];
 
 impl Derivative {
-    /// All four.
-    pub const ALL: [Self; 4] = [Self::Central, Self::Simoncelli, Self::CubicSpline, Self::Fourier];
-
-    /// The name in a scenario.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Central => "central",
-            Self::Simoncelli => "simoncelli",
-            Self::CubicSpline => "cubic-spline",
-            Self::Fourier => "fourier",
-        }
-    }
-
     /// Columns at either end of a row that have no value.
     ///
     /// ```

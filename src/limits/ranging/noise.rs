@@ -56,27 +56,17 @@ impl NoiseVariance {
     }
 }
 
-/// What the electronic noise of joined samples is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Joined {
-    /// Readings are added: the variances of all of them count.
-    #[default]
-    SumOfReadings,
-    /// Their photons are read at once: the mean variance of one reading counts.
-    OneReading,
-}
-
-impl Joined {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::SumOfReadings, Self::OneReading];
-
-    /// The name in a scenario.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SumOfReadings => "sum-of-readings",
-            Self::OneReading => "one-reading",
-        }
+crate::named! {
+    /// What the electronic noise of joined samples is.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Joined {
+        /// Readings are added: the variances of all of them count.
+        #[default]
+        SumOfReadings = "sum-of-readings",
+        /// Their photons are read at once: the mean variance of one reading counts.
+        OneReading = "one-reading",
     }
+    /// The name in a scenario.
+    name
 }

@@ -1,4 +1,4 @@
-//! What diffraction and the size of the pixel leave of the position of a point source.
+//! What diffraction leaves of the position of a point source.
 //!
 //! One photon that falls at (x, y) with density h(x − x₀, y − y₀) tells J = ∬ (∂ₓh)²/h dx dy of x₀ (m⁻²); N photons
 //! tell N J, and the deviation that diffraction leaves is σ_d = 1/√J per photon. Never the second moment of h, which
@@ -10,29 +10,16 @@
 //!   J = (π/λF)² = (πDν/f)², σ_d = λF/π, with λ = 1/ν (m), F = f/D, focal length f and aperture D (m).
 //!   Of J, all but J₀² + 2J₁² + J₂² at v = πr/(λF) comes from within the radius r.
 //!
-//! **Square pixels** of pitch p (m), all of whose area counts photons, know the pixel and not the place in it:
-//! J_pix = Σᵢ (∂ₓPᵢ)²/Pᵢ, Pᵢ the photon's chance of pixel i. It depends on where in its pixel the source stands (the
-//! phase): [`PixelBound`] has the mean of 1/J_pix over a source that may be anywhere, the best and the worst.
-//!
-//! * Gaussian: the rows of pixels fall out, Pᵢ is a difference of error functions; p ≪ σ leaves σ²(1 + p²/12σ² + …),
-//!   the σ² + p²/12 of Thompson, Larson and Webb to first order.
-//! * Airy: Gauss–Legendre over a lattice of parts of pixels, out to 16 λF; the rest, 4/(π²·16) ≈ 2.5 % of J before pixels,
-//!   is counted at the share that pixels leave of the outer half of the lattice. Dark rings are lines across which ln h
-//!   is not smooth: pixels lose in proportion to p there, not to p².
-//!
 //! **Bands** that are counted apart: J is the mean of their J, weighted with their photons; added up before they are
 //! counted, they tell at most that (J is convex in h).
 //!
 //! Assumptions: no background, flux known or not (it does not change with x₀ to first order for a symmetric h), no
-//! electronic noise (that is γ in [`super::depth`]), no crosstalk between pixels, far target (image in the focal plane).
+//! electronic noise (that is γ in [`super::depth`]), pixels that are fine beside the point spread, far target (image in the focal plane).
 //!
-//! Source: paper S41–S43; Thompson, Larson and Webb, Biophys. J. 82, 2775 (2002), doi:10.1016/S0006-3495(02)75618-X.
+//! Source: paper S41–S43.
 
-mod pixels;
 #[cfg(test)]
 mod tests;
-
-pub use pixels::{PixelBound, bands_in_pixels};
 
 use crate::error::{Error, Result, check};
 use std::f64::consts::PI;
@@ -44,9 +31,6 @@ use std::f64::consts::PI;
 /// // 769 cm⁻¹ (13 µm) through f/1.4: σ_d = λF/π.
 /// let airy = PointSpread::airy(1.4, 769.0)?;
 /// assert!((airy.sigma_m() / 5.795e-6 - 1.0).abs() < 1e-3);
-/// // Pixels of 12 µm take more away.
-/// let pixels = airy.in_pixels(12e-6)?;
-/// assert!(pixels.var_best_m2 > airy.sigma_m().powi(2) && pixels.var_worst_m2 >= pixels.var_mean_m2);
 /// # Ok::<(), hadar::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -138,13 +122,9 @@ impl PointSpread {
 /// # Ok::<(), hadar::Error>(())
 /// ```
 pub fn bands_var_m2(bands: &[(PointSpread, f64)]) -> Result<f64> {
-    let total = total_photons(bands)?;
-    Ok(1.0 / bands.iter().map(|(spread, photons)| photons / total * spread.information_per_m2()).sum::<f64>())
-}
-
-fn total_photons(bands: &[(PointSpread, f64)]) -> Result<f64> {
     for (_, photons) in bands {
         check::non_negative("photons of a band", *photons, "")?;
     }
-    check::positive("photons of all bands", bands.iter().map(|band| band.1).sum(), "")
+    let total = check::positive("photons of all bands", bands.iter().map(|band| band.1).sum(), "")?;
+    Ok(1.0 / bands.iter().map(|(spread, photons)| photons / total * spread.information_per_m2()).sum::<f64>())
 }

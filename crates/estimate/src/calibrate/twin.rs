@@ -40,8 +40,9 @@ pub const FILTERS: [[f64; 2]; 10] = [
 /// What is known of the response beforehand: its scale to a tenth, its shape to 0.15 of the peak.
 pub const KNOWN: CurveSmoothness = CurveSmoothness { scale: 0.1, shape: 0.15, correlation_cm1: 100.0 };
 
-/// A draw of the standard normal.
-pub(crate) fn normal(rng: &mut ChaCha8Rng) -> f64 {
+/// A draw of the standard normal distribution.
+#[must_use]
+pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     StandardNormal.sample(rng)
 }
 

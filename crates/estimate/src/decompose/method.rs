@@ -21,36 +21,26 @@ use super::pixel::Pixel;
 use hadar::cube::{CubeRef, Rows, Sample};
 use hadar::error::{Error, Result};
 
-/// How material, temperature and lighting are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// Maximum likelihood of material, temperature and lighting.
-    #[default]
-    Ml,
-    /// The paper's inverse functions: the slope along wavenumber takes the lighting away (S46, S47).
-    AnalyticInverse,
-    /// Maximum likelihood of material and temperature, as if nothing were scattered.
-    Te,
-    /// The temperature of the blackbody that sends as much in all bands together.
-    GreyBody,
+hadar::named! {
+    /// How material, temperature and lighting are found.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Method {
+        /// Maximum likelihood of material, temperature and lighting.
+        #[default]
+        Ml = "ml",
+        /// The paper's inverse functions: the slope along wavenumber takes the lighting away (S46, S47).
+        AnalyticInverse = "analytic-inverse",
+        /// Maximum likelihood of material and temperature, as if nothing were scattered.
+        Te = "te",
+        /// The temperature of the blackbody that sends as much in all bands together.
+        GreyBody = "grey-body",
+    }
+    /// Its name in files and on the command line.
+    name
 }
 
 impl Method {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Ml, Self::AnalyticInverse, Self::Te, Self::GreyBody];
-
-    /// Its name in files and on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ml => "ml",
-            Self::AnalyticInverse => "analytic-inverse",
-            Self::Te => "te",
-            Self::GreyBody => "grey-body",
-        }
-    }
-
     /// Whether it names materials.
     #[must_use]
     pub const fn names_materials(self) -> bool {

@@ -43,6 +43,14 @@ pub struct Separated {
     pub emissivity: Vec<f64>,
 }
 
+impl Separated {
+    /// Temperature in K and emissivities, as another method finds them.
+    #[must_use]
+    pub fn new(temperature_k: f64, emissivity: Vec<f64>) -> Self {
+        Self { temperature_k, emissivity }
+    }
+}
+
 impl Surface<'_> {
     /// The emissivities that belong to a temperature.
     #[must_use]

@@ -2,6 +2,7 @@
 
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order, Progress};
+use super::texture::{global_entropy, local_entropy, standard_deviation};
 use hadar::cube::{Cube, MemoryCube, Rows as _};
 use hadar::demand::Skipping;
 use hadar::error::Result;
@@ -9,7 +10,6 @@ use hadar::material::Library;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
-use hadar::ranging::texture::{global_entropy, local_entropy, standard_deviation};
 use hadar::statistics::Statistics;
 use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;

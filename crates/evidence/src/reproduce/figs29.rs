@@ -4,17 +4,18 @@
 //! over [`shown::PIXELS`] pixels about the centre. How many of the 30 values they determine, what smoothness adds and costs, and what other
 //! temperatures and filters would determine in the same time ([`designs`]).
 
+mod best;
 mod designs;
 mod lines;
 mod pictures;
 mod shown;
 
+use super::coverage::filter_wheel;
 use super::order::{Effort, Figures, Made, Order};
 use designs::Row;
 use hadar::calibration::determined::Determined;
 use hadar::error::Result;
 use hadar::statistics::Statistics;
-use hadar_estimate::calibrate::coverage::filter_wheel;
 use hadar_estimate::calibrate::response::Response;
 use hadar_estimate::calibrate::twin::FilterWheelTwin;
 use hadar_report::bundle::Bundle;

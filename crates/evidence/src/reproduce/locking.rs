@@ -1,5 +1,8 @@
 //! Pixel locking: by how much matchers err that have all the light they could wish for.
 
+mod curve;
+
+use curve::Locking;
 use hadar::error::Result;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::NoiseVariance;
@@ -9,7 +12,6 @@ use hadar_report::table::{Table, number};
 use hadar_simulate::matching::Matcher;
 use hadar_simulate::matching::block::Block;
 use hadar_simulate::matching::likelihood::Likelihood;
-use hadar_simulate::matching::locking::Locking;
 use hadar_simulate::matching::texture::Texture;
 use hadar_simulate::matching::trials::{Noisy, Run};
 

@@ -2,7 +2,8 @@
 
 use super::super::keys::files;
 use super::super::kind::Kind;
-use super::super::read::{document, environment, prior, target};
+use super::super::read::{environment, prior, target};
+use super::super::reader::{file, from_file_and_text};
 use super::super::section::{Entry, Section, without_repetition};
 use super::super::written::Written;
 use super::super::{
@@ -12,7 +13,6 @@ use super::super::{
 use super::{AirRangingScenario, AirStereo, AirUnknown, Demand, RangingScenario, SmoothEmissivity};
 use hadar::error::{Error, Result};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 const MINIMUM: &str = "write signal = \"air\", [target] with material, temperature and distance, [atmosphere] with model = \
                        \"us-standard\", and [camera]";
@@ -28,24 +28,10 @@ const MOST_PIXELS: usize = 1000;
 const AIR_TEMPERATURE: &str = "air-temperature";
 const EMISSIVITY: &str = "emissivity";
 
+from_file_and_text!(RangingScenario);
+
 impl RangingScenario {
-    /// Reads a ranging scenario of either kind. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key, as [`Scenario::from_file`].
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
-    }
-
-    /// Reads a ranging scenario of either kind from text; `path` as in [`crate::Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`RangingScenario::from_file`], except those of the file itself.
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads it with values in the place of its own.
+    /// Reads a ranging scenario of either kind with values in the place of its own.
     ///
     /// # Errors
     /// As [`RangingScenario::from_file`], except those of the file itself.
@@ -58,77 +44,36 @@ impl RangingScenario {
     }
 }
 
-impl AirRangingScenario {
-    /// Reads a scenario of ranging by air from text; `path` as in [`Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`RangingScenario::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_scenario::AirRangingScenario;
-    /// let text = r#"
-    ///     signal = "air"
-    ///     [target]
-    ///     material = "skin"
-    ///     temperature = "37 degC"
-    ///     distance = "50 m"
-    ///     [atmosphere]
-    ///     model = "us-standard"
-    ///     [camera]
-    ///     preset = "flir-a325sc"
-    /// "#;
-    /// let scenario = AirRangingScenario::from_toml(text, None)?;
-    /// assert_eq!((scenario.distances_m[0], scenario.unknown.emissivity), (5.0, None));
-    /// let error = AirRangingScenario::from_toml(&text.replace("50 m", "0 m"), None).unwrap_err();
-    /// assert!(error.to_string().starts_with("line 6: target.distance: `0 m` is out of range"));
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
+file!(AirRangingScenario, scene.source, (Kind::Range, MINIMUM, &files::AIR_RANGING));
 
-    /// Reads it with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`].
-    pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Range, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::AIR_RANGING)?;
+impl AirRangingScenario {
+    fn of_root(root: &Section<'_>) -> Result<Self> {
         root.require("signal")?.choice(&[("air", ())])?;
-        let missing = |key: &str, instead: &str| {
-            root.fail(key, Error::malformed("the table is missing", format!("write [{key}] with {instead}")))
-        };
-        let target = match root.get("target") {
-            Some(entry) => target(&entry)?,
-            None => {
-                let instead = "material = \"skin\", temperature = \"37 degC\" and distance = \"50 m\"";
-                return Err(missing("target", instead));
-            }
-        };
+        let instead =
+            "write [target] with material = \"skin\", temperature = \"37 degC\" and distance = \"50 m\"";
+        let target = target(&root.table("target", instead)?)?;
         let Some(distance_m) = target.distance_m else {
             let found = "the key is missing, and the distance is what is asked for";
             let instead = "write distance = \"50 m\", the true one";
-            return Err(Error::malformed(found, instead).at(source.place("target.distance")));
+            return Err(Error::malformed(found, instead).at(root.source().place("target.distance")));
         };
         if target.size_m.is_some() {
             let found = "a size, but here the target fills its pixel";
             let instead = "leave it out; what is behind a smaller target would be one more distance";
-            return Err(Error::malformed(found, instead).at(source.place("target.size")));
+            return Err(Error::malformed(found, instead).at(root.source().place("target.size")));
         }
         let Some(atmosphere) = root.read("atmosphere", AtmosphereSpec::read)? else {
             let found = "the table is missing, and without air on the path nothing tells the distance";
             let instead = "write [atmosphere] with model = \"us-standard\"";
             return Err(root.fail("atmosphere", Error::malformed(found, instead)));
         };
-        let Some(camera) = root.read("camera", camera::read)? else {
-            return Err(missing("camera", "preset = \"flir-a325sc\", or figures of its own"));
-        };
+        let instead = "write [camera] with preset = \"flir-a325sc\", or figures of its own";
+        let camera = camera::read(&root.table("camera", instead)?)?;
         let (nuisances, unknown) = root.read("unknown", unknown)?.unwrap_or_default();
-        let environment = environment(&root, nuisances.lighting_total)?;
+        let environment = environment(root, nuisances.lighting_total)?;
         let scene = Scenario {
             classes: std::collections::BTreeMap::new(),
-            title: root.read("title", |entry| Ok(entry.text("\"How far is the wall?\"")?.to_owned()))?,
+            title: root.title("\"How far is the wall?\"")?,
             // Nothing is to be told apart.
             alternatives: Alternatives {
                 materials: Some(vec![target.material.clone()]),
@@ -154,8 +99,7 @@ impl AirRangingScenario {
         };
         let stereo = root.read("stereo", stereo)?;
         let requirement = root.read("requirement", requirement)?;
-        let scenario = Self { scene, unknown, distances_m, stereo, requirement };
-        Ok(Self { scene: Scenario { source, ..scenario.scene }, ..scenario })
+        Ok(Self { scene, unknown, distances_m, stereo, requirement })
     }
 }
 

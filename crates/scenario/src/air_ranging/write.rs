@@ -1,30 +1,15 @@
 //! Writes a scenario of ranging by air with every default filled in, as TOML and, in the same structure, for JSON.
 
-use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::entries::{Document, Entries, Part};
 use super::super::paths::Paths;
 use super::super::write::unknown;
 use super::{AirRangingScenario, AirStereo, Demand};
 use hadar::units::Dimension;
-use serde::{Serialize, Serializer};
-use std::path::Path;
 
 impl AirRangingScenario {
-    /// The scenario as TOML, with absolute paths; reading it gives the same question.
-    #[must_use]
-    pub fn to_toml(&self) -> String {
-        text(self.document(Paths { beside: None }), self.source())
-    }
-
-    /// As [`AirRangingScenario::to_toml`], with paths below `directory` written relative to it.
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        text(self.document(Paths { beside: absolute.as_deref() }), self.source())
-    }
-
-    fn document(&self, paths: Paths<'_>) -> Document {
+    pub(super) fn document(&self, paths: Paths<'_>) -> Document {
         let mut document = vec![("signal", Part::Value("air".into()))];
-        for (name, part) in self.scene.document(paths) {
+        for (name, part) in self.scene.document(paths).0 {
             match name {
                 "title" => document.insert(0, (name, part)),
                 "target" | "environment" | "atmosphere" | "bands" | "camera" => document.push((name, part)),
@@ -43,33 +28,18 @@ impl AirRangingScenario {
             ),
             None => written,
         };
-        document.push(("unknown", Part::Table(written)));
         let lengths: Vec<String> = self.distances_m.iter().map(|m| Dimension::Length.format(*m)).collect();
-        document.push((
-            "distances",
-            Part::Table(Entries::default().put_written("list", Dimension::Length, lengths)),
-        ));
-        if let Some(spec) = &self.stereo {
-            document.push(("stereo", Part::Table(stereo(spec))));
-        }
-        if let Some(demand) = self.requirement {
-            let entries = Entries::default();
-            let entries = match demand {
-                Demand::Absolute(error_m) => {
-                    entries.put_quantity("distance_error", Dimension::Length, Some(error_m))
-                }
-                Demand::Relative(share) => entries.put("relative_distance_error", share),
-            };
-            document.push(("requirement", Part::Table(entries)));
-        }
-        document
-    }
-}
-
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for AirRangingScenario {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        entries(self.document(Paths { beside: None }), serializer)
+        let requirement = |demand: Demand| match demand {
+            Demand::Absolute(error_m) => {
+                Entries::default().put_quantity("distance_error", Dimension::Length, Some(error_m))
+            }
+            Demand::Relative(share) => Entries::default().put("relative_distance_error", share),
+        };
+        Document(document)
+            .put("unknown", written)
+            .put("distances", Entries::default().put_written("list", Dimension::Length, lengths))
+            .put_if("stereo", self.stereo.as_ref().map(stereo))
+            .put_if("requirement", self.requirement.map(requirement))
     }
 }
 

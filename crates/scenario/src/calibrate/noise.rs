@@ -1,18 +1,15 @@
 //! Which noise is asked for (`hadar calibrate noise`): frames, and what is known of the camera (`[noise]`).
 
-use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::entries::{Document, Entries};
 use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::Paths;
-use super::super::read::document;
+use super::super::reader::file;
 use super::super::section::{Entry, Section};
 use super::super::source::Source;
-use super::super::written::Written;
 use super::frames::Frames;
-use hadar::error::{Error, Result};
+use hadar::error::Result;
 use hadar::units::Dimension;
-use serde::{Serialize, Serializer};
-use std::path::Path;
 
 const MINIMUM: &str = "write [cube] with data = [\"frame_1.npy\", \"frame_2.npy\"], and [noise]";
 
@@ -40,6 +37,8 @@ pub struct NoiseSpec {
     pub exposure_s: Option<f64>,
 }
 
+file!(NoiseScenario, source, (Kind::Calibrate, MINIMUM, &files::NOISE));
+
 impl NoiseScenario {
     /// Bare cubes, with what holds where nothing is said.
     #[must_use]
@@ -52,59 +51,21 @@ impl NoiseScenario {
         }
     }
 
-    /// Reads the file. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key.
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
-    }
-
-    /// Reads it from text; `path` as in [`crate::Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`NoiseScenario::from_file`], except those of the file itself.
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads it with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`].
-    pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::NOISE)?;
-        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
-        let scenario = Self {
-            title: root.read("title", |entry| Ok(entry.text("\"Noise of the camera\"")?.to_owned()))?,
-            cube: root.read("cube", Frames::read)?.ok_or_else(|| missing("cube"))?,
+    fn of_root(root: &Section<'_>) -> Result<Self> {
+        Ok(Self {
+            title: root.title("\"Noise of the camera\"")?,
+            cube: Frames::read(&root.table("cube", MINIMUM)?)?,
             noise: root.read("noise", noise)?.unwrap_or_default(),
             source: Source::default(),
-        };
-        Ok(Self { source, ..scenario })
-    }
-
-    /// The file again, with paths below `directory` written relative to it.
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
+        })
     }
 
     fn document(&self, paths: Paths<'_>) -> Document {
-        let mut document = Vec::new();
-        if let Some(title) = &self.title {
-            document.push(("title", Part::Value(title.as_str().into())));
-        }
-        document.push(("cube", Part::Table(self.cube.written(paths))));
         let noise = Entries::default()
             .put("dark_level", self.noise.dark_level)
             .put("gain_spread", self.noise.gain_spread)
             .put_quantity("exposure", Dimension::Time, self.noise.exposure_s);
-        document.push(("noise", Part::Table(noise)));
-        document
+        Document::titled(self.title.as_ref()).put("cube", self.cube.written(paths)).put("noise", noise)
     }
 }
 
@@ -115,11 +76,4 @@ fn noise(entry: &Entry<'_>) -> Result<NoiseSpec> {
         gain_spread: section.read("gain_spread", Entry::boolean)?.unwrap_or(false),
         exposure_s: section.quantity("exposure")?,
     })
-}
-
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for NoiseScenario {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        entries(self.document(Paths { beside: None }), serializer)
-    }
 }

@@ -2,19 +2,17 @@
 //! the noise, and a scene with its reference.
 
 use super::super::Source;
-use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::entries::{Document, Entries};
 use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::{Paths, file};
-use super::super::read::document;
+use super::super::reader::file;
 use super::super::section::{Entry, Section};
-use super::super::written::Written;
 use super::blackbodies::{BlackbodySpec, CubeFile, blackbodies, noise};
 use hadar::calibration::determined::CurveSmoothness;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
-use serde::{Serialize, Serializer};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const MINIMUM: &str = "write [response] with filters = \"filters.csv\", [[blackbody]] twice with temperature = \"35 degC\" and data = \"35.npy\", and \
                        [noise] with sample = 1.5";
@@ -74,55 +72,21 @@ pub struct SceneSpec {
     pub reference_error_k: f64,
 }
 
+file!(ResponseScenario, source, (Kind::Calibrate, MINIMUM, &files::RESPONSE));
+
 impl ResponseScenario {
-    /// Reads the file. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key.
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
-    }
-
-    /// Reads it from text; `path` as in [`crate::Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`ResponseScenario::from_file`], except those of the file itself.
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads it with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`].
-    pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::RESPONSE)?;
-        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
-        let scenario = Self {
-            title: root.read("title", |entry| Ok(entry.text("\"Response of the camera\"")?.to_owned()))?,
-            response: root.read("response", response)?.ok_or_else(|| missing("response"))?,
-            blackbodies: blackbodies(&root)?,
-            noise: noise(&root)?,
+    fn of_root(root: &Section<'_>) -> Result<Self> {
+        Ok(Self {
+            title: root.title("\"Response of the camera\"")?,
+            response: response(&root.table("response", MINIMUM)?)?,
+            blackbodies: blackbodies(root)?,
+            noise: noise(root)?,
             scene: root.read("scene", scene)?,
             source: Source::default(),
-        };
-        Ok(Self { source, ..scenario })
-    }
-
-    /// The file again, with paths below `directory` written relative to it.
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
+        })
     }
 
     fn document(&self, paths: Paths<'_>) -> Document {
-        let mut document = Vec::new();
-        if let Some(title) = &self.title {
-            document.push(("title", Part::Value(title.as_str().into())));
-        }
         let (spec, nu) = (&self.response, Dimension::Wavenumber);
         let written = Entries::default()
             .put("filters", paths.file(&spec.filters))
@@ -134,22 +98,20 @@ impl ResponseScenario {
             .put("shape_error", spec.known.shape)
             .put_quantity("correlation", nu, Some(spec.known.correlation_cm1))
             .put("centre_half", spec.centre_half as i64);
-        document.push(("response", Part::Table(written)));
-        document.push((
-            "blackbody",
-            Part::Tables(self.blackbodies.iter().map(|spec| spec.written(paths)).collect()),
-        ));
-        document.push(("noise", Part::Table(Entries::default().put("sample", self.noise))));
-        if let Some(scene) = &self.scene {
+        let scene = |scene: &SceneSpec| {
+            let (kelvin, error) = (Some(scene.reference_k), Some(scene.reference_error_k));
             let written = scene.data.written(paths).put("reference", paths.file(&scene.reference));
-            let kelvin = Some(scene.reference_k);
-            let written = written.put_quantity("reference_temperature", Dimension::Temperature, kelvin);
-            let error = Some(scene.reference_error_k);
-            let written =
-                written.put_quantity("reference_uncertainty", Dimension::TemperatureDifference, error);
-            document.push(("scene", Part::Table(written)));
-        }
-        document
+            written.put_quantity("reference_temperature", Dimension::Temperature, kelvin).put_quantity(
+                "reference_uncertainty",
+                Dimension::TemperatureDifference,
+                error,
+            )
+        };
+        Document::titled(self.title.as_ref())
+            .put("response", written)
+            .put("blackbody", self.blackbodies.iter().map(|spec| spec.written(paths)).collect::<Vec<_>>())
+            .put("noise", Entries::default().put("sample", self.noise))
+            .put_if("scene", self.scene.as_ref().map(scene))
     }
 }
 
@@ -187,11 +149,4 @@ fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
         reference_k: reference_k.quantity()?,
         reference_error_k: section.quantity("reference_uncertainty")?.unwrap_or(0.0),
     })
-}
-
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for ResponseScenario {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        entries(self.document(Paths { beside: None }), serializer)
-    }
 }

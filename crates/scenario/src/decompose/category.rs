@@ -96,12 +96,12 @@ pub(crate) fn categories(entry: &Entry<'_>, told: Told) -> Result<Vec<CategorySp
 }
 
 fn category(section: &Section<'_>) -> Result<CategorySpec> {
-    let name = section.require("name")?.text("\"car\"")?.trim().to_owned();
+    let name = section.require("name")?.name("\"car\"")?;
     if name.is_empty() || name.eq_ignore_ascii_case("none") {
         let found = format!("`{name}`, which says that a pixel has no category");
         return Err(section.fail("name", Error::malformed(found, "give it another name")));
     }
-    let text = |item: &Entry<'_>| Ok(item.text("\"pmma\"")?.trim().to_owned());
+    let text = |item: &Entry<'_>| item.name("\"pmma\"");
     let listed = section.require("materials")?;
     let items = listed.items(EXAMPLE)?;
     if items.is_empty() {
@@ -149,7 +149,12 @@ pub(super) fn segmentation(entry: &Entry<'_>) -> Result<SegmentationSpec> {
     })
 }
 
-pub(crate) fn category_written(category: &CategorySpec) -> Entries {
+/// The tables of categories, if there are any.
+pub(crate) fn categories_written(categories: &[CategorySpec]) -> Option<Vec<Entries>> {
+    (!categories.is_empty()).then(|| categories.iter().map(category_written).collect())
+}
+
+fn category_written(category: &CategorySpec) -> Entries {
     let some = |names: &Vec<String>| (!names.is_empty()).then(|| names.clone());
     let labels: Vec<i64> = category.labels.iter().map(|label| *label as i64).collect();
     Entries::default()

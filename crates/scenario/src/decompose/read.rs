@@ -3,10 +3,9 @@
 use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::{axes, file, is_path, material, variable};
-use super::super::read::document;
+use super::super::reader::file;
 use super::super::scene_folder::{self, LEFT, cube_file};
 use super::super::section::{Entry, Section};
-use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera, class};
 use super::category::{Told, categories, segmentation};
 use super::image::{spatial, vision};
@@ -24,69 +23,25 @@ const MINIMUM: &str =
 const TEMPERATURES_K: [f64; 2] = [200.0, 400.0];
 const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
 
+file!(DecomposeScenario, source, (Kind::Decompose, MINIMUM, &files::DECOMPOSE));
+
 impl DecomposeScenario {
-    /// Reads a decomposition scenario. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key, as [`crate::Scenario::from_file`].
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
-    }
-
-    /// Reads a decomposition scenario from text; `path` as in [`crate::Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`DecomposeScenario::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_scenario::DecomposeScenario;
-    /// let text = r#"
-    ///     [cube]
-    ///     data = "counts.npy"
-    ///     counts_per_photon_radiance = 2e-14
-    ///     [bands]
-    ///     start = "720 cm^-1"
-    ///     stop = "1250 cm^-1"
-    ///     step = "10 cm^-1"
-    ///     [[environment]]
-    ///     temperature = "-10 degC"
-    ///     [library]
-    ///     materials = ["skin", "aluminium"]
-    /// "#;
-    /// let scenario = DecomposeScenario::from_toml(text, None)?;
-    /// assert_eq!(scenario.unknown.temperature_k, [200.0, 400.0]);
-    /// let error = DecomposeScenario::from_toml(&text.replace("2e-14", "-1"), None).unwrap_err();
-    /// assert!(error.to_string().starts_with("line 4: cube.counts_per_photon_radiance: "));
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads it with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`].
-    pub fn from_written(written: &Written) -> Result<Self> {
-        let mut source = written.source();
-        let document = document(written, (Kind::Decompose, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &files::DECOMPOSE)?;
-        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
+    fn of_root(root: &Section<'_>) -> Result<Self> {
         let camera = root.read("camera", camera::read)?;
-        let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
+        let cube = root.table("cube", MINIMUM)?;
         let unknown = root.read("unknown", unknown)?.unwrap_or_default();
         let cube = heat_cube(&cube, camera.is_some())?;
         let data = cube.data.clone();
         let scenario = Self {
-            title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
+            title: root.title("\"What is in this street?\"")?,
             cube,
             bands: root.read("bands", BandsSpec::read)?,
             camera,
             environment: root
                 .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
                 .unwrap_or_default(),
-            classes: class::read(&root)?,
-            library: root.read("library", library)?.ok_or_else(|| missing("library"))?,
+            classes: class::read(root)?,
+            library: library(&root.table("library", MINIMUM)?)?,
             unknown,
             spatial: root.read("spatial", spatial)?,
             vision: root.read("vision", vision)?.unwrap_or_default(),
@@ -107,7 +62,7 @@ impl DecomposeScenario {
                 "write [[category]] with name = \"car\" and materials = [\"pmma\"], or leave it out";
             return Err(root.fail(key, Error::malformed(found, instead)));
         }
-        Ok(Self { source, ..scenario })
+        Ok(scenario)
     }
 }
 
@@ -174,7 +129,7 @@ pub(crate) fn light(entry: &Entry<'_>) -> Result<LightSource> {
     match section.at_most_one(&kinds)? {
         Some("spectrum") => Ok(LightSource::Spectrum {
             path: file(&section.require("spectrum")?)?,
-            column: section.require("column")?.text("\"sky\"")?.trim().to_owned(),
+            column: section.require("column")?.name("\"sky\"")?,
         }),
         Some("rows") => {
             let [first, last] = section.require("rows")?.pair("[0, 540]")?;

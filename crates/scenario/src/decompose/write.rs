@@ -1,39 +1,19 @@
 //! Writes a decomposition scenario, as TOML and, in the same structure, for JSON.
 
-use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::entries::{Document, Entries};
 use super::super::paths::Paths;
 use super::super::{BandsSpec, CameraSpec, camera, class};
-use super::category::{category_written, segmentation_written};
+use super::category::{categories_written, segmentation_written};
 use super::image::{spatial_written, vision_written};
 use super::{
     CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec, TruthSpec,
     VisionSpec,
 };
 use hadar::units::Dimension;
-use serde::{Serialize, Serializer};
-use std::path::Path;
 use toml::Value;
 
 impl DecomposeScenario {
-    /// The scenario as TOML, with paths below `directory` written relative to it.
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
-    }
-
-    fn document(&self, paths: Paths<'_>) -> Document {
-        let mut document = Vec::new();
-        if let Some(title) = &self.title {
-            document.push(("title", Part::Value(title.as_str().into())));
-        }
-        document.extend(cube_written(
-            &self.cube,
-            self.bands.as_ref(),
-            self.camera.as_ref(),
-            &self.environment,
-            paths,
-        ));
+    pub(super) fn document(&self, paths: Paths<'_>) -> Document {
         let library = &self.library;
         let names = |materials: &Vec<_>| materials.iter().map(|m| paths.material(m)).collect::<Vec<_>>();
         let written = Entries::default()
@@ -46,28 +26,21 @@ impl DecomposeScenario {
                 Dimension::Wavenumber,
                 library.emissivity_correlation_cm1,
             );
-        if !self.classes.is_empty() {
-            let one = |(name, spec): (&String, &_)| (name.clone(), class::written(spec, paths));
-            document.push(("class", Part::Named(self.classes.iter().map(one).collect())));
-        }
-        document.push(("library", Part::Table(written)));
-        document.push(("unknown", Part::Table(unknown_written(&self.unknown))));
-        if let Some(prior) = &self.spatial {
-            document.push(("spatial", Part::Table(spatial_written(prior))));
-        }
-        if self.vision != VisionSpec::default() {
-            document.push(("vision", Part::Table(vision_written(&self.vision))));
-        }
-        if !self.categories.is_empty() {
-            document.push(("category", Part::Tables(self.categories.iter().map(category_written).collect())));
-        }
-        if self.segmentation != SegmentationSpec::default() {
-            document.push(("segmentation", Part::Table(segmentation_written(self.segmentation))));
-        }
-        if let Some(truth) = &self.truth {
-            document.push(("truth", Part::Table(truth_written(truth, paths))));
-        }
-        document
+        let (vision, segmentation) = (VisionSpec::default(), SegmentationSpec::default());
+        let segmentation =
+            (self.segmentation != segmentation).then(|| segmentation_written(self.segmentation));
+        let cube =
+            cube_written(&self.cube, self.bands.as_ref(), self.camera.as_ref(), &self.environment, paths);
+        Document::titled(self.title.as_ref())
+            .and(cube)
+            .put_if("class", class::all_written(&self.classes, paths))
+            .put("library", written)
+            .put("unknown", unknown_written(&self.unknown))
+            .put_if("spatial", self.spatial.as_ref().map(spatial_written))
+            .put_if("vision", (self.vision != vision).then(|| vision_written(&self.vision)))
+            .put_if("category", categories_written(&self.categories))
+            .put_if("segmentation", segmentation)
+            .put_if("truth", self.truth.as_ref().map(|truth| truth_written(truth, paths)))
     }
 }
 
@@ -79,7 +52,6 @@ pub(crate) fn cube_written(
     environment: &[LightSource],
     paths: Paths<'_>,
 ) -> Document {
-    let mut document = Vec::new();
     let (counts, unit) = match cube.unit {
         CubeUnit::CountsPerPhotonRadiance(counts) => (Some(counts), None),
         CubeUnit::Camera => (None, None),
@@ -100,13 +72,6 @@ pub(crate) fn cube_written(
             }),
         )
         .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
-    document.push(("cube", Part::Table(written)));
-    if let Some(spec) = bands {
-        document.push(("bands", Part::Table(spec.written(paths))));
-    }
-    if let Some(spec) = camera {
-        document.push(("camera", Part::Table(camera::written(spec, paths))));
-    }
     let lights = environment.iter().map(|light| match light {
         LightSource::Spectrum { path, column } => {
             Entries::default().put("spectrum", paths.file(path)).put("column", column.clone())
@@ -116,8 +81,11 @@ pub(crate) fn cube_written(
             .put_quantity("temperature", Dimension::Temperature, Some(*temperature_k)),
         LightSource::Rows(rows) => Entries::default().put("rows", whole(rows)),
     });
-    document.push(("environment", Part::Tables(lights.collect())));
-    document
+    Document::default()
+        .put("cube", written)
+        .put_if("bands", bands.map(|spec| spec.written(paths)))
+        .put_if("camera", camera.map(|spec| camera::written(spec, paths)))
+        .put("environment", lights.collect::<Vec<_>>())
 }
 
 /// `[unknown]`.
@@ -139,11 +107,4 @@ pub(crate) fn truth_written(truth: &TruthSpec, paths: Paths<'_>) -> Entries {
         .put_if("temperature_unit", truth.celsius.then_some("degC"))
         .put_if("lighting", (!lighting.is_empty()).then_some(lighting))
         .put_if("category", file(&truth.category))
-}
-
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for DecomposeScenario {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        entries(self.document(Paths { beside: None }), serializer)
-    }
 }

@@ -3,11 +3,10 @@
 use super::super::keys::files;
 use super::super::kind::Kind as FileKind;
 use super::super::paths::{axes, file, is_cube, variable};
-use super::super::read::document;
+use super::super::reader::file;
 use super::super::scene::scene_of;
 use super::super::scene_folder::{LEFT, RIGHT, cube_file};
 use super::super::section::{Entry, Section};
-use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera};
 use super::{
     CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, Stereo, Subject,
@@ -23,89 +22,36 @@ const MINIMUM: &str = "write [scene] for the built-in street or [cube] with left
 /// δz/z that is demanded where nothing is said.
 const RELATIVE_ERROR: f64 = 0.05;
 
+file!(RangeScenario, source, (FileKind::Range, MINIMUM, &files::RANGE));
+
 impl RangeScenario {
-    /// Reads a ranging scenario. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key, as [`crate::Scenario::from_file`].
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_written(&Written::from_file(path)?)
-    }
-
-    /// Reads a ranging scenario from text; `path` as in [`crate::Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`RangeScenario::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_scenario::RangeScenario;
-    /// let text = r#"
-    ///     [scene]
-    ///     person_temperature = "37 degC"
-    ///     [camera]
-    ///     preset = "flir-a325sc"
-    ///     [stereo]
-    ///     baseline = "0.2 m"
-    /// "#;
-    /// let scenario = RangeScenario::from_toml(text, None)?;
-    /// assert_eq!(scenario.stereo.window.rows(), 5);
-    /// let error = RangeScenario::from_toml(&text.replace("0.2 m", "0 m"), None).unwrap_err();
-    /// assert!(error.to_string().starts_with("line 7: stereo.baseline: `0 m` is out of range"));
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        Self::from_written(&Written::of(text, path))
-    }
-
-    /// Reads it with values in the place of its own.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`].
-    pub fn from_written(written: &Written) -> Result<Self> {
-        scenario(written)
-    }
-}
-
-fn scenario(written: &Written) -> Result<RangeScenario> {
-    let mut source = written.source();
-    let document = document(written, (FileKind::Range, MINIMUM), &mut source)?;
-    let root = Section::open(&document, "", &source, &files::RANGE)?;
-    root.at_most_one(&["scene", "cube"])?;
-    let subject = match (root.get("scene"), root.get("cube")) {
-        (Some(entry), _) => Subject::Scene(Box::new(scene_of(&root, &entry)?)),
-        (None, Some(entry)) => Subject::Cube(cube(&entry)?),
-        (None, None) => {
-            return Err(
-                Error::malformed("there is neither a [scene] nor a [cube]", MINIMUM).at(source.place(""))
-            );
+    fn of_root(root: &Section<'_>) -> Result<Self> {
+        root.at_most_one(&["scene", "cube"])?;
+        let subject = match (root.get("scene"), root.get("cube")) {
+            (Some(entry), _) => Subject::Scene(Box::new(scene_of(root, &entry)?)),
+            (None, Some(entry)) => Subject::Cube(cube(&entry)?),
+            (None, None) => {
+                return Err(Error::malformed("there is neither a [scene] nor a [cube]", MINIMUM)
+                    .at(root.source().place("")));
+            }
+        };
+        let camera = root.read("camera", camera::read)?;
+        let rendered = matches!(subject, Subject::Scene(_));
+        if rendered {
+            root.table("camera", "write [camera] with preset = \"flir-a325sc\"")?;
         }
-    };
-    let camera = root.read("camera", camera::read)?;
-    if matches!(subject, Subject::Scene(_)) && camera.is_none() {
-        let found = Error::malformed("the table is missing", "write [camera] with preset = \"flir-a325sc\"");
-        return Err(root.fail("camera", found));
+        let pair = root.table("stereo", "write [stereo] with baseline = \"0.2 m\"")?;
+        let stereo = stereo(&pair, camera.is_some(), rendered)?;
+        Ok(Self {
+            title: root.title("\"How far is the person?\"")?,
+            bands: root.read("bands", BandsSpec::read)?.or_else(|| rendered.then(BandsSpec::default)),
+            requirement: root.read("requirement", requirement)?.unwrap_or_default(),
+            subject,
+            camera,
+            stereo,
+            source: Source::default(),
+        })
     }
-    let stereo = match root.get("stereo") {
-        Some(entry) => stereo(&entry, camera.is_some(), matches!(subject, Subject::Scene(_)))?,
-        None => {
-            let found = Error::malformed("the table is missing", "write [stereo] with baseline = \"0.2 m\"");
-            return Err(root.fail("stereo", found));
-        }
-    };
-    let mut scenario = RangeScenario {
-        title: root.read("title", |entry| Ok(entry.text("\"How far is the person?\"")?.to_owned()))?,
-        bands: root.read("bands", BandsSpec::read)?,
-        requirement: root.read("requirement", requirement)?.unwrap_or_default(),
-        subject,
-        camera,
-        stereo,
-        source: Source::default(),
-    };
-    if matches!(scenario.subject, Subject::Scene(_)) && scenario.bands.is_none() {
-        scenario.bands = Some(BandsSpec::default());
-    }
-    scenario.source = source;
-    Ok(scenario)
 }
 
 impl Default for DepthRequirement {

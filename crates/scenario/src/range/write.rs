@@ -1,69 +1,26 @@
 //! Writes a ranging scenario with every default filled in, as TOML and, in the same structure, for JSON.
 
 use super::super::camera;
-use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::entries::{Document, Entries};
 use super::super::paths::Paths;
-use super::super::scene::{objects_written, scene_written};
+use super::super::scene::scene_document;
 use super::{
     CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, Stereo, Subject,
 };
 use hadar::units::Dimension;
-use serde::{Serialize, Serializer};
-use std::path::Path;
 
 impl RangeScenario {
-    /// The scenario as TOML, with absolute paths; reading it gives the same question.
-    ///
-    /// ```
-    /// use hadar_scenario::RangeScenario;
-    /// let text = "[cube]\nleft = \"/data/left.npy\"\n[stereo]\nbaseline = \"0.2 m\"\nfocal_length = \"14 mm\"\npixel = \"12 um\"\n";
-    /// let scenario = RangeScenario::from_toml(text, None)?;
-    /// let again = RangeScenario::from_toml(&scenario.to_toml(), None)?;
-    /// assert_eq!((&again.subject, &again.stereo), (&scenario.subject, &scenario.stereo));
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    #[must_use]
-    pub fn to_toml(&self) -> String {
-        text(self.document(Paths { beside: None }), &self.source)
-    }
-
-    /// As [`RangeScenario::to_toml`], with paths below `directory` written relative to it.
-    #[must_use]
-    pub fn to_toml_beside(&self, directory: &Path) -> String {
-        let absolute = std::path::absolute(directory).ok();
-        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
-    }
-
-    fn document(&self, paths: Paths<'_>) -> Document {
-        let mut document = Vec::new();
-        if let Some(title) = &self.title {
-            document.push(("title", Part::Value(title.as_str().into())));
-        }
-        match &self.subject {
-            Subject::Scene(spec) => {
-                document.push(("scene", Part::Table(scene_written(spec, paths))));
-                if let Some(objects) = &spec.objects {
-                    document.push(("object", Part::Tables(objects_written(objects, paths))));
-                }
-            }
-            Subject::Cube(spec) => document.push(("cube", Part::Table(cube(spec, paths)))),
-        }
-        if let Some(spec) = &self.bands {
-            document.push(("bands", Part::Table(spec.written(paths))));
-        }
-        if let Some(spec) = &self.camera {
-            document.push(("camera", Part::Table(camera::written(spec, paths))));
-        }
-        document.push(("stereo", Part::Table(stereo(&self.stereo))));
-        document.push(("requirement", Part::Table(requirement(self.requirement))));
+    pub(super) fn document(&self, paths: Paths<'_>) -> Document {
+        let document = Document::titled(self.title.as_ref());
+        let document = match &self.subject {
+            Subject::Scene(spec) => document.and(scene_document(spec, paths)),
+            Subject::Cube(spec) => document.put("cube", cube(spec, paths)),
+        };
         document
-    }
-}
-
-/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
-impl Serialize for RangeScenario {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        entries(self.document(Paths { beside: None }), serializer)
+            .put_if("bands", self.bands.as_ref().map(|spec| spec.written(paths)))
+            .put_if("camera", self.camera.as_ref().map(|spec| camera::written(spec, paths)))
+            .put("stereo", stereo(&self.stereo))
+            .put("requirement", requirement(self.requirement))
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
     let items = entry.items(CAMERAS)?;
     let mut cameras: Vec<RuleCamera> = Vec::with_capacity(items.len());
     for (index, item) in items.iter().enumerate() {
-        let name = item.text("\"flir-a325sc\"")?.trim().to_owned();
+        let name = item.name("\"flir-a325sc\"")?;
         let own = item.source().own_camera(&name);
         let spec = CameraSpec { preset: Some(name), own, ..CameraSpec::default() };
         if cameras.iter().any(|camera| camera.spec == spec) {
@@ -67,7 +67,7 @@ pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
             let mut uncertainty = BTreeMap::new();
             let spec = read_with(item, &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
             let section = item.table()?;
-            let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
+            let name = section.text("name", "\"ours\"")?;
             Ok(RuleCamera { name, spec, uncertainty, key: format!("camera[{index}]") })
         })
         .collect()

@@ -47,36 +47,23 @@ pub enum Ground {
     Choice(String),
 }
 
-/// How a document was read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
-    /// In the text itself.
-    Seen,
-    /// In an excerpt or abstract.
-    Excerpt,
-    /// In somebody's copy or summary, not the issuer's; a summary's words are quoted then.
-    Copy,
-    /// From memory.
-    Recalled,
-    /// Computed from numbers that were seen.
-    Computed,
-}
-
-impl Mark {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::Seen, Self::Excerpt, Self::Copy, Self::Recalled, Self::Computed];
-
-    /// The name in a rule, e.g. `seen`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Seen => "seen",
-            Self::Excerpt => "excerpt",
-            Self::Copy => "copy",
-            Self::Recalled => "recalled",
-            Self::Computed => "computed",
-        }
+hadar::named! {
+    /// How a document was read.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Mark {
+        /// In the text itself.
+        Seen = "seen",
+        /// In an excerpt or abstract.
+        Excerpt = "excerpt",
+        /// In somebody's copy or summary, not the issuer's; a summary's words are quoted then.
+        Copy = "copy",
+        /// From memory.
+        Recalled = "recalled",
+        /// Computed from numbers that were seen.
+        Computed = "computed",
     }
+    /// The name in a rule, e.g. `seen`.
+    name
 }
 
 impl Citation {
@@ -113,11 +100,12 @@ fn within(key: &str, own: &str) -> bool {
 }
 
 /// The sources of a rule, every key in them checked against the file.
-pub(super) fn read(root: &Section<'_>, document: &DeTable<'_>, source: &Source) -> Result<Vec<Citation>> {
+pub(super) fn read(root: &Section<'_>) -> Result<Vec<Citation>> {
+    let source = root.source();
     let Some(entry) = root.get("source") else { return Ok(Vec::new()) };
     let items = entry.items("each source as [[source]], in double brackets")?;
     let citations: Vec<Citation> = items.iter().map(|item| one(item, source)).collect::<Result<_>>()?;
-    let keys = figures(document).into_iter().map(|(_, key)| key);
+    let keys = figures(root.document()).into_iter().map(|(_, key)| key);
     let untagged = keys.into_iter().find(|key| !citations.iter().any(|one| one.covers(key)));
     if let Some(key) = untagged {
         let instead = format!(
@@ -166,7 +154,7 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
 }
 
 fn said(entry: &Entry<'_>, example: &str) -> Result<String> {
-    Ok(entry.text(example)?.trim().to_owned())
+    entry.name(example)
 }
 
 /// A figure of a rule as its file has it.
@@ -182,7 +170,8 @@ pub struct Figure {
 }
 
 /// All figures in the text of a rule.
-pub(super) fn of_text(text: &str, source: &Source) -> Vec<Figure> {
+pub(super) fn of(source: &Source) -> Vec<Figure> {
+    let text = &source.text;
     let (document, _) = DeTable::parse_recoverable(text);
     let figure = |(span, key): (Span, String)| {
         let value = text.get(span).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");

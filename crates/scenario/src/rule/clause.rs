@@ -79,7 +79,8 @@ const KINDS: [(&str, Kind); 5] = [
 ];
 
 /// The clauses of a rule, at least one, and the scenario that they share.
-pub(super) fn read(root: &Section<'_>, source: &Source) -> Result<(Scenario, Vec<Clause>)> {
+pub(super) fn read(root: &Section<'_>) -> Result<(Scenario, Vec<Clause>)> {
+    let source = root.source();
     let scenario = Scenario { source: source.clone(), ..of_root(root, requirement)? };
     let Some(entry) = root.get("clause") else {
         let stop = root.read("stop", StopSpec::read)?;
@@ -122,8 +123,7 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
         Kind::TemperatureError => &keys::CLAUSE_TEMPERATURE,
         Kind::DepthError => &keys::CLAUSE_DEPTH,
     })?;
-    let text = |key, example: &str| plain.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
-    let name = match text("name", "\"crossing at night\"")? {
+    let name = match plain.text("name", "\"crossing at night\"")? {
         Some(name) => name,
         None => {
             return Err(plain.fail(
@@ -132,7 +132,7 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
             ));
         }
     };
-    let said = text("text", "\"a pedestrian crosses\"")?;
+    let said = plain.text("text", "\"a pedestrian crosses\"")?;
     let section = plain.clone().over(root);
     let stop = section.read("stop", StopSpec::read)?;
     let silent = |_: &Entry<'_>| Ok(Requirement::default());
@@ -325,9 +325,10 @@ impl Clause {
         }
         let shared = rule.document(paths);
         let written =
-            |name: &str, part: &Part| shared.iter().any(|(other, same)| *other == name && same == part);
-        let mut document: Document = scenario
+            |name: &str, part: &Part| shared.0.iter().any(|(other, same)| *other == name && same == part);
+        let mut document: Vec<_> = scenario
             .document(paths)
+            .0
             .into_iter()
             .filter(|(name, part)| {
                 let needed = *name == "alternatives" && self.demand == Demand::FalseAlarm;
@@ -335,7 +336,7 @@ impl Clause {
             })
             .collect();
         match self.demand.written(paths) {
-            Some(parts) => document.extend(parts),
+            Some(parts) => document.extend(parts.0),
             None => {
                 let part = Part::Table(write::requirement(&scenario.requirement));
                 if !written("requirement", &part) {
@@ -350,6 +351,6 @@ impl Clause {
             Part::Table(entries) => (name, Part::Table(entries.read_from(&format!("{}.{name}", self.key)))),
             other => (name, other),
         };
-        (own, document.into_iter().map(placed).collect())
+        (own, Document(document.into_iter().map(placed).collect()))
     }
 }

@@ -1,6 +1,6 @@
 //! What a clause demands beside telling materials apart: pixels, a temperature, a distance.
 
-use crate::entries::{Document, Entries, Part};
+use crate::entries::{Document, Entries};
 use crate::paths::Paths;
 use crate::range::{DepthRequirement, Stereo, read as depth, write as depth_written};
 use crate::scene::{SceneSpec, scene, scene_written};
@@ -49,28 +49,20 @@ pub struct DepthDemand {
     pub object: DepthObject,
 }
 
-/// An object of the street whose distance is that of the clause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DepthObject {
-    /// The person.
-    Person,
-    /// The car.
-    Car,
+hadar::named! {
+    /// An object of the street whose distance is that of the clause.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum DepthObject {
+        /// The person.
+        Person = "person",
+        /// The car.
+        Car = "car",
+    }
+    /// The name in a rule, which is that of the rendered surface.
+    name
 }
 
 impl DepthObject {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Person, Self::Car];
-
-    /// The name in a rule, which is that of the rendered surface.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Person => "person",
-            Self::Car => "car",
-        }
-    }
-
     /// Its distance in a street, m.
     pub fn distance_m(self, scene: &mut SceneSpec) -> &mut Option<f64> {
         match self {
@@ -97,28 +89,29 @@ impl Demand {
 impl Demand {
     /// Its tables; `None` of what `[requirement]` of the scenario says.
     pub(super) fn written(&self, paths: Paths<'_>) -> Option<Document> {
-        let requirement = |entries: Entries| ("requirement", Part::Table(entries));
+        let requirement = |entries: Entries| Some(Document::default().put("requirement", entries));
         match self {
             Self::TellApart | Self::FalseAlarm => None,
             Self::Resolution { pixels, size_m } => {
-                Some(vec![requirement(Entries::default().put("pixels", *pixels).put_quantity(
+                requirement(Entries::default().put("pixels", *pixels).put_quantity(
                     "size",
                     Dimension::Length,
                     Some(*size_m),
-                ))])
+                ))
             }
-            Self::TemperatureError { error_k, coverage_factor } => Some(vec![requirement(
+            Self::TemperatureError { error_k, coverage_factor } => requirement(
                 Entries::default()
                     .put_quantity("temperature_error", Dimension::TemperatureDifference, Some(*error_k))
                     .put("coverage_factor", *coverage_factor),
-            )]),
-            Self::DepthError(demand) => Some(vec![
-                requirement(
-                    depth_written::requirement(demand.requirement).put("object", demand.object.name()),
-                ),
-                ("scene", Part::Table(scene_written(&demand.scene, paths))),
-                ("stereo", Part::Table(depth_written::stereo(&demand.stereo))),
-            ]),
+            ),
+            Self::DepthError(demand) => {
+                let own = depth_written::requirement(demand.requirement).put("object", demand.object.name());
+                requirement(own).map(|document| {
+                    document
+                        .put("scene", scene_written(&demand.scene, paths))
+                        .put("stereo", depth_written::stereo(&demand.stereo))
+                })
+            }
         }
     }
 }

@@ -37,7 +37,7 @@ impl Default for StandInSpec {
 impl StandInSpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
         let section = entry.section()?;
-        let clause = section.read("clause", |entry| Ok(entry.text("\"crossing\"")?.trim().to_owned()))?;
+        let clause = section.text("clause", "\"crossing\"")?;
         let materials = section.read("materials", |entry| {
             let items = entry.items("materials = [\"skin\"]")?;
             if items.is_empty() {

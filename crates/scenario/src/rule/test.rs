@@ -31,31 +31,20 @@ pub struct RuleTest {
     pub tolerance: f64,
 }
 
-/// What comes of a camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// It does what is demanded.
-    Meets,
-    /// It does not.
-    Fails,
-    /// It may or may not: the interval of its margin contains the demand.
-    Undecided,
-}
-
-impl Verdict {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Meets, Self::Fails, Self::Undecided];
-
-    /// The name in a rule, e.g. `meets`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Meets => "meets",
-            Self::Fails => "fails",
-            Self::Undecided => "undecided",
-        }
+hadar::named! {
+    /// What comes of a camera.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Verdict {
+        /// It does what is demanded.
+        Meets = "meets",
+        /// It does not.
+        Fails = "fails",
+        /// It may or may not: the interval of its margin contains the demand.
+        Undecided = "undecided",
     }
+    /// The name in a rule, e.g. `meets`.
+    name
 }
 
 impl RuleTest {

@@ -73,7 +73,7 @@ fn sky(entry: &Entry<'_>) -> Result<SkySpec> {
     if section.at_most_one(&["spectrum", "temperature"])? == Some("spectrum") {
         return Ok(SkySpec::Spectrum {
             path: file(&section.require("spectrum")?)?,
-            column: section.require("column")?.text("\"sky\"")?.trim().to_owned(),
+            column: section.require("column")?.name("\"sky\"")?,
         });
     }
     Ok(SkySpec::Surface {
@@ -151,7 +151,7 @@ fn object(entry: &Entry<'_>) -> Result<ObjectSpec> {
     };
     let [across, ahead] = whole.require("at")?.pair(PLACE)?;
     Ok(ObjectSpec {
-        name: whole.read("name", |entry| Ok(entry.text("\"guard\"")?.trim().to_owned()))?,
+        name: whole.text("name", "\"guard\"")?,
         form,
         at_m: [across.quantity()?, ahead.quantity_as(Dimension::Length, ABOVE_ZERO)?],
         surface: surface(&whole)?,

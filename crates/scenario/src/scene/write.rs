@@ -1,6 +1,6 @@
 //! Writes `[scene]` and `[[object]]`.
 
-use super::super::entries::Entries;
+use super::super::entries::{Document, Entries};
 use super::super::paths::Paths;
 use super::{Form, ObjectSpec, SceneSpec, SkySpec, SurfaceSpec};
 use hadar::units::Dimension;
@@ -43,8 +43,12 @@ pub(crate) fn scene(spec: &SceneSpec, paths: Paths<'_>) -> Entries {
         .put_if("size", spec.size.map(|size| size.map(|n| i64::try_from(n).unwrap_or(i64::MAX)).to_vec()))
 }
 
-pub(crate) fn objects(objects: &[ObjectSpec], paths: Paths<'_>) -> Vec<Entries> {
-    objects.iter().map(|spec| object(spec, paths)).collect()
+/// `[scene]`, and `[[object]]` where there are any.
+pub(crate) fn document(spec: &SceneSpec, paths: Paths<'_>) -> Document {
+    let objects = |objects: &Vec<ObjectSpec>| -> Vec<Entries> {
+        objects.iter().map(|spec| object(spec, paths)).collect()
+    };
+    Document::default().put("scene", scene(spec, paths)).put_if("object", spec.objects.as_ref().map(objects))
 }
 
 fn object(spec: &ObjectSpec, paths: Paths<'_>) -> Entries {

@@ -5,39 +5,27 @@ use super::{Classifier, Discriminant, Judge, Logistic, SHRINKAGES};
 use crate::spectra::LabelledSpectra;
 use hadar::error::{Error, Result};
 
-/// Ways to decide which class a spectrum is from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// The likelihood ratio of known states: the optimum.
-    LikelihoodRatio,
-    /// The likelihood ratio of best fits: materials known, states not.
-    BestFits,
-    /// Linear discriminant, trained.
-    Discriminant,
-    /// Logistic regression, trained.
-    Logistic,
-    /// The paper's small convolutional network, trained.
-    Network,
+hadar::named! {
+    /// Ways to decide which class a spectrum is from.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Method {
+        /// The likelihood ratio of known states: the optimum.
+        LikelihoodRatio = "likelihood-ratio",
+        /// The likelihood ratio of best fits: materials known, states not.
+        BestFits = "best-fits",
+        /// Linear discriminant, trained.
+        Discriminant = "discriminant",
+        /// Logistic regression, trained.
+        Logistic = "logistic",
+        /// The paper's small convolutional network, trained.
+        Network = "network",
+    }
+    /// The name on the command line.
+    name
 }
 
 impl Method {
-    /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::LikelihoodRatio, Self::BestFits, Self::Discriminant, Self::Logistic, Self::Network];
-
-    /// The name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::LikelihoodRatio => "likelihood-ratio",
-            Self::BestFits => "best-fits",
-            Self::Discriminant => "discriminant",
-            Self::Logistic => "logistic",
-            Self::Network => "network",
-        }
-    }
-
     /// What it is called in a figure.
     #[must_use]
     pub const fn words(self) -> &'static str {

@@ -46,20 +46,24 @@ impl Criteria {
     }
 }
 
-/// What the estimates say of the bound.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Verdict {
-    /// Variance within the margin above the bound and no bias to speak of.
-    Reaches,
-    /// Variance surely above the bound.
-    Exceeds,
-    /// Variance surely below the bound: a biased estimator, parameters held within a range, or a wrong bound.
-    Below,
-    /// Variance as the bound, but a bias surely beyond its share of the deviation.
-    Biased,
-    /// Too few estimates to say.
-    Undecided,
+hadar::named! {
+    /// What the estimates say of the bound.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Verdict {
+        /// Variance within the margin above the bound and no bias to speak of.
+        Reaches = "reaches the bound",
+        /// Variance surely above the bound.
+        Exceeds = "exceeds the bound",
+        /// Variance surely below the bound: a biased estimator, parameters held within a range, or a wrong bound.
+        Below = "below the bound",
+        /// Variance as the bound, but a bias surely beyond its share of the deviation.
+        Biased = "biased",
+        /// Too few estimates to say.
+        Undecided = "undecided",
+    }
+    /// In words.
+    text
 }
 
 impl Verdict {
@@ -76,18 +80,6 @@ impl Verdict {
             Self::Reaches
         } else {
             Self::Undecided
-        }
-    }
-
-    /// In words.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Reaches => "reaches the bound",
-            Self::Exceeds => "exceeds the bound",
-            Self::Below => "below the bound",
-            Self::Biased => "biased",
-            Self::Undecided => "undecided",
         }
     }
 }

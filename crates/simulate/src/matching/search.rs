@@ -116,31 +116,20 @@ impl Search {
     }
 }
 
-/// Why there is no disparity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Failure {
-    /// Nothing in the window that could be matched: it is the same everywhere.
-    Flat,
-    /// The best match is at an end of the range (or of the image): the true one may be beyond.
-    RangeEnd,
-    /// The refinement ran out of its pixel, or did not end.
-    Unconverged,
-}
-
-impl Failure {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Flat, Self::RangeEnd, Self::Unconverged];
-
-    /// In words.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Flat => "no texture",
-            Self::RangeEnd => "best at the end of the range",
-            Self::Unconverged => "refinement did not converge",
-        }
+hadar::named! {
+    /// Why there is no disparity.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Failure {
+        /// Nothing in the window that could be matched: it is the same everywhere.
+        Flat = "no texture",
+        /// The best match is at an end of the range (or of the image): the true one may be beyond.
+        RangeEnd = "best at the end of the range",
+        /// The refinement ran out of its pixel, or did not end.
+        Unconverged = "refinement did not converge",
     }
+    /// In words.
+    text
 }
 
 /// A disparity, pixels, or why there is none.

@@ -1,71 +1,48 @@
 //! What can be told in a companion table: measures, what each is worth, its caveat, and why a number may be missing.
 
-/// What a number is worth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Practice without a proof or an observer.
-    RuleOfThumb,
-    /// What people before a display did, on the average.
-    ObserverModel,
-    /// What no algorithm exceeds.
-    Bound,
-}
-
-impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::RuleOfThumb, Self::ObserverModel, Self::Bound];
-
-    /// Stable code, e.g. `rule-of-thumb`.
-    #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::RuleOfThumb => "rule-of-thumb",
-            Self::ObserverModel => "observer-model",
-            Self::Bound => "bound",
-        }
+hadar::named! {
+    /// What a number is worth.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Kind {
+        /// Practice without a proof or an observer.
+        RuleOfThumb = "rule-of-thumb",
+        /// What people before a display did, on the average.
+        ObserverModel = "observer-model",
+        /// What no algorithm exceeds.
+        Bound = "bound",
     }
+    /// Stable code, e.g. `rule-of-thumb`.
+    code
 }
 
-/// What is told in a row; kind, quantities and caveat follow from it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
-    /// Pixels and cycles across the target.
-    PixelsOnTarget,
-    /// The same by the field of view, where that contradicts the focal length.
-    PixelsByFieldOfView,
-    /// Range by Johnson's cycles.
-    JohnsonRange,
-    /// Range by the pixels that makers ask.
-    IndustryRange,
-    /// Noise-equivalent temperature difference of a frame.
-    Netd,
-    /// Target transfer probability: the share of observers who are right.
-    Ttpf,
-    /// Minimum resolvable temperature difference.
-    Mrtd,
-    /// What a pixel tells of the material.
-    Material,
-    /// What all pixels of the target tell of it.
-    MaterialOfAllPixels,
+hadar::named! {
+    /// What is told in a row; kind, quantities and caveat follow from it.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Measure {
+        /// Pixels and cycles across the target.
+        PixelsOnTarget = "pixels-on-target",
+        /// The same by the field of view, where that contradicts the focal length.
+        PixelsByFieldOfView = "pixels-by-field-of-view",
+        /// Range by Johnson's cycles.
+        JohnsonRange = "johnson-range",
+        /// Range by the pixels that makers ask.
+        IndustryRange = "industry-range",
+        /// Noise-equivalent temperature difference of a frame.
+        Netd = "netd",
+        /// Target transfer probability: the share of observers who are right.
+        Ttpf = "ttpf",
+        /// Minimum resolvable temperature difference.
+        Mrtd = "mrtd",
+        /// What a pixel tells of the material.
+        Material = "material",
+        /// What all pixels of the target tell of it.
+        MaterialOfAllPixels = "material-of-all-pixels",
+    }
+    /// Stable code, e.g. `johnson-range`.
+    code
 }
 
 impl Measure {
-    /// Stable code, e.g. `johnson-range`.
-    #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::PixelsOnTarget => "pixels-on-target",
-            Self::PixelsByFieldOfView => "pixels-by-field-of-view",
-            Self::JohnsonRange => "johnson-range",
-            Self::IndustryRange => "industry-range",
-            Self::Netd => "netd",
-            Self::Ttpf => "ttpf",
-            Self::Mrtd => "mrtd",
-            Self::Material => "material",
-            Self::MaterialOfAllPixels => "material-of-all-pixels",
-        }
-    }
-
     /// What it is worth.
     #[must_use]
     pub const fn kind(self) -> Kind {
@@ -108,86 +85,50 @@ impl Measure {
     }
 }
 
-/// What the reader of a row must know.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Caveat {
-    /// Geometry alone.
-    Geometry,
-    /// Two angles of a pixel.
-    FieldOfViewDiffers,
-    /// Comparing by NETD.
-    NetdAlone,
-    /// People at displays.
-    Observers,
-    /// The eye in a constant.
-    Mrtd,
-    /// A limit.
-    Limit,
-    /// A limit for a target that is the same all over.
-    AllAlike,
-}
-
-impl Caveat {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Geometry,
-        Self::FieldOfViewDiffers,
-        Self::NetdAlone,
-        Self::Observers,
-        Self::Mrtd,
-        Self::Limit,
-        Self::AllAlike,
-    ];
-
+hadar::named! {
+    /// What the reader of a row must know.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Caveat {
+        /// Geometry alone.
+        Geometry = "geometry",
+        /// Two angles of a pixel.
+        FieldOfViewDiffers = "field-of-view-differs",
+        /// Comparing by NETD.
+        NetdAlone = "netd-alone",
+        /// People at displays.
+        Observers = "observers",
+        /// The eye in a constant.
+        Mrtd = "mrtd",
+        /// A limit.
+        Limit = "limit",
+        /// A limit for a target that is the same all over.
+        AllAlike = "all-alike",
+    }
     /// Stable code, e.g. `netd-alone`.
-    #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::Geometry => "geometry",
-            Self::FieldOfViewDiffers => "field-of-view-differs",
-            Self::NetdAlone => "netd-alone",
-            Self::Observers => "observers",
-            Self::Mrtd => "mrtd",
-            Self::Limit => "limit",
-            Self::AllAlike => "all-alike",
-        }
+    code
+}
+
+hadar::named! {
+    /// Why there is no number.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Unknown {
+        /// No camera.
+        NoCamera = "no-camera",
+        /// No critical dimension.
+        NoSize = "no-size",
+        /// No distance.
+        NoDistance = "no-distance",
+        /// The camera counts nothing of a blackbody at the temperature of the NETD.
+        NoLight = "no-light",
+        /// Sizes and distances whose quotient no number holds.
+        BeyondNumbers = "beyond-numbers",
+        /// A pattern finer than the pixels sample.
+        FinerThanPixels = "finer-than-pixels",
+        /// A pattern of which the lens leaves nothing.
+        FinerThanLens = "finer-than-lens",
+        /// Nothing was told from anything.
+        NotCompared = "not-compared",
     }
-}
-
-/// Why there is no number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unknown {
-    /// No camera.
-    NoCamera,
-    /// No critical dimension.
-    NoSize,
-    /// No distance.
-    NoDistance,
-    /// The camera counts nothing of a blackbody at the temperature of the NETD.
-    NoLight,
-    /// Sizes and distances whose quotient no number holds.
-    BeyondNumbers,
-    /// A pattern finer than the pixels sample.
-    FinerThanPixels,
-    /// A pattern of which the lens leaves nothing.
-    FinerThanLens,
-    /// Nothing was told from anything.
-    NotCompared,
-}
-
-impl Unknown {
     /// Stable code, e.g. `no-size`.
-    #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::NoCamera => "no-camera",
-            Self::NoSize => "no-size",
-            Self::NoDistance => "no-distance",
-            Self::NoLight => "no-light",
-            Self::BeyondNumbers => "beyond-numbers",
-            Self::FinerThanPixels => "finer-than-pixels",
-            Self::FinerThanLens => "finer-than-lens",
-            Self::NotCompared => "not-compared",
-        }
-    }
+    code
 }

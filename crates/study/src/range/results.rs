@@ -11,46 +11,29 @@ use hadar_scenario::range::Demand;
 use serde::Serialize;
 use std::ops::Range;
 
-/// What depth is read from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Signal {
-    /// All bands counted together, pixel by pixel: thermal imaging.
-    ThermalImage,
-    /// All bands apart: what no algorithm can beat.
-    HeatCube,
-    /// What remains of it where the temperature of every pixel is unknown and estimated from the bands: lighting and
-    /// emissivity as they are reconstructed, with the noise of that.
-    Reconstructed,
-    /// The same where the strength of the emission is unknown and estimated too: scattered light alone, as it is
-    /// reconstructed where the texture of the emissivity is not known beforehand.
-    ReconstructedBlind,
-    /// The scattered light alone, with only its own noise, as the paper has it: no camera measures it.
-    ScatteredAsMeasured,
+hadar::named! {
+    /// What depth is read from.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Signal {
+        /// All bands counted together, pixel by pixel: thermal imaging.
+        ThermalImage = "thermal image",
+        /// All bands apart: what no algorithm can beat.
+        HeatCube = "heat cube",
+        /// What remains of it where the temperature of every pixel is unknown and estimated from the bands: lighting and
+        /// emissivity as they are reconstructed, with the noise of that.
+        Reconstructed = "cube, T estimated",
+        /// The same where the strength of the emission is unknown and estimated too: scattered light alone, as it is
+        /// reconstructed where the texture of the emissivity is not known beforehand.
+        ReconstructedBlind = "cube, T and e estimated",
+        /// The scattered light alone, with only its own noise, as the paper has it: no camera measures it.
+        ScatteredAsMeasured = "scattered, as if measured",
+    }
+    /// In a table.
+    name
 }
 
 impl Signal {
-    /// All of them, in the order of reports.
-    pub const ALL: [Self; 5] = [
-        Self::ThermalImage,
-        Self::HeatCube,
-        Self::Reconstructed,
-        Self::ReconstructedBlind,
-        Self::ScatteredAsMeasured,
-    ];
-
-    /// In a table.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ThermalImage => "thermal image",
-            Self::HeatCube => "heat cube",
-            Self::Reconstructed => "cube, T estimated",
-            Self::ReconstructedBlind => "cube, T and e estimated",
-            Self::ScatteredAsMeasured => "scattered, as if measured",
-        }
-    }
-
     /// In file names and column heads.
     #[must_use]
     pub const fn key(self) -> &'static str {

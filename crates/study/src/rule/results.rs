@@ -165,34 +165,24 @@ pub struct Certified {
     pub gap: Option<f64>,
 }
 
-/// How a worst case is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Proof {
-    /// Proved within the gap by branch and bound.
-    BranchAndBound,
-    /// Searched, with a proved lower bound.
-    Bounded,
-    /// Proved: a scene in which nothing differs.
-    Equilibrium,
-    /// Searched, with no bound.
-    DenseSearch,
-    /// A scene that fails; no worse one was looked for.
-    Counterexample,
-}
-
-impl Proof {
-    /// Stable code, e.g. `branch-and-bound`.
-    #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::BranchAndBound => "branch-and-bound",
-            Self::Bounded => "bounded",
-            Self::Equilibrium => "equilibrium",
-            Self::DenseSearch => "dense-search",
-            Self::Counterexample => "counterexample",
-        }
+hadar::named! {
+    /// How a worst case is known.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Proof {
+        /// Proved within the gap by branch and bound.
+        BranchAndBound = "branch-and-bound",
+        /// Searched, with a proved lower bound.
+        Bounded = "bounded",
+        /// Proved: a scene in which nothing differs.
+        Equilibrium = "equilibrium",
+        /// Searched, with no bound.
+        DenseSearch = "dense-search",
+        /// A scene that fails; no worse one was looked for.
+        Counterexample = "counterexample",
     }
+    /// Stable code, e.g. `branch-and-bound`.
+    code
 }
 
 impl Certified {
@@ -368,20 +358,24 @@ pub struct ApproachResult {
     pub footprint_m: f64,
 }
 
-/// How strong the evidence of a line is, the strongest first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Grade {
-    /// It holds for all scenes, or one scene shows that it does not.
-    Proved,
-    /// The worst scene was searched, and no worse one is excluded.
-    Searched,
-    /// Found by draws.
-    Simulated,
-    /// It rests on something that nobody states.
-    Assumed,
-    /// Nothing can be said.
-    NotStated,
+hadar::named! {
+    /// How strong the evidence of a line is, the strongest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Grade {
+        /// It holds for all scenes, or one scene shows that it does not.
+        Proved = "proved",
+        /// The worst scene was searched, and no worse one is excluded.
+        Searched = "searched",
+        /// Found by draws.
+        Simulated = "simulated",
+        /// It rests on something that nobody states.
+        Assumed = "assumed",
+        /// Nothing can be said.
+        NotStated = "not stated",
+    }
+    /// Its name, e.g. `proved`.
+    name
 }
 
 impl Grade {
@@ -389,17 +383,5 @@ impl Grade {
     pub(super) fn guarded(self, verdict: Verdict, uncertainty: Option<&MarginUncertainty>) -> Self {
         let drawn = uncertainty.is_some_and(|found| found.low < found.high);
         if verdict == Verdict::Meets && drawn { self.max(Self::Simulated) } else { self }
-    }
-
-    /// Its name, e.g. `proved`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Proved => "proved",
-            Self::Searched => "searched",
-            Self::Simulated => "simulated",
-            Self::Assumed => "assumed",
-            Self::NotStated => "not stated",
-        }
     }
 }

@@ -27,31 +27,22 @@ pub struct SimulatedPerformance {
     pub standing: Option<Standing>,
 }
 
-/// An accuracy against the limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Standing {
-    /// Above it by more than chance explains in all comparisons together: the limit would be wrong.
-    Beyond,
-    /// An interval that is narrow enough to mean something reaches up to the limit.
-    Reaches,
-    /// The interval reaches up to the limit, but is too wide to mean much.
-    Undecided,
-    /// Below it.
-    Below,
-}
-
-impl Standing {
-    /// The name in tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Beyond => "beyond",
-            Self::Reaches => "reaches",
-            Self::Undecided => "undecided",
-            Self::Below => "below",
-        }
+hadar::named! {
+    /// An accuracy against the limit.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Standing {
+        /// Above it by more than chance explains in all comparisons together: the limit would be wrong.
+        Beyond = "beyond",
+        /// An interval that is narrow enough to mean something reaches up to the limit.
+        Reaches = "reaches",
+        /// The interval reaches up to the limit, but is too wide to mean much.
+        Undecided = "undecided",
+        /// Below it.
+        Below = "below",
     }
+    /// The name in tables.
+    name
 }
 
 /// A performance beside the limit of the accuracy of its pair of classes; `distance` is theirs, where the share of

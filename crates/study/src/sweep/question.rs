@@ -20,21 +20,25 @@ use serde::Serialize;
 /// Spectra of a class where a classifier is judged and nobody says how many.
 pub const SPECTRA: usize = 5000;
 
-/// What is asked of every row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Question {
-    /// The verdict on a camera.
-    Size,
-    /// Distances to every alternative.
-    Identify,
-    /// Spectra drawn and classifiers judged.
-    Simulate,
-    /// Which cameras meet a rule.
-    Rule,
-    /// How well depth can be measured.
-    Range,
-    /// A heat cube taken apart.
-    Decompose,
+hadar::named! {
+    /// What is asked of every row.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Question {
+        /// The verdict on a camera.
+        Size = "size",
+        /// Distances to every alternative.
+        Identify = "identify",
+        /// Spectra drawn and classifiers judged.
+        Simulate = "simulate",
+        /// Which cameras meet a rule.
+        Rule = "rule",
+        /// How well depth can be measured.
+        Range = "range",
+        /// A heat cube taken apart.
+        Decompose = "decompose",
+    }
+    /// The command that answers it.
+    name
 }
 
 /// How every row is asked.
@@ -83,23 +87,6 @@ impl Asking<'_> {
 }
 
 impl Question {
-    /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Size, Self::Identify, Self::Simulate, Self::Rule, Self::Range, Self::Decompose];
-
-    /// The command that answers it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Size => "size",
-            Self::Identify => "identify",
-            Self::Simulate => "simulate",
-            Self::Rule => "rule",
-            Self::Range => "range",
-            Self::Decompose => "decompose",
-        }
-    }
-
     /// The question of a command's name.
     ///
     /// # Errors

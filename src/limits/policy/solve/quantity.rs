@@ -2,46 +2,32 @@
 
 use crate::instrument::Camera;
 
-/// A quantity that can be solved for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// Exposure of a frame, s.
-    Exposure,
-    /// Side of the pixel, m.
-    Pixel,
-    /// f-number.
-    FNumber,
-    /// Electronic noise of a band reading in one frame, counts at the camera's exposure.
-    Noise,
-    /// Number of averaged frames.
-    Frames,
-    /// Largest distance of the target, m.
-    Distance,
-    /// Largest speed at which the exposure that the task takes still moves the target by less than a pixel, m s⁻¹.
-    Speed,
+crate::named! {
+    /// A quantity that can be solved for.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Quantity {
+        /// Exposure of a frame, s.
+        Exposure = "exposure_s",
+        /// Side of the pixel, m.
+        Pixel = "pixel_m",
+        /// f-number.
+        FNumber = "f_number",
+        /// Electronic noise of a band reading in one frame, counts at the camera's exposure.
+        Noise = "noise_counts",
+        /// Number of averaged frames.
+        Frames = "frames",
+        /// Largest distance of the target, m.
+        Distance = "distance_m",
+        /// Largest speed at which the exposure that the task takes still moves the target by less than a pixel, m s⁻¹.
+        Speed = "speed_m_s",
+    }
+    /// Key in the JSON, with its unit.
+    key
 }
 
 impl Quantity {
-    /// All of them, in the order of reports.
-    pub const ALL: [Self; 7] =
-        [Self::Exposure, Self::Pixel, Self::FNumber, Self::Noise, Self::Frames, Self::Distance, Self::Speed];
-
     /// Those that the camera alone has.
     pub const OF_CAMERA: [Self; 5] = [Self::Exposure, Self::Pixel, Self::FNumber, Self::Noise, Self::Frames];
-
-    /// Key in the JSON, with its unit.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Exposure => "exposure_s",
-            Self::Pixel => "pixel_m",
-            Self::FNumber => "f_number",
-            Self::Noise => "noise_counts",
-            Self::Frames => "frames",
-            Self::Distance => "distance_m",
-            Self::Speed => "speed_m_s",
-        }
-    }
 
     /// Name in a sentence.
     #[must_use]

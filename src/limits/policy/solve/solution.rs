@@ -3,38 +3,26 @@
 /// Why no value suffices where the distance is 0.
 pub(super) const NEVER: &str = "nothing tells the two apart";
 
-/// Which limit it is.
-// In the order of the codes' letters, in which several are listed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CapCode {
-    /// The lens blurs a point over more than the pixel.
-    Diffraction,
-    /// An exposure is longer than a frame.
-    FrameRate,
-    /// The fullest reading does not fit into the well.
-    FullWell,
-    /// No camera is built or used like that.
-    Impractical,
-    /// Read noise and steps of the converter stay.
-    LowestNoise,
-    /// The target moves by a pixel until all bands are exposed.
-    Motion,
-}
-
-impl CapCode {
-    /// The code, e.g. `full-well`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Diffraction => "diffraction",
-            Self::FrameRate => "frame-rate",
-            Self::FullWell => "full-well",
-            Self::Impractical => "impractical",
-            Self::LowestNoise => "lowest-noise",
-            Self::Motion => "motion",
-        }
+crate::named! {
+    /// Which limit it is; in the order of the codes' letters, in which several are listed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum CapCode {
+        /// The lens blurs a point over more than the pixel.
+        Diffraction = "diffraction",
+        /// An exposure is longer than a frame.
+        FrameRate = "frame-rate",
+        /// The fullest reading does not fit into the well.
+        FullWell = "full-well",
+        /// No camera is built or used like that.
+        Impractical = "impractical",
+        /// Read noise and steps of the converter stay.
+        LowestNoise = "lowest-noise",
+        /// The target moves by a pixel until all bands are exposed.
+        Motion = "motion",
     }
+    /// The code, e.g. `full-well`.
+    name
 }
 
 /// A limit that a value breaks.

@@ -67,8 +67,8 @@ fn of_source(text: &str, ledger: bool, rows: &mut BTreeSet<[String; 3]>) {
         if let Some(rest) = bare.strip_prefix("struct ").or_else(|| bare.strip_prefix("enum ")) {
             let name: String = rest.chars().take_while(|char| char.is_alphanumeric()).collect();
             of = plain(&doc).split(". ").next().unwrap_or_default().trim_end_matches('.').to_owned();
-            is_told =
-                attributes.contains("Serialize") || text.contains(&format!("impl Serialize for {name}"));
+            let written = [format!("impl Serialize for {name}"), format!("file!({name},")];
+            is_told = attributes.contains("Serialize") || written.iter().any(|one| text.contains(one));
         } else if let Some(key) = field(bare).filter(|_| is_told && !doc.is_empty())
             && !attributes.contains("serde(skip)")
             && !attributes.contains("flatten")

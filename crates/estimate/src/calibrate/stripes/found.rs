@@ -1,24 +1,17 @@
 //! What is sought, and what was found.
 
-/// Along what stripes lie.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Axis {
-    /// Every row has a gain and an offset.
-    Rows,
-    /// Every column has.
-    Columns,
-}
-
-impl Axis {
-    /// `rows` or `columns`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rows => "rows",
-            Self::Columns => "columns",
-        }
+hadar::named! {
+    /// Along what stripes lie.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Axis {
+        /// Every row has a gain and an offset.
+        Rows = "rows",
+        /// Every column has.
+        Columns = "columns",
     }
+    /// `rows` or `columns`.
+    name
 }
 
 /// How stripes are looked for.

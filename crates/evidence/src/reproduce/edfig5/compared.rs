@@ -2,11 +2,11 @@
 
 use super::super::order::Order;
 use super::super::textured::{EXPOSURE, Textured, median, window_sums};
+use crate::reproduce::texture::standard_deviation;
 use hadar::cube::{MemoryCube, Shape};
 use hadar::error::Result;
 use hadar::ranging::information::Window;
 use hadar::ranging::levels::share_left;
-use hadar::ranging::texture::standard_deviation;
 use hadar_estimate::decompose::{Maps, NO_MATERIAL, TextureInformation, texture_information};
 use hadar_report::decompose::{Clahe, DARKEST, brightness};
 use hadar_study::render::Picture as Rendered;

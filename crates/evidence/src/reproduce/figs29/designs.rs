@@ -1,6 +1,6 @@
 //! Other temperatures and filters, all of them in the same time.
 
-use hadar::calibration::design::Design;
+use super::best::Design;
 use hadar::calibration::determined::Determined;
 use hadar::calibration::filter_wheel::FilterWheel;
 use hadar::error::Result;

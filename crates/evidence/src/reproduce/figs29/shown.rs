@@ -1,8 +1,8 @@
 //! All that is shown of the response's calibration.
 
 use super::designs::Choice;
+use crate::reproduce::coverage::FilterWheelCoverage;
 use hadar::calibration::determined::Determined;
-use hadar_estimate::calibrate::coverage::FilterWheelCoverage;
 use hadar_estimate::calibrate::response::Response;
 use hadar_estimate::calibrate::twin::FilterWheelTwin;
 

@@ -11,7 +11,10 @@
 
 mod bounds;
 mod files;
+mod gaussian;
 mod methods;
+mod mmd;
+mod smoothest;
 mod spectra;
 mod street;
 mod text;

@@ -4,16 +4,17 @@
 //! * the error that blackbodies of two temperatures leave in a radiance, over both, and the best of 2 to 6;
 //! * the error of an emissivity from two temperatures of a surface (S57), over both: noise against the change of the emissivity.
 
+mod choice;
 mod files;
 mod shown;
 mod text;
 
+use crate::reproduce::coverage::{Experiment, spectrometer};
 use crate::reproduce::order::{Effort, Order, Progress};
-use hadar::calibration::choice::{Wanted, WantedSurface, best_blackbodies, emissivity_error, radiance_error};
+use choice::{Wanted, WantedSurface, best_blackbodies, emissivity_error, radiance_error};
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar::planck;
-use hadar_estimate::calibrate::coverage::{Experiment, spectrometer};
 use hadar_estimate::calibrate::twin::SpectrometerTwin;
 use hadar_report::bundle::Bundle;
 use shown::{

@@ -8,6 +8,7 @@
 //! * what estimates do on the clean, the striped and the destriped cube.
 
 mod files;
+mod information;
 mod measure;
 mod text;
 mod twin;

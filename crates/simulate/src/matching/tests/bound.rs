@@ -1,7 +1,6 @@
 //! Variances against the bound, and errors that are there without noise.
 
 use super::*;
-use crate::matching::locking::Locking;
 
 /// Trials of 13 windows; the ratio of the variances of so many has the deviation √(2/5200) for normal errors.
 const TRIALS: usize = 400;
@@ -80,38 +79,5 @@ fn block_matching_obeys_the_bound_of_its_own_bias() {
             .collect();
         assert!(mean(&relative) > 1.0 - 3.3 * SIGMA, "{disparity}: {relative:?}");
         assert_eq!(mean(&found) < 1.0 - 3.3 * SIGMA, below, "{disparity}: {found:?}");
-    }
-}
-
-/// Largest mean errors over a period, measured, within 10 %; what noise adds is within its interval (99.9 %,
-/// two points).
-#[test]
-fn pixel_locking_is_that_of_the_fit() {
-    let texture = Texture::random(3, &[1e5], 0.1, 0.25, 40).unwrap();
-    let blocks = |fit| Matcher::Block(Block { fit, ..Block::new(window()) });
-    for (matcher, amplitude) in [
-        (blocks(Fit::Parabola), 0.0302),
-        (likelihood(Interpolation::Sinc), 3.3e-4),
-        (likelihood(Interpolation::CubicSpline), 2.95e-3),
-    ] {
-        let run = Run { index: 0, trials: 20, seed: 2 };
-        let (bands, noise, noisy) = (1, &NoiseVariance::None, Noisy::Left);
-        let locking =
-            Locking { texture: &texture, bands, noise, noisy, matcher, windows: 100, run, level: 0.999 };
-        let [rising, falling] = [0.2, 0.3, 0.7, 0.8]
-            .map(|d| locking.curve(&[d]).unwrap()[0])
-            .map(|point| {
-                assert!(point.lost == 0.0 && point.systematic.abs() <= point.systematic_rms);
-                let off = point.bias - point.systematic;
-                assert!(off.abs() < 4.0 * point.bias_interval.half_width(), "{point:?}");
-                point.systematic
-            })
-            .chunks(2)
-            .map(|two| if two[0].abs() > two[1].abs() { two[0] } else { two[1] })
-            .collect::<Vec<f64>>()
-            .try_into()
-            .unwrap();
-        let found = 0.5 * (rising - falling).abs();
-        assert!(rising * falling < 0.0 && (found / amplitude - 1.0).abs() < 0.1, "{found:.3e}");
     }
 }

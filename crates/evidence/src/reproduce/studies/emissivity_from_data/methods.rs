@@ -1,11 +1,14 @@
 //! Every method on every spectrum, in scenes that are drawn.
 
+use super::gaussian::gaussian;
+use super::mmd::{Mmd, mmd};
+use super::smoothest::smoothest;
 use super::spectra::{Sky, Spectra, smoothness, wavenumbers_cm1};
 use hadar::error::Result;
 use hadar::fisher::emissivity::{EmissivityPrior, Seen, Separation};
 use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_slope};
 use hadar::statistics::Statistics;
-use hadar_estimate::separation::{Mmd, Separated, Surface, gaussian, mmd, nem, smoothest};
+use hadar_estimate::separation::{Separated, Surface, nem};
 use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 use rayon::prelude::*;

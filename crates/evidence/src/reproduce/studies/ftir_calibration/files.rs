@@ -1,7 +1,7 @@
 //! Tables and pictures.
 
+use super::choice::EmissivityError;
 use super::shown::{Plane, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K, WANTED_K};
-use hadar::calibration::choice::EmissivityError;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, HeatMap, LineFigure, Marker, Series, Style};
 use hadar_report::table::{Table, number};

@@ -1,8 +1,8 @@
 //! All that is shown of the spectrometer's calibration.
 
-use hadar::calibration::choice::{EmissivityError, RadianceError};
+use super::choice::{EmissivityError, RadianceError};
+use crate::reproduce::coverage::SpectrometerCoverage;
 use hadar::error::Result;
-use hadar_estimate::calibrate::coverage::SpectrometerCoverage;
 
 /// Deviation of the temperature of each blackbody and of the surface, K.
 pub(super) const TEMPERATURE_ERROR_K: f64 = 0.03;

@@ -1,7 +1,7 @@
 //! Bounds and errors at one share of striped lines.
 
+use super::information::{LineKnown, LineSample, information};
 use super::twin::{BANDS, COLUMNS, Put, ROWS, Twin};
-use hadar::calibration::stripes::{LineKnown, LineSample, information};
 use hadar::error::Result;
 use hadar_estimate::calibrate::{Axis, Destriped, Sought, Stripe, find_stripes};
 use std::collections::BTreeMap;

@@ -6,46 +6,45 @@
 //! B′(T), and outside of the scene's range it is carried over by its leverage.
 //!
 //! For a surface at two temperatures, noise falls with their distance, and the bias of an emissivity that changes with temperature
-//! ([`super::surface::bias`]) does not ([`emissivity_error`]).
+//! ([`hadar::calibration::surface::bias`]) does not ([`emissivity_error`]).
 //!
 //! The best of a list: every pair; more settings by exchange from the best pair, one at a time, until none helps.
 //!
-//! Units and assumptions: as in [`super::blackbody`]; every setting errs for itself.
+//! Units and assumptions: as in [`hadar::calibration::blackbody`]; every setting errs for itself.
 
-use super::blackbody::Blackbodies;
-use super::surface::{Truth, bias, errors};
-use crate::error::Result;
-use crate::planck;
+use hadar::calibration::blackbody::Blackbodies;
+use hadar::calibration::surface::{Truth, bias, errors};
+use hadar::error::Result;
+use hadar::planck;
 
 /// A spectrometer, and the scenes it is calibrated for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wanted {
+pub(crate) struct Wanted {
     /// Channels, cm⁻¹.
-    pub wavenumbers_cm1: Vec<f64>,
+    pub(crate) wavenumbers_cm1: Vec<f64>,
     /// Response of each, counts per photon s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
-    pub response: Vec<f64>,
+    pub(crate) response: Vec<f64>,
     /// Deviation of a reading that takes the whole time, counts.
-    pub sigma: Vec<f64>,
+    pub(crate) sigma: Vec<f64>,
     /// Uncertainty of each blackbody's temperature, K.
-    pub temperature_error_k: f64,
+    pub(crate) temperature_error_k: f64,
     /// Brightness temperatures of the scenes, K.
-    pub scenes_k: Vec<f64>,
+    pub(crate) scenes_k: Vec<f64>,
 }
 
 /// Error common to all pixels of a calibrated radiance, as temperature.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct RadianceError {
+pub(crate) struct RadianceError {
     /// By the noise of the blackbodies' readings, K.
-    pub noise_k: f64,
+    pub(crate) noise_k: f64,
     /// By their temperatures, K.
-    pub temperature_k: f64,
+    pub(crate) temperature_k: f64,
 }
 
 impl RadianceError {
     /// Both, K.
     #[must_use]
-    pub fn total_k(self) -> f64 {
+    pub(crate) fn total_k(self) -> f64 {
         self.noise_k.hypot(self.temperature_k)
     }
 }
@@ -54,7 +53,7 @@ impl RadianceError {
 ///
 /// # Errors
 /// Fewer than two temperatures that differ.
-pub fn radiance_error(wanted: &Wanted, temperatures_k: &[f64]) -> Result<RadianceError> {
+pub(crate) fn radiance_error(wanted: &Wanted, temperatures_k: &[f64]) -> Result<RadianceError> {
     let n = temperatures_k.len();
     let longer = (n as f64).sqrt();
     let sigma: Vec<f64> = wanted.sigma.iter().map(|sigma| sigma * longer).collect();
@@ -82,7 +81,11 @@ pub fn radiance_error(wanted: &Wanted, temperatures_k: &[f64]) -> Result<Radianc
 ///
 /// # Errors
 /// Fewer than two temperatures to choose from that differ.
-pub fn best_blackbodies(wanted: &Wanted, among_k: &[f64], count: usize) -> Result<(Vec<f64>, RadianceError)> {
+pub(crate) fn best_blackbodies(
+    wanted: &Wanted,
+    among_k: &[f64],
+    count: usize,
+) -> Result<(Vec<f64>, RadianceError)> {
     let mut best: Option<(Vec<f64>, RadianceError)> = None;
     let better = |found: RadianceError, best: &Option<(Vec<f64>, RadianceError)>| {
         best.as_ref().is_none_or(|(_, known)| found.total_k() < known.total_k())
@@ -130,36 +133,36 @@ pub fn best_blackbodies(wanted: &Wanted, among_k: &[f64], count: usize) -> Resul
 
 /// A surface whose emissivity is wanted.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WantedSurface {
+pub(crate) struct WantedSurface {
     /// Channels, response, deviation of a reading of the whole time; the error of the surface's temperatures.
-    pub spectrometer: Wanted,
+    pub(crate) spectrometer: Wanted,
     /// Its emissivity in each channel.
-    pub emissivity: Vec<f64>,
+    pub(crate) emissivity: Vec<f64>,
     /// Radiance of the surroundings in each channel.
-    pub surroundings: Vec<f64>,
+    pub(crate) surroundings: Vec<f64>,
     /// Change of the emissivity, K⁻¹.
-    pub slope_per_k: f64,
+    pub(crate) slope_per_k: f64,
     /// Temperature at which it is wanted, K.
-    pub wanted_k: f64,
+    pub(crate) wanted_k: f64,
     /// The blackbodies that calibrate.
-    pub blackbodies: Blackbodies,
+    pub(crate) blackbodies: Blackbodies,
 }
 
 /// Errors of an emissivity, root mean square over the channels.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct EmissivityError {
+pub(crate) struct EmissivityError {
     /// By noise.
-    pub noise: f64,
+    pub(crate) noise: f64,
     /// By the temperatures of surface and blackbodies.
-    pub temperature: f64,
+    pub(crate) temperature: f64,
     /// By its change with temperature.
-    pub bias: f64,
+    pub(crate) bias: f64,
 }
 
 impl EmissivityError {
     /// All three.
     #[must_use]
-    pub fn total(self) -> f64 {
+    pub(crate) fn total(self) -> f64 {
         self.noise.hypot(self.temperature).hypot(self.bias)
     }
 }
@@ -168,7 +171,7 @@ impl EmissivityError {
 ///
 /// # Errors
 /// Temperatures that are the same.
-pub fn emissivity_error(wanted: &WantedSurface, temperatures_k: [f64; 2]) -> Result<EmissivityError> {
+pub(crate) fn emissivity_error(wanted: &WantedSurface, temperatures_k: [f64; 2]) -> Result<EmissivityError> {
     let spectrometer = &wanted.spectrometer;
     let sigma: Vec<f64> = spectrometer.sigma.iter().map(|sigma| sigma * 2f64.sqrt()).collect();
     let readings = Blackbodies::new(

@@ -14,13 +14,13 @@
 //! leaving out those of the smallest shares in the best design of those left, a third of the surplus at a time: good, not proved to
 //! be the best set.
 //!
-//! Assumptions: as in [`super::filter_wheel`], exact temperatures, the same noise in every reading of the same time.
+//! Assumptions: as in [`hadar::calibration::filter_wheel`], exact temperatures, the same noise in every reading of the same time.
 
-use super::determined::CurvePrior;
-use super::filter_wheel::{FilterWheel, Reading};
-use crate::error::{Error, Result, check};
-use crate::order;
-use crate::planck;
+use hadar::calibration::determined::CurvePrior;
+use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::error::{Error, Result, check};
+use hadar::order;
+use hadar::planck;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// ε, in units of the noise of a reading of all the time.
@@ -37,17 +37,17 @@ const FEW_ROUNDS: usize = 60;
 
 /// How the time is shared.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Design {
+pub(crate) struct Design {
     /// Temperature (K), filter and share of the time.
-    pub shares: Vec<(f64, usize, f64)>,
+    pub(crate) shares: Vec<(f64, usize, f64)>,
     /// What any other design of these candidates could gain at most, nats.
-    pub gap_nats: f64,
+    pub(crate) gap_nats: f64,
 }
 
 impl Design {
     /// Its readings, where one of the whole time has the deviation `sigma`, counts.
     #[must_use]
-    pub fn readings(&self, sigma: f64) -> Vec<Reading> {
+    pub(crate) fn readings(&self, sigma: f64) -> Vec<Reading> {
         let mut temperatures: Vec<f64> = self.shares.iter().map(|share| share.0).collect();
         temperatures.sort_by(f64::total_cmp);
         temperatures.dedup();
@@ -63,7 +63,7 @@ impl Design {
 
     /// The same time at all temperatures through these filters.
     #[must_use]
-    pub fn even(temperatures_k: &[f64], filters: &[usize]) -> Self {
+    pub(crate) fn even(temperatures_k: &[f64], filters: &[usize]) -> Self {
         let share = 1.0 / (temperatures_k.len() * filters.len()) as f64;
         let shares = temperatures_k.iter().flat_map(|t| filters.iter().map(move |q| (*t, *q, share)));
         Self { shares: shares.collect(), gap_nats: f64::INFINITY }
@@ -73,7 +73,7 @@ impl Design {
     ///
     /// # Errors
     /// Fewer than two temperatures, no filter, a deviation that is not positive.
-    pub fn best(
+    pub(crate) fn best(
         wheel: &FilterWheel,
         prior: &CurvePrior,
         temperatures_k: &[f64],
@@ -125,7 +125,7 @@ impl Design {
     ///
     /// # Errors
     /// As [`Design::best`].
-    pub fn best_filters(
+    pub(crate) fn best_filters(
         wheel: &FilterWheel,
         prior: &CurvePrior,
         temperatures_k: &[f64],
@@ -212,8 +212,8 @@ fn gains(scores: &DMatrix<f64>, shares: &[f64], filters: usize, values: usize) -
 
 #[cfg(test)]
 mod tests {
-    use super::super::determined::{CurveSmoothness, Determined};
     use super::*;
+    use hadar::calibration::determined::{CurveSmoothness, Determined};
 
     fn wheel() -> (FilterWheel, CurvePrior) {
         let centres: Vec<f64> = (0..10).map(|j| 700.0 + 60.0 * f64::from(j)).collect();

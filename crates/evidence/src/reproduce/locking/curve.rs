@@ -6,54 +6,54 @@
 //! together (a mean of all windows in every trial), so the interval of the bias is right though their searches
 //! share samples.
 
-use super::texture::Texture;
-use super::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};
-use super::{Matcher, Search, StereoPair};
-use crate::efficiency::Errors;
-use crate::sequential::Interval;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hadar::ranging::noise::NoiseVariance;
+use hadar_simulate::efficiency::Errors;
+use hadar_simulate::matching::report::OUTLIER;
+use hadar_simulate::matching::texture::Texture;
+use hadar_simulate::matching::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};
+use hadar_simulate::matching::{Match, Matcher, Search, StereoPair};
+use hadar_simulate::sequential::Interval;
 
 /// At one disparity.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct LockingPoint {
+pub(super) struct LockingPoint {
     /// True disparity, pixels.
-    pub disparity: f64,
+    pub(super) disparity: f64,
     /// Mean error without noise, pixels.
-    pub systematic: f64,
+    pub(super) systematic: f64,
     /// Root mean square of it over the windows, pixels.
-    pub systematic_rms: f64,
+    pub(super) systematic_rms: f64,
     /// Mean error with noise, pixels.
-    pub bias: f64,
+    pub(super) bias: f64,
     /// Interval of it.
-    pub bias_interval: Interval,
+    pub(super) bias_interval: Interval,
     /// Deviation about the mean of each window, pixels.
-    pub deviation: f64,
+    pub(super) deviation: f64,
     /// Share of matches that failed or were off by more than a pixel; they do not count in any of the above.
-    pub lost: f64,
+    pub(super) lost: f64,
 }
 
 /// What a locking curve is measured on.
 #[derive(Debug, Clone, Copy)]
-pub struct Locking<'a> {
+pub(super) struct Locking<'a> {
     /// Texture of the windows.
-    pub texture: &'a Texture,
+    pub(super) texture: &'a Texture,
     /// Its bands.
-    pub bands: usize,
+    pub(super) bands: usize,
     /// Electronic noise.
-    pub noise: &'a NoiseVariance,
+    pub(super) noise: &'a NoiseVariance,
     /// Which views are noisy.
-    pub noisy: Noisy,
+    pub(super) noisy: Noisy,
     /// The matcher.
-    pub matcher: Matcher,
+    pub(super) matcher: Matcher,
     /// Windows, side by side.
-    pub windows: usize,
+    pub(super) windows: usize,
     /// Trials of each.
-    pub run: Run,
+    pub(super) run: Run,
     /// Confidence level of intervals.
-    pub level: f64,
+    pub(super) level: f64,
 }
 
 impl Locking<'_> {
@@ -61,7 +61,7 @@ impl Locking<'_> {
     ///
     /// # Errors
     /// No windows, fewer than two trials, disparities that are not finite, noise that does not fit.
-    pub fn curve(&self, disparities: &[f64]) -> Result<Vec<LockingPoint>> {
+    pub(super) fn curve(&self, disparities: &[f64]) -> Result<Vec<LockingPoint>> {
         if self.windows == 0 || self.run.trials < 2 {
             let found = format!("{} windows, {} trials of each", self.windows, self.run.trials);
             return Err(Error::malformed(found, "give at least one window and two trials"));
@@ -96,8 +96,8 @@ impl Locking<'_> {
     }
 
     fn summary(&self, matches: &Matches, part: f64, whole: f64) -> Result<LockingPoint> {
-        let good = |found: &Option<f64>| found.is_some_and(|off| off.abs() <= super::report::OUTLIER);
-        let error = |found: &super::Match| found.ok().map(|d| d - part).filter(|off| good(&Some(*off)));
+        let good = |found: &Option<f64>| found.is_some_and(|off| off.abs() <= OUTLIER);
+        let error = |found: &Match| found.ok().map(|d| d - part).filter(|off| good(&Some(*off)));
         let free: Vec<f64> = matches.noise_free.iter().filter_map(error).collect();
         let all: Vec<Option<f64>> = matches.trials.iter().map(error).collect();
         let mean = |values: &[f64]| hadar::sum::sum(values) / values.len().max(1) as f64;
@@ -128,5 +128,49 @@ impl Locking<'_> {
             deviation: if freedom > 0.0 { (squares / freedom).sqrt() } else { 0.0 },
             lost: lost as f64 / all.len().max(1) as f64,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hadar::ranging::information::Window;
+    use hadar_simulate::matching::block::{Block, Fit};
+    use hadar_simulate::matching::likelihood::{Interpolation, Likelihood};
+
+    /// Largest mean errors over a period, measured, within 10 %; what noise adds is within its interval (99.9 %,
+    /// two points).
+    #[test]
+    fn pixel_locking_is_that_of_the_fit() {
+        let texture = Texture::random(3, &[1e5], 0.1, 0.25, 40).unwrap();
+        let window = Window::new(5, 5).unwrap();
+        let likelihood =
+            |interpolation| Matcher::Likelihood(Likelihood { interpolation, ..Likelihood::new(window) });
+        let blocks = |fit| Matcher::Block(Block { fit, ..Block::new(window) });
+        for (matcher, amplitude) in [
+            (blocks(Fit::Parabola), 0.0302),
+            (likelihood(Interpolation::Sinc), 3.3e-4),
+            (likelihood(Interpolation::CubicSpline), 2.95e-3),
+        ] {
+            let run = Run { index: 0, trials: 20, seed: 2 };
+            let (bands, noise, noisy) = (1, &NoiseVariance::None, Noisy::Left);
+            let locking =
+                Locking { texture: &texture, bands, noise, noisy, matcher, windows: 100, run, level: 0.999 };
+            let [rising, falling] = [0.2, 0.3, 0.7, 0.8]
+                .map(|d| locking.curve(&[d]).unwrap()[0])
+                .map(|point| {
+                    assert!(point.lost == 0.0 && point.systematic.abs() <= point.systematic_rms);
+                    let off = point.bias - point.systematic;
+                    assert!(off.abs() < 4.0 * point.bias_interval.half_width(), "{point:?}");
+                    point.systematic
+                })
+                .chunks(2)
+                .map(|two| if two[0].abs() > two[1].abs() { two[0] } else { two[1] })
+                .collect::<Vec<f64>>()
+                .try_into()
+                .unwrap();
+            let found = 0.5 * (rising - falling).abs();
+            assert!(rising * falling < 0.0 && (found / amplitude - 1.0).abs() < 0.1, "{found:.3e}");
+        }
     }
 }

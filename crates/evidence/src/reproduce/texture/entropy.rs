@@ -8,9 +8,9 @@
 //! Source: Huang, Yang, Tang, IEEE Trans. ASSP 27, 13 (1979).
 
 use super::{Image, TextureMap};
-use crate::cube::MemoryCube;
-use crate::error::{Error, Result};
-use crate::ranging::information::Window;
+use hadar::cube::MemoryCube;
+use hadar::error::{Error, Result};
+use hadar::ranging::information::Window;
 use rayon::prelude::*;
 
 /// Grey levels.
@@ -22,17 +22,11 @@ const LEVELS: usize = 256;
 /// # Errors
 /// More bands than one, a value that is not finite (or beyond 10¹⁴⁰), a range that does not rise, a window larger than
 /// the image.
-///
-/// ```
-/// use hadar::cube::{MemoryCube, Shape};
-/// use hadar::ranging::{information::Window, texture::local_entropy};
-/// let image = MemoryCube::new(Shape::new(1, 4, 1)?, vec![5.0, 5.0, 5.0, 9.0])?;
-/// let map = local_entropy(&image, Window::new(1, 3)?, None)?;
-/// assert_eq!(map.values[0], 0.0);
-/// assert!((map.values[1] - (3_f64.log2() - 2.0 / 3.0)).abs() < 1e-15);
-/// # Ok::<(), hadar::Error>(())
-/// ```
-pub fn local_entropy(image: &MemoryCube<f64>, window: Window, range: Option<[f64; 2]>) -> Result<TextureMap> {
+pub(crate) fn local_entropy(
+    image: &MemoryCube<f64>,
+    window: Window,
+    range: Option<[f64; 2]>,
+) -> Result<TextureMap> {
     let image = Image::of(image)?;
     let (rows, columns) = image.centres(window)?;
     let levels = levels(image, range)?;
@@ -58,22 +52,14 @@ pub fn local_entropy(image: &MemoryCube<f64>, window: Window, range: Option<[f64
 ///
 /// # Errors
 /// More bands than one, a value that is not finite (or beyond 10¹⁴⁰), a range that does not rise.
-///
-/// ```
-/// use hadar::cube::{MemoryCube, Shape};
-/// use hadar::ranging::texture::global_entropy;
-/// let image = MemoryCube::new(Shape::new(2, 2, 1)?, vec![3.0, 8.0, 8.0, 3.0])?;
-/// assert_eq!(global_entropy(&image, None)?, 1.0);
-/// # Ok::<(), hadar::Error>(())
-/// ```
-pub fn global_entropy(image: &MemoryCube<f64>, range: Option<[f64; 2]>) -> Result<f64> {
+pub(crate) fn global_entropy(image: &MemoryCube<f64>, range: Option<[f64; 2]>) -> Result<f64> {
     let image = Image::of(image)?;
     let mut counts = [0_usize; LEVELS];
     levels(image, range)?.iter().for_each(|&level| counts[usize::from(level)] += 1);
     let count = image.samples.len() as f64;
     // − p log₂ p of each level: no term is negative.
     let bits = counts.iter().filter(|&&n| n > 0).map(|&n| n as f64 / count * libm::log2(count / n as f64));
-    Ok(crate::sum::sum(&bits.collect::<Vec<_>>()))
+    Ok(hadar::sum::sum(&bits.collect::<Vec<_>>()))
 }
 
 /// The level of every pixel.

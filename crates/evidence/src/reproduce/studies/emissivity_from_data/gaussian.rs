@@ -7,10 +7,10 @@
 //! With a smooth prior ([`EmissivityPrior::smooth`]) this is what smoothness can tell, with that of other spectra
 //! ([`EmissivityPrior::of_spectra`]) what their principal components do.
 
-use super::nem::{Separated, Surface};
 use hadar::fisher::emissivity::EmissivityPrior;
 use hadar::minimum::golden_section;
 use hadar::planck;
+use hadar_estimate::separation::{Separated, Surface};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Steps between the temperatures that are looked at first, K.
@@ -19,7 +19,11 @@ const STEP_K: f64 = 2.0;
 /// Temperature of the most probable radiances between two temperatures (K), and the mean emissivities that belong to it; `None` where
 /// no temperature has a probability.
 #[must_use]
-pub fn gaussian(surface: &Surface<'_>, prior: &EmissivityPrior, range_k: [f64; 2]) -> Option<Separated> {
+pub(crate) fn gaussian(
+    surface: &Surface<'_>,
+    prior: &EmissivityPrior,
+    range_k: [f64; 2],
+) -> Option<Separated> {
     let count = ((range_k[1] - range_k[0]) / STEP_K).ceil().max(2.0) as usize;
     let at = |i: usize| range_k[0] + (range_k[1] - range_k[0]) * i as f64 / count as f64;
     let cost = |t: f64| Look::at(surface, prior, t).map_or(f64::INFINITY, |look| look.cost);
@@ -32,7 +36,7 @@ pub fn gaussian(surface: &Surface<'_>, prior: &EmissivityPrior, range_k: [f64; 2
     let [low, high] =
         golden_section::<std::convert::Infallible>(bracket, 22, |t| Ok(cost(t))).unwrap_or(bracket);
     let temperature_k = 0.5 * (low + high);
-    Some(Separated { temperature_k, emissivity: Look::at(surface, prior, temperature_k)?.emissivity(prior) })
+    Some(Separated::new(temperature_k, Look::at(surface, prior, temperature_k)?.emissivity(prior)))
 }
 
 /// What one temperature makes of the radiances.
@@ -78,7 +82,7 @@ mod tests {
     use super::*;
     use hadar::fisher::emissivity::{Seen, Separation, Smoothness};
     use hadar::random::generator;
-    use rand_distr::{Distribution, StandardNormal};
+    use hadar_estimate::calibrate::twin::normal;
 
     /// Emissivities drawn from the prior: the mean square error is that of the posterior, and not below the bound averaged over the
     /// prior. 600 draws know their rms to 3 %: five of these deviations.
@@ -96,8 +100,8 @@ mod tests {
         let sigma: Vec<f64> = slope.iter().map(|slope| 0.05 * slope).collect();
         let seen = Seen { blackbody: &black, slope: &slope, light: &light, sigma: &sigma };
         let bound = Separation::averaged(&prior, &seen).unwrap();
-        let mut normal = generator(11, 0);
-        let mut draw = || -> f64 { StandardNormal.sample(&mut normal) };
+        let mut random = generator(11, 0);
+        let mut draw = || normal(&mut random);
         let (mut over, mut square, mut error) = (0.0, 0.0, 0.0);
         let draws = 600;
         for _ in 0..draws {

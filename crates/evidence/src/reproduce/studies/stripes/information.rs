@@ -11,45 +11,37 @@
 
 /// What is known of gain and offset of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LineKnown {
+pub(super) struct LineKnown {
     /// Deviation of the gain from 1; infinite where nothing is known.
-    pub sigma_gain: f64,
+    pub(super) sigma_gain: f64,
     /// Deviation of the offset at `level`; infinite where nothing is known.
-    pub sigma_offset: f64,
+    pub(super) sigma_offset: f64,
     /// Level at which the two are independent.
-    pub level: f64,
+    pub(super) level: f64,
 }
 
 impl LineKnown {
     /// Nothing is known.
-    pub const NOTHING: Self = Self { sigma_gain: f64::INFINITY, sigma_offset: f64::INFINITY, level: 0.0 };
+    pub(super) const NOTHING: Self =
+        Self { sigma_gain: f64::INFINITY, sigma_offset: f64::INFINITY, level: 0.0 };
     /// All is known: a calibrated line.
-    pub const ALL: Self = Self { sigma_gain: 0.0, sigma_offset: 0.0, level: 0.0 };
+    pub(super) const ALL: Self = Self { sigma_gain: 0.0, sigma_offset: 0.0, level: 0.0 };
 }
 
 /// A sample of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LineSample {
+pub(super) struct LineSample {
     /// Mean.
-    pub mean: f64,
+    pub(super) mean: f64,
     /// Its derivative with respect to the parameter.
-    pub derivative: f64,
+    pub(super) derivative: f64,
     /// Variance, above 0.
-    pub var: f64,
+    pub(super) var: f64,
 }
 
 /// Fisher information of the parameter in the samples of a line of a band; 0 of samples that scatter by nothing or by what is no number.
-///
-/// ```
-/// use hadar::calibration::stripes::{LineKnown, LineSample, information};
-/// let line = [1.0, -2.0, 0.5].map(|derivative| LineSample { mean: 100.0, derivative, var: 4.0 });
-/// assert_eq!(information(&line, LineKnown::ALL), (1.0 + 4.0 + 0.25) / 4.0);
-/// // An unknown offset takes the mean of the derivatives.
-/// let left = information(&line, LineKnown::NOTHING);
-/// assert!((left - (5.25 - 0.25 / 3.0) / 4.0).abs() < 1e-12);
-/// ```
 #[must_use]
-pub fn information(line: &[LineSample], known: LineKnown) -> f64 {
+pub(super) fn information(line: &[LineSample], known: LineKnown) -> f64 {
     let rows = line.len();
     let mut score = vec![0.0; rows + 2];
     let (mut gain, mut offset) = (score.clone(), score.clone());
@@ -87,12 +79,6 @@ pub fn information(line: &[LineSample], known: LineKnown) -> f64 {
     score.iter().map(|x| x * x).sum()
 }
 
-/// Information of one pixel alone, whose line has a remaining error: the sum over bands of (∂N)²/(v + σ_o² + σ_g²(N − x₀)²).
-#[must_use]
-pub fn information_of_pixel(bands: &[(LineSample, LineKnown)]) -> f64 {
-    bands.iter().map(|(sample, known)| information(std::slice::from_ref(sample), *known)).sum()
-}
-
 fn norm(values: &[f64]) -> f64 {
     values.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
@@ -120,11 +106,19 @@ mod tests {
     }
 
     #[test]
+    fn an_unknown_offset_takes_the_mean_of_the_derivatives() {
+        let line = [1.0, -2.0, 0.5].map(|derivative| LineSample { mean: 100.0, derivative, var: 4.0 });
+        assert_eq!(information(&line, LineKnown::ALL), (1.0 + 4.0 + 0.25) / 4.0);
+        let left = information(&line, LineKnown::NOTHING);
+        assert!((left - (5.25 - 0.25 / 3.0) / 4.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn one_pixel_has_the_error_of_its_line_beside_its_noise() {
         let sample = LineSample { mean: 1200.0, derivative: 30.0, var: 1500.0 };
         let known = LineKnown { sigma_gain: 0.02, sigma_offset: 25.0, level: 1000.0 };
         let expected = 900.0 / (1500.0 + 625.0 + 16.0);
-        assert!((information_of_pixel(&[(sample, known); 3]) / (3.0 * expected) - 1.0).abs() < 1e-12);
+        assert!((information(&[sample], known) / expected - 1.0).abs() < 1e-12);
         assert!(information(&[sample], LineKnown::NOTHING).abs() < 1e-20);
     }
 

@@ -11,9 +11,9 @@
 //! Statistician 37, 242 (1983).
 
 use super::{Image, TextureMap};
-use crate::cube::MemoryCube;
-use crate::error::{Error, Result};
-use crate::ranging::information::Window;
+use hadar::cube::MemoryCube;
+use hadar::error::{Error, Result};
+use hadar::ranging::information::Window;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -21,17 +21,7 @@ use std::ops::Range;
 ///
 /// # Errors
 /// More bands than one, a value that is not finite (or beyond 10¹⁴⁰), a window larger than the image or of one pixel.
-///
-/// ```
-/// use hadar::cube::{MemoryCube, Shape};
-/// use hadar::ranging::{information::Window, texture::standard_deviation};
-/// let image = MemoryCube::new(Shape::new(1, 4, 1)?, vec![1.0, 2.0, 3.0, 3.0])?;
-/// let map = standard_deviation(&image, Window::new(1, 3)?)?;
-/// assert_eq!((map.rows, map.columns), (0..1, 1..3));
-/// assert!((map.values[0] - 1.0).abs() < 1e-15 && (map.values[1] - 3_f64.sqrt().recip()).abs() < 1e-15);
-/// # Ok::<(), hadar::Error>(())
-/// ```
-pub fn standard_deviation(image: &MemoryCube<f64>, window: Window) -> Result<TextureMap> {
+pub(crate) fn standard_deviation(image: &MemoryCube<f64>, window: Window) -> Result<TextureMap> {
     let image = Image::of(image)?;
     image.centres(window)?;
     if window.rows() * window.columns() < 2 {

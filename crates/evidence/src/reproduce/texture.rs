@@ -6,7 +6,7 @@
 //!
 //! Level k is the nearest to 255 (I − I₀)/(I₁ − I₀) within 0..=255, with the range I₀..I₁ that is stated, or else the
 //! image's own. These are the definitions of `stdfilt` and `entropyfilt` in Matlab, but only of windows that lie
-//! whole in the image. Unlike the Fisher information of [`information`](super::information), neither asks in which
+//! whole in the image. Unlike the Fisher information of [`information`](hadar::ranging::information), neither asks in which
 //! direction the image varies (of stripes along x, which no stereo pair can place, s is that of stripes along y), nor
 //! whether it is noise that varies; nor can either be turned into an error of depth.
 //!
@@ -15,12 +15,12 @@
 mod deviation;
 mod entropy;
 
-pub use deviation::standard_deviation;
-pub use entropy::{global_entropy, local_entropy};
+pub(crate) use deviation::standard_deviation;
+pub(crate) use entropy::{global_entropy, local_entropy};
 
-use super::information::Window;
-use crate::cube::{MemoryCube, Rows};
-use crate::error::{Error, Result};
+use hadar::cube::{MemoryCube, Rows};
+use hadar::error::{Error, Result};
+use hadar::ranging::information::Window;
 use std::ops::Range;
 
 /// Largest grey value, either sign, whose square and the sum of many such are still numbers.
@@ -28,14 +28,13 @@ const MAX_GREY: f64 = 1e140;
 
 /// A measure of every window that lies whole in the image.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct TextureMap {
+pub(crate) struct TextureMap {
     /// Rows of the windows' centres.
-    pub rows: Range<usize>,
+    pub(crate) rows: Range<usize>,
     /// Columns of the windows' centres.
-    pub columns: Range<usize>,
+    pub(crate) columns: Range<usize>,
     /// The measure, `[row][column]` of the centres.
-    pub values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
 }
 
 /// An image of one band.

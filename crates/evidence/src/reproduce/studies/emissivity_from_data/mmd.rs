@@ -6,9 +6,9 @@
 //!
 //! Source: Gillespie et al., IEEE Trans. Geosci. Remote Sens. 36, 1113 (1998), doi:10.1109/36.700995, section III C.
 
-use super::nem::{Separated, Surface, nem, ratio};
 use hadar::minimum::golden_section;
 use hadar::planck;
+use hadar_estimate::separation::{Separated, Surface, nem, ratio};
 
 /// Exponents that are looked at.
 const EXPONENTS: [f64; 2] = [0.2, 2.0];
@@ -17,14 +17,13 @@ const ROUNDS: usize = 5;
 
 /// e_min = a − b·MMD^c.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct Mmd {
+pub(crate) struct Mmd {
     /// Least emissivity of a grey body.
-    pub a: f64,
+    pub(crate) a: f64,
     /// Slope.
-    pub b: f64,
+    pub(crate) b: f64,
     /// Exponent.
-    pub c: f64,
+    pub(crate) c: f64,
 }
 
 fn least(values: &[f64]) -> f64 {
@@ -38,7 +37,7 @@ fn largest(values: &[f64]) -> f64 {
 impl Mmd {
     /// The relation that spectra have.
     #[must_use]
-    pub fn of_spectra(spectra: &[&[f64]]) -> Self {
+    pub(crate) fn of_spectra(spectra: &[&[f64]]) -> Self {
         let points: Vec<(f64, f64)> = spectra
             .iter()
             .map(|e| {
@@ -68,7 +67,7 @@ impl Mmd {
 
 /// Temperature and emissivities by TES: NEM, ratios, and the relation.
 #[must_use]
-pub fn mmd(surface: &Surface<'_>, max_emissivity: f64, relation: &Mmd) -> Option<Separated> {
+pub(crate) fn mmd(surface: &Surface<'_>, max_emissivity: f64, relation: &Mmd) -> Option<Separated> {
     let mut found = nem(surface, max_emissivity)?;
     for _ in 0..ROUNDS {
         let beta = ratio(&found.emissivity);
@@ -84,7 +83,7 @@ pub fn mmd(surface: &Surface<'_>, max_emissivity: f64, relation: &Mmd) -> Option
             return None;
         }
         let temperature_k = planck::brightness_temperature(surface.wavenumbers_cm1[band], own / e[band]);
-        found = Separated { temperature_k, emissivity: surface.emissivity_at(temperature_k) };
+        found = Separated::new(temperature_k, surface.emissivity_at(temperature_k));
     }
     Some(found)
 }

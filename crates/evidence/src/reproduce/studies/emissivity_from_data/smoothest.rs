@@ -7,16 +7,16 @@
 //! Sources: Borel, Int. Geosci. Remote Sens. Symp. 1998, 546 (ISSTES); Borel, Proc. SPIE 5425, 165 (2004) (ARTEMISS); as maximum
 //! likelihood of second differences with the noise of each.
 
-use super::nem::{Separated, Surface};
 use hadar::minimum::golden_section;
 use hadar::planck;
+use hadar_estimate::separation::{Separated, Surface};
 
 /// Steps between the temperatures that are looked at first, K.
 const STEP_K: f64 = 0.5;
 
 /// Temperature and emissivities where the latter are smoothest, between two temperatures (K).
 #[must_use]
-pub fn smoothest(surface: &Surface<'_>, range_k: [f64; 2]) -> Separated {
+pub(crate) fn smoothest(surface: &Surface<'_>, range_k: [f64; 2]) -> Separated {
     let count = ((range_k[1] - range_k[0]) / STEP_K).ceil().max(2.0) as usize;
     let at = |i: usize| range_k[0] + (range_k[1] - range_k[0]) * i as f64 / count as f64;
     let first = (0..=count).map(|i| (i, roughness(surface, at(i))));
@@ -25,7 +25,7 @@ pub fn smoothest(surface: &Surface<'_>, range_k: [f64; 2]) -> Separated {
     let found = golden_section::<std::convert::Infallible>(bracket, 30, |t| Ok(roughness(surface, t)));
     let [low, high] = found.unwrap_or(bracket);
     let temperature_k = 0.5 * (low + high);
-    Separated { temperature_k, emissivity: surface.emissivity_at(temperature_k) }
+    Separated::new(temperature_k, surface.emissivity_at(temperature_k))
 }
 
 /// Sum over the bands of the squares of second differences, in units of their noise.

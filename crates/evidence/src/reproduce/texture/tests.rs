@@ -1,6 +1,6 @@
 use super::*;
-use crate::cube::Shape;
-use crate::random::generator;
+use hadar::cube::Shape;
+use hadar::random::generator;
 use rand::RngExt;
 
 fn image(rows: usize, columns: usize, at: impl Fn(usize, usize) -> f64) -> MemoryCube<f64> {
@@ -187,4 +187,19 @@ fn what_cannot_be_measured_is_refused() {
     for range in [[1.0, 1.0], [2.0, 1.0], [0.0, f64::NAN], [f64::NEG_INFINITY, 0.0], [-1.7e308, 1.7e308]] {
         assert!(global_entropy(&fine, Some(range)).unwrap_err().to_string().starts_with("grey levels from"));
     }
+}
+
+#[test]
+fn small_images_by_hand() {
+    let image = |shape, samples| MemoryCube::new(shape, samples).unwrap();
+    let three = Window::new(1, 3).unwrap();
+    let row = Shape::new(1, 4, 1).unwrap();
+    let map = standard_deviation(&image(row, vec![1.0, 2.0, 3.0, 3.0]), three).unwrap();
+    assert_eq!((map.rows, map.columns), (0..1, 1..3));
+    assert!((map.values[0] - 1.0).abs() < 1e-15 && (map.values[1] - 3_f64.sqrt().recip()).abs() < 1e-15);
+    let map = local_entropy(&image(row, vec![5.0, 5.0, 5.0, 9.0]), three, None).unwrap();
+    assert_eq!(map.values[0], 0.0);
+    assert!((map.values[1] - (3_f64.log2() - 2.0 / 3.0)).abs() < 1e-15);
+    let square = image(Shape::new(2, 2, 1).unwrap(), vec![3.0, 8.0, 8.0, 3.0]);
+    assert_eq!(global_entropy(&square, None).unwrap(), 1.0);
 }

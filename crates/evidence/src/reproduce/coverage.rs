@@ -7,25 +7,24 @@
 //! The response of the filter-wheel camera is drawn from what is known of it beforehand, since that is part of its intervals: for one given
 //! response they hold more or less often, by the bias of its smoothness. A stream of the generator for each experiment.
 
-use super::response::Response;
-use super::spectrometer::Calibration;
-use super::twin::{FilterWheelTwin, SpectrometerTwin, normal};
 use hadar::error::Result;
 use hadar::parallel;
 use hadar::planck;
 use hadar::random::generator;
+use hadar_estimate::calibrate::response::Response;
+use hadar_estimate::calibrate::spectrometer::Calibration;
+use hadar_estimate::calibrate::twin::{FilterWheelTwin, SpectrometerTwin, normal};
 
 /// ± so many deviations are a 95 % interval.
 const REACH: f64 = 1.959_963_984_540_054;
 
 /// A coverage with its deviation.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct Coverage {
+pub(crate) struct Coverage {
     /// Share of the intervals that hold the truth.
-    pub share: f64,
+    pub(crate) share: f64,
     /// Its deviation by the number of experiments.
-    pub sigma: f64,
+    pub(crate) sigma: f64,
 }
 
 impl Coverage {
@@ -50,44 +49,43 @@ fn held(errors: impl Iterator<Item = (f64, f64)>) -> f64 {
 
 /// What is held in the experiments of a spectrometer.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct SpectrometerCoverage {
+pub(crate) struct SpectrometerCoverage {
     /// Of R.
-    pub response: Coverage,
+    pub(crate) response: Coverage,
     /// Of ξ.
-    pub offset: Coverage,
+    pub(crate) offset: Coverage,
     /// Of the radiance of a scene, noise of its own reading included.
-    pub radiance: Coverage,
+    pub(crate) radiance: Coverage,
     /// Of the emissivity of a surface.
-    pub emissivity: Coverage,
+    pub(crate) emissivity: Coverage,
     /// Of the surroundings of that surface.
-    pub surroundings: Coverage,
+    pub(crate) surroundings: Coverage,
 }
 
 /// A surface that a spectrometer is tried on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Experiment<'a> {
+pub(crate) struct Experiment<'a> {
     /// Temperatures of the blackbodies, K.
-    pub blackbodies_k: &'a [f64],
+    pub(crate) blackbodies_k: &'a [f64],
     /// Their deviations, K.
-    pub errors_k: &'a [f64],
+    pub(crate) errors_k: &'a [f64],
     /// Temperatures of the surface, K.
-    pub surface_k: &'a [f64],
+    pub(crate) surface_k: &'a [f64],
     /// Their deviations, K.
-    pub surface_errors_k: &'a [f64],
+    pub(crate) surface_errors_k: &'a [f64],
     /// Its emissivity, the same in all channels.
-    pub emissivity: f64,
+    pub(crate) emissivity: f64,
     /// Temperature of its surroundings, K.
-    pub surroundings_k: f64,
+    pub(crate) surroundings_k: f64,
     /// Temperature of a blackbody scene, K.
-    pub scene_k: f64,
+    pub(crate) scene_k: f64,
 }
 
 /// Coverage of everything that a spectrometer measures.
 ///
 /// # Errors
 /// Temperatures that calibrate nothing.
-pub fn spectrometer(
+pub(crate) fn spectrometer(
     twin: &SpectrometerTwin,
     of: Experiment<'_>,
     experiments: usize,
@@ -143,19 +141,18 @@ pub fn spectrometer(
 
 /// What is held in the experiments of a filter-wheel camera.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct FilterWheelCoverage {
+pub(crate) struct FilterWheelCoverage {
     /// Of the 30 values.
-    pub response: Coverage,
+    pub(crate) response: Coverage,
     /// Of the mean radiance of a blackbody scene behind each filter, noise of its own reading included.
-    pub radiance: Coverage,
+    pub(crate) radiance: Coverage,
 }
 
 /// Coverage of the response, drawn from what is known of it, and of radiances measured with it.
 ///
 /// # Errors
 /// Readings that cannot be used.
-pub fn filter_wheel(
+pub(crate) fn filter_wheel(
     twin: &FilterWheelTwin,
     sigma: f64,
     temperature_error_k: f64,

@@ -1,0 +1,150 @@
+//! What all kinds of files share: how a file is opened, checked, read, and written again.
+//!
+//! A type of a kind of file reads its root (`of_root`) and lays out its tables (`document`); [`file`] gives it the functions that follow.
+
+use super::keys::Table;
+use super::kind::Kind;
+use super::section::Section;
+use super::source::{LineStarts, Source};
+use super::written::Written;
+use hadar::error::{Error, Result};
+use hadar::instrument::figures::BLANK;
+use hadar::units::decimal_comma;
+use toml::de::DeTable;
+
+/// `from_file` and `from_toml` of a type that has `from_written`.
+macro_rules! from_file_and_text {
+    ($type:ident) => {
+        impl $type {
+            /// Reads a file. Relative paths in it start from its directory.
+            ///
+            /// # Errors
+            /// The first thing that is wrong, in one line with file, line and key: the file itself (missing, a
+            /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
+            /// unit or outside its range, or values that contradict each other.
+            pub fn from_file(path: &std::path::Path) -> hadar::error::Result<Self> {
+                Self::from_written(&$crate::Written::from_file(path)?)
+            }
+
+            /// Reads a text. `path` is the file it is from, which messages name and relative paths
+            /// start from; without it they start from the current directory.
+            ///
+            /// # Errors
+            /// As `from_file`, except those of the file itself.
+            pub fn from_toml(text: &str, path: Option<&std::path::Path>) -> hadar::error::Result<Self> {
+                Self::from_written(&$crate::Written::of(text, path))
+            }
+        }
+    };
+}
+
+/// The functions of a kind of file: `file!(Type, where.its.source, (kind, minimum, keys))`.
+macro_rules! file {
+    ($type:ident, $($source:ident).+, $kind:expr) => {
+        $crate::reader::from_file_and_text!($type);
+
+        impl $type {
+            /// Reads it with values in the place of its own.
+            ///
+            /// # Errors
+            /// As `from_file`, except those of the file itself.
+            pub fn from_written(written: &$crate::Written) -> hadar::error::Result<Self> {
+                let (mut read, source) = $crate::reader::open(written, $kind, Self::of_root)?;
+                read.$($source).+ = source;
+                Ok(read)
+            }
+
+            /// Where `key` stands (`target.material`, `environment[0].material`), to be put on an error with
+            /// [`hadar::Error::at`]. A key that was not written has the line of its table.
+            #[must_use]
+            pub fn place(&self, key: &str) -> hadar::error::Place {
+                self.$($source).+.place(key)
+            }
+
+            /// The file again as TOML, every default filled in; reading it gives the same question. What stays silent
+            /// has no value (a distance, an atmosphere, a camera) or one that others know (a preset's fields, the
+            /// library's materials). Paths of files are absolute, so that it may be put anywhere on the same machine.
+            #[must_use]
+            pub fn to_toml(&self) -> String {
+                $crate::entries::text(self.document($crate::paths::Paths { beside: None }), &self.$($source).+)
+            }
+
+            /// As `to_toml`, for a file in `directory` that may be moved along with its neighbours: paths below
+            /// `directory` are written relative to it, others absolute.
+            #[must_use]
+            pub fn to_toml_beside(&self, directory: &std::path::Path) -> String {
+                let absolute = std::path::absolute(directory).ok();
+                let paths = $crate::paths::Paths { beside: absolute.as_deref() };
+                $crate::entries::text(self.document(paths), &self.$($source).+)
+            }
+        }
+
+        /// The same keys as the TOML, quantities in the units used inside, with absolute paths.
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+                $crate::entries::entries(self.document($crate::paths::Paths { beside: None }), serializer)
+            }
+        }
+    };
+}
+
+pub(super) use {file, from_file_and_text};
+
+/// The command that answers a file, if there is one for its kind.
+///
+/// # Errors
+/// What is no TOML.
+pub fn command_for(written: &Written) -> Result<Option<&'static str>> {
+    Ok(Kind::command_for(&parse(&written.text, &written.source())?))
+}
+
+/// Reads a file that is of a kind, has its least in it and only its keys; and where it was read from.
+pub(super) fn open<T>(
+    written: &Written,
+    (kind, minimum, keys): (Kind, &str, &'static Table),
+    read: impl FnOnce(&Section<'_>) -> Result<T>,
+) -> Result<(T, Source)> {
+    let text = written.text.as_str();
+    let mut source = written.source();
+    if text.trim().is_empty() {
+        return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
+    }
+    let mut document = parse(text, &source)?;
+    source.note_lines(text, &document);
+    kind.check(&document, &source)?;
+    for setting in &written.settings {
+        setting.put(&mut document)?;
+        source.note_setting(setting);
+    }
+    let read = read(&Section::open(&document, "", &source, keys)?)?;
+    Ok((read, source))
+}
+
+/// The table behind the text, or the first thing that is not TOML.
+fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+    let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
+        return Ok(document.into_inner());
+    };
+    let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
+    let line = LineStarts::of(text).line(offset(first));
+    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
+        let error =
+            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    // `f_number = 1,3`: a list of nothing, and a number.
+    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
+    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    let error = Error::malformed(
+        format!("this is not TOML: {message}"),
+        match message.as_str() {
+            "duplicate key" => "write each key and each [table] once",
+            _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
+        },
+    );
+    Err(error.on_line(line).at(source.place("")))
+}
