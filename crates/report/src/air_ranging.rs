@@ -1,10 +1,9 @@
 //! A study of ranging by air as files: errors over distances and what each band tells, as tables and plots, with the answer as text.
 
 mod figures;
-mod text;
 
+pub use crate::words::air_ranging::text;
 pub use figures::{bias, error_over_distance, information, stereo};
-pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};

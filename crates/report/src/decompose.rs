@@ -4,11 +4,10 @@ mod equalise;
 mod figures;
 mod segmented;
 mod shown;
-mod text;
 mod vision;
 
+pub use crate::words::decompose::text;
 pub use equalise::{Clahe, Curves, Tiles};
-pub use text::text;
 use vision::Brush;
 pub use vision::{DARKEST, Vision, brightness, saturation};
 

@@ -1,9 +1,8 @@
 //! The files of `identify`: tables and plots of a target against a library, and of all against all.
 
 mod figures;
-mod text;
 
-pub use text::{check, text};
+pub use crate::words::identify::{check, text};
 
 use crate::bundle::Bundle;
 use crate::classes;

@@ -9,7 +9,6 @@ pub mod bundle;
 pub mod calibrate;
 pub mod cameras;
 pub mod classes;
-pub mod companion;
 pub mod cube_format;
 pub mod decompose;
 pub mod diff;
@@ -32,5 +31,6 @@ pub mod size;
 pub mod sweep;
 pub mod table;
 pub mod tables;
-pub mod text;
 pub mod words;
+
+pub use words::text;

@@ -1,9 +1,8 @@
 //! A library made out of a heat cube, as files: emissivities with their errors, the map of clusters, a scenario that uses it, pictures.
 
 mod figures;
-mod text;
 
-pub use text::text;
+pub use crate::words::library::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};

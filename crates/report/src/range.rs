@@ -2,11 +2,10 @@
 
 mod figures;
 mod maps;
-mod text;
 
+pub use crate::words::range::text;
 pub use figures::{bound_maps, derivative_errors, lines, matched_maps, picture_plot, views};
 pub use maps::MapFiles;
-pub use text::text;
 
 use self::maps::add_maps;
 

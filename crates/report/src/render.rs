@@ -1,10 +1,9 @@
 //! A rendered scene as files: the cube, its truth, what lights it, the scenario that takes it apart, pictures.
 
 mod figures;
-mod text;
 
+pub use crate::words::render::text;
 pub use figures::scene;
-pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::cube_format::CubeFormat;

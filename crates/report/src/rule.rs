@@ -2,30 +2,22 @@
 //!
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
-mod certificate;
-mod check;
-mod columns;
-mod measured;
 mod record;
-mod sources;
 mod stand_in;
-mod stop;
-mod text;
 
-pub use check::check;
+pub use crate::words::rule::{check, sources, stand_in, tests, text};
 pub use record::{agreement, parsed, record};
-pub use sources::{sources, tests};
-pub use stand_in::{stand_in, stand_in_bundle};
-pub use text::text;
+pub use stand_in::stand_in_bundle;
 
 use super::bundle::Bundle;
-use super::companion;
 use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
+use super::tables;
 use super::text::significant;
 use crate::words::Say;
+use crate::words::rule::{certificate, measure};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
@@ -70,7 +62,7 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
         .flat_map(|apart| &apart.companions)
         .collect();
     if !companions.is_empty() {
-        bundle.add_table("companion.csv", companion::table(companions))?;
+        bundle.add_table("companion.csv", tables::companions(companions))?;
     }
     bundle.add("inputs.csv", inputs(provenance).to_csv()?);
     bundle.add_warnings(&warnings(answer))?;
@@ -153,11 +145,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
                 }
                 Found::Measured(measured) => {
                     let reached = measured.cameras.get(index).and_then(|camera| camera.value);
-                    [
-                        measured::measure(measured.quantity).to_owned(),
-                        number(measured.demanded),
-                        optional(reached),
-                    ]
+                    [measure(measured.quantity).to_owned(), number(measured.demanded), optional(reached)]
                 }
             });
             let end = |of: &dyn Fn(&MarginUncertainty) -> f64| optional(line.uncertainty.map(of));

@@ -1,15 +1,14 @@
 //! The files of `simulate`: scenario, tables and plots.
 
 pub mod figures;
-mod text;
 pub mod thermometry;
 
-pub use text::text;
+pub use crate::words::simulate::text;
 
 use self::figures::SimulationCurves;
-use self::text::pair;
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
+use crate::words::simulate::pair;
 use hadar::error::Result;
 use hadar_study::{NoiseCurves, Simulation, Study};
 use std::path::Path;

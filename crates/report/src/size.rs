@@ -1,18 +1,16 @@
 //! The files of the main job: scenario, tables, the four plots of the limiting pair, and the trade-offs.
 
 pub mod figures;
-pub mod rows;
-mod text;
 mod trade_off;
 
-pub use text::text;
+pub use crate::words::size::{rows, text};
 
 use self::figures::{Collected, InformationMarks};
 use crate::bundle::Bundle;
+use crate::classes;
 use crate::figures::Plot;
 use crate::table::{Table, number, optional};
 use crate::tables;
-use crate::{classes, companion};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::policy::TradeOff;
@@ -43,7 +41,7 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
         bundle.add_table("sensitivity.csv", sensitivity(found))?;
     }
     if let Some(found) = &result.companion {
-        bundle.add_table("companion.csv", companion::table([found]))?;
+        bundle.add_table("companion.csv", tables::companions([found]))?;
     }
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&classes::pictures(&result.classes))?;

@@ -3,11 +3,12 @@
 mod figures;
 mod gathered;
 mod swept;
-mod text;
 
+pub use crate::words::sweep::text;
 pub use gathered::Gathered;
 pub use swept::Swept;
-pub use text::text;
+
+pub(crate) use figures::{Undrawn, none};
 
 use crate::bundle::Bundle;
 use crate::parquet::{self, Column};

@@ -2,7 +2,8 @@
 
 use super::table::{Table, number, optional};
 use crate::words::Say;
-use hadar_study::{PairResult, Warning};
+use hadar_study::companion::Condition;
+use hadar_study::{Companion, PairResult, Warning};
 
 /// All pairs as a table.
 #[must_use]
@@ -67,6 +68,35 @@ pub fn warnings(warnings: &[Warning]) -> Table {
     let mut table = Table::new(["code", "message"]);
     for warning in warnings {
         table.push(vec![warning.code().name().into(), warning.say()]);
+    }
+    table
+}
+
+/// The tables of any number of cameras as one: a row a value.
+pub(crate) fn companions<'a>(companions: impl IntoIterator<Item = &'a Companion>) -> Table {
+    let header = ["camera", "kind", "code", "task", "quantity", "value", "conditions", "caveat", "unknown"];
+    let mut table = Table::new(header);
+    for companion in companions {
+        for row in &companion.rows {
+            let conditions = row.conditions.iter().map(|(name, condition)| match condition {
+                Condition::Number(value) => format!("{name}={}", number(*value)),
+                Condition::Text(text) => format!("{name}={text}"),
+            });
+            let conditions = conditions.collect::<Vec<_>>().join("; ");
+            for (quantity, value) in row.named() {
+                table.push(vec![
+                    companion.camera.clone().unwrap_or_default(),
+                    row.measure.kind().code().into(),
+                    row.measure.code().into(),
+                    row.task.map_or("", |task| task.name()).into(),
+                    quantity.into(),
+                    optional(value),
+                    conditions.clone(),
+                    row.measure.caveat().code().into(),
+                    row.unknown().map_or_else(String::new, |unknown| unknown.say()),
+                ]);
+            }
+        }
     }
     table
 }

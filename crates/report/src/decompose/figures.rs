@@ -4,6 +4,7 @@ use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
+use crate::words::decompose::how;
 use hadar_study::decompose::{Block, Decomposed};
 
 /// The maps, of the pixels that are shown.
@@ -47,7 +48,7 @@ pub(super) fn maps(result: &Decomposed, shown: &Block, stride: usize) -> Plot {
         }
     };
     let figure = Pictures::new("What the photons tell", pictures)
-        .subtitle(format!("{}.{every}", super::text::how(result)))
+        .subtitle(format!("{}.{every}", how(result)))
         .no_value("nothing is told");
     Plot { name: "maps".into(), figure: figure.into(), table }
 }

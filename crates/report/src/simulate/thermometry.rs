@@ -1,18 +1,18 @@
 //! Thermometry against its bound: table, two plots and text.
 
 mod figures;
+pub(crate) mod rows;
 #[cfg(test)]
 mod tests;
-mod text;
 
+pub use crate::words::simulate::thermometry::text;
 pub use figures::{errors, rmse};
-pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
 use hadar_simulate::efficiency::Errors;
-use hadar_study::{Reader, Study, Thermometry, ThermometryRow};
+use hadar_study::{Reader, Study, Thermometry};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
@@ -26,11 +26,6 @@ pub fn bundle(study: &Study, result: &Thermometry, out: &Path) -> Result<Bundle>
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&[errors(result), rmse(result)])?;
     Ok(bundle)
-}
-
-/// The reader that stands for what a spectrum tells: lighting unknown where the scenario has it so.
-fn decisive(row: &ThermometryRow) -> &Reader {
-    row.lighting_unknown.as_ref().unwrap_or(&row.lighting_known)
 }
 
 /// Everything, a row for every true temperature.
@@ -103,11 +98,4 @@ fn reader_cells(reader: Option<&Reader>) -> Vec<String> {
         number(reader.at_edge),
         reader.unconverged.to_string(),
     ]
-}
-
-/// Rows by rising temperature.
-fn rising(result: &Thermometry) -> Vec<&ThermometryRow> {
-    let mut rows: Vec<&ThermometryRow> = result.rows.iter().collect();
-    rows.sort_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
-    rows
 }

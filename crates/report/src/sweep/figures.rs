@@ -40,26 +40,35 @@ enum Over<'a> {
     Two(&'a Input, &'a Input),
 }
 
+/// Why no picture of a sweep is drawn.
+pub(crate) enum Undrawn {
+    /// So many keys vary.
+    Keys(usize),
+    /// Some values of one key do not go with every value of the other.
+    NoGrid,
+    /// A key that takes a curve for each of so many values.
+    Curves { key: String, values: usize, most: usize },
+    /// Values without a place on an axis, of the one key or of both.
+    NoNumbers { keys: usize },
+}
+
 /// Over what pictures of a sweep can be drawn, or why there are none.
-fn over(swept: &Swept) -> Result<Over<'_>, String> {
+fn over(swept: &Swept) -> Result<Over<'_>, Undrawn> {
     let rows = swept.gathered.rows();
     let varied: Vec<&Input> = swept.gathered.inputs.iter().filter(|input| input.cells.len() > 1).collect();
     if varied.is_empty() || varied.len() > 2 {
-        return Err(format!("{} keys vary, and pictures are over one or two", varied.len()));
+        return Err(Undrawn::Keys(varied.len()));
     }
     let mut places = BTreeSet::new();
     let apart =
         (0..rows).all(|row| places.insert(varied.iter().map(|input| input.index(row)).collect::<Vec<_>>()));
     if !apart || varied.iter().map(|input| input.cells.len()).product::<usize>() != rows {
-        return Err(
-            "the cases are no grid, which has every value of one key with every value of the other once"
-                .into(),
-        );
+        return Err(Undrawn::NoGrid);
     }
     let is_number = |input: &&Input| input.cells.iter().all(|cell| cell.number().is_some());
     let few = |input: &Input| match input.cells.len() {
-        count if count > MOST_CURVES => {
-            Err(format!("`{}` has {count} values, and a picture {MOST_CURVES} curves at most", input.key))
+        values if values > MOST_CURVES => {
+            Err(Undrawn::Curves { key: input.key.clone(), values, most: MOST_CURVES })
         }
         _ => Ok(()),
     };
@@ -69,14 +78,14 @@ fn over(swept: &Swept) -> Result<Over<'_>, String> {
             (true, true) => Ok(Over::Two(x, y)),
             (true, false) => few(y).map(|()| Over::OneForEach(x, y)),
             (false, true) => few(x).map(|()| Over::OneForEach(y, x)),
-            (false, false) => Err("the values of neither key are numbers in one unit".into()),
+            (false, false) => Err(Undrawn::NoNumbers { keys: 2 }),
         },
-        _ => Err("the values of the key are no numbers in one unit".into()),
+        _ => Err(Undrawn::NoNumbers { keys: 1 }),
     }
 }
 
 /// Why a sweep of several rows has no pictures.
-pub(super) fn none(swept: &Swept) -> Option<String> {
+pub(crate) fn none(swept: &Swept) -> Option<Undrawn> {
     over(swept).err().filter(|_| swept.gathered.rows() > 1)
 }
 

@@ -1,5 +1,9 @@
 //! How well the distance can be read from the air, in a sentence.
 
+mod text;
+
+pub use text::text;
+
 use super::Say;
 use super::demand::error_of;
 use hadar::words::{length, significant};

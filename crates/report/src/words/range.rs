@@ -1,5 +1,9 @@
 //! How well depth can be measured, in a sentence.
 
+mod text;
+
+pub use text::text;
+
 use super::Say;
 use super::demand::error_of;
 use hadar::words::{self, significant};

@@ -1,5 +1,21 @@
 //! What comes of a rule, in sentences.
 
+pub(crate) mod certificate;
+mod check;
+mod columns;
+mod measured;
+mod sources;
+mod stand_in;
+mod stop;
+mod text;
+
+pub use check::check;
+pub(crate) use measured::measure;
+pub use sources::{sources, tests};
+pub use stand_in::stand_in;
+pub use text::text;
+pub(crate) use text::together;
+
 use super::Say;
 use super::probability::demanded;
 use hadar::ranging::depth::Demand;

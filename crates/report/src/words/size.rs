@@ -1,5 +1,10 @@
 //! The verdict on a camera in a sentence.
 
+pub mod rows;
+mod text;
+
+pub use text::text;
+
 use super::Say;
 use super::probability::{demanded, reliability};
 use super::shortfall::clauses;

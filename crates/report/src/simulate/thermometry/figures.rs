@@ -2,7 +2,7 @@
 
 use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
-use crate::simulate::thermometry::{decisive, rising};
+use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::table::Table;
 use crate::text::significant;
 use hadar_simulate::efficiency::Errors;

@@ -1,7 +1,6 @@
 //! A difference in words.
 
-use super::difference::{Changed, Curve, Difference, Moved};
-use super::side::plain;
+use crate::diff::{Changed, Curve, Difference, Moved, Warned, plain};
 use crate::text::significant;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -49,7 +48,7 @@ pub fn text(found: &Difference) -> String {
     }
     section(&mut out, "Figures", figures);
     section(&mut out, "Curves", found.curves.iter().map(curve).collect());
-    let warned = |sign: char| move |one: &super::Warned| format!("{sign} [{}] {}", one.code, one.message);
+    let warned = |sign: char| move |one: &Warned| format!("{sign} [{}] {}", one.code, one.message);
     let mut warnings: Vec<String> = found.warnings_came.iter().map(warned('+')).collect();
     warnings.extend(found.warnings_went.iter().map(warned('-')));
     warnings.extend(found.warnings_changed.iter().map(|code| format!("  [{code}] says something else")));

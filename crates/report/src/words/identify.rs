@@ -9,12 +9,10 @@ use self::bands::{bands, scaling};
 use self::exact::exact;
 use self::matrix::{apart, matrix};
 use self::terms::{camera, does_not_tell, no_limit};
-use crate::classes;
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
-use crate::words::Say;
-use crate::words::probability as words;
+use crate::words::{Say, classes, probability as words};
 use hadar_study::{Answers, Check, Identification, Study};
 use std::fmt::Write as _;
 

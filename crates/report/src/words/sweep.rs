@@ -1,7 +1,7 @@
 //! What is printed of a sweep.
 
-use super::figures;
-use super::swept::Swept;
+use super::Say;
+use crate::sweep::{Swept, Undrawn, none};
 use crate::text::significant;
 use hadar_study::sweep::Cell;
 use std::fmt::Write as _;
@@ -38,8 +38,8 @@ pub fn text(swept: &Swept) -> String {
     for (name, said) in lines {
         let _ = writeln!(text, "{name:width$}  {said}");
     }
-    if let Some(reason) = figures::none(swept) {
-        let _ = writeln!(text, "\nNo picture is drawn: {reason}.");
+    if let Some(reason) = none(swept) {
+        let _ = writeln!(text, "\nNo picture is drawn: {}.", reason.say());
     }
     if failed > 0 {
         text.push_str("\nRows that failed\n");
@@ -68,4 +68,21 @@ fn told(cells: &[Cell]) -> Option<String> {
         false => format!("{} to {}", significant(low, 4), significant(high, 4)),
     };
     Some(if none > 0 { format!("{range}; none in {none} rows") } else { range })
+}
+
+impl Say for Undrawn {
+    fn say(&self) -> String {
+        match self {
+            Self::Keys(keys) => format!("{keys} keys vary, and pictures are over one or two"),
+            Self::NoGrid => {
+                "the cases are no grid, which has every value of one key with every value of the other once"
+                    .into()
+            }
+            Self::Curves { key, values, most } => {
+                format!("`{key}` has {values} values, and a picture {most} curves at most")
+            }
+            Self::NoNumbers { keys: 2 } => "the values of neither key are numbers in one unit".into(),
+            Self::NoNumbers { .. } => "the values of the key are no numbers in one unit".into(),
+        }
+    }
 }

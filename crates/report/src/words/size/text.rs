@@ -6,7 +6,7 @@ use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::words::Say;
 use crate::words::probability::demanded_probability;
-use crate::{classes, companion};
+use crate::words::{classes, companion};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_study::{PairResult, Sizing, Study};

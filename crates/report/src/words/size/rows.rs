@@ -160,7 +160,7 @@ fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> 
 }
 
 /// The alternative that is hardest to tell apart.
-pub(super) fn limiting(result: &Sizing) -> Option<&PairResult> {
+pub(crate) fn limiting(result: &Sizing) -> Option<&PairResult> {
     result.pairs.iter().find(|pair| pair.alternative == result.limiting)
 }
 

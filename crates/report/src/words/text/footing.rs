@@ -13,6 +13,9 @@ use std::fmt::Write as _;
 pub(crate) const ASSUMPTIONS: &str = "Assumptions";
 pub(crate) const WARNINGS: &str = "Warnings";
 
+/// The same of a page.
+pub(crate) const RESTS_ON: &str = "What this rests on";
+
 /// What the file of a cube was read as, on a line.
 pub(crate) fn read_as(found: &Found) -> String {
     format!("Cube: {found}\n\n")

@@ -1,5 +1,7 @@
 //! What a simulation found, as text.
 
+pub(crate) mod thermometry;
+
 use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
 use crate::text::numbers::significant;
@@ -223,7 +225,7 @@ fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
     }
 }
 
-pub(super) fn pair(result: &Simulation) -> String {
+pub(crate) fn pair(result: &Simulation) -> String {
     let classes = result.points.first().map(|point| point.classes.as_slice()).unwrap_or_default();
     match classes {
         [target, other] => format!("{} from {}", target.material, other.material),

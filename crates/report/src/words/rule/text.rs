@@ -1,16 +1,16 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use super::columns::columns;
+use super::in_words_of_kind;
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
-use crate::companion;
-use crate::size::rows::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use crate::words::Say;
+use crate::words::companion;
 use crate::words::probability::{demanded, reliability};
-use crate::words::rule::in_words_of_kind;
 use crate::words::shortfall::in_words;
+use crate::words::size::rows::in_unit;
 use crate::words::warnings::say_the_same;
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};

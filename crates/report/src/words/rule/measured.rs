@@ -57,7 +57,7 @@ pub(super) fn measured_meets(camera: &MeasuredVerdict) -> String {
 }
 
 /// A quantity with its unit, as a head of a column.
-pub(super) const fn measure(quantity: Measure) -> &'static str {
+pub(crate) const fn measure(quantity: Measure) -> &'static str {
     match quantity {
         Measure::Pixels => "pixels",
         Measure::TemperatureErrorK => "error, K",

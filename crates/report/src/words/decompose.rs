@@ -1,5 +1,7 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
+mod segmented;
+
 use crate::text::footing::{read_as, warnings};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
@@ -18,7 +20,7 @@ pub fn text(result: &Decomposed) -> String {
     let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
-        out.push_str(&super::segmented::text(segmentation));
+        out.push_str(&segmented::text(segmentation));
     }
     out.push_str(&flags(result));
     if let Some(truth) = &result.truth {
@@ -197,7 +199,7 @@ fn against(truth: &TruthFound, result: &Decomposed) -> String {
 }
 
 /// How pixels are decomposed, in a few words.
-pub(super) fn how(result: &Decomposed) -> &'static str {
+pub(crate) fn how(result: &Decomposed) -> &'static str {
     match (result.scenario.spatial, result.method) {
         (Some(SpatialPrior::Potts { .. }), _) => {
             "Maximum posterior of every pixel with its neighbours (Potts prior)"

@@ -1,5 +1,14 @@
 //! A camera with its figures, what follows from them, and where they are from.
 
+mod compare;
+mod list;
+mod rows;
+
+pub use compare::comparison;
+pub(crate) use compare::{caveats, comparison_sentence};
+pub use list::list;
+pub(crate) use rows::{alone, in_scene};
+
 use crate::cameras::Sheet;
 use crate::text::numbers::{celsius, quantity, significant};
 use hadar::instrument::equivalents::blackbody_microflick;
@@ -156,7 +165,7 @@ fn full_bands(figures: &CameraSpec) -> String {
 }
 
 /// The noise as it is stated, with its conditions.
-pub(crate) fn noise(preset: &Preset) -> String {
+fn noise(preset: &Preset) -> String {
     let bandwidth = |hz: Option<f64>| {
         hz.map_or_else(|| ", bandwidth 1/(2 x exposure)".into(), |hz| format!(" in {}", quantity(hz, "Hz")))
     };

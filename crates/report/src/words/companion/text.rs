@@ -1,9 +1,8 @@
-//! A companion table as text and as CSV: what sizing practice says of a camera, beside what is proved.
+//! A companion table in words: what sizing practice says of a camera, beside what is proved.
 //!
 //! Ranges have two digits, for Johnson's cycles are known to a quarter; MRTDs are rounded to what ASTM E1213 calls significant. The
 //! table has every digit.
 
-use crate::table::{Table, number, optional};
 use crate::text::numbers::significant;
 use crate::words::Say;
 use crate::words::probability::probability;
@@ -28,19 +27,7 @@ const LINES: [(Measure, &str); 9] = [
 ];
 
 /// The table as text: a line a measure, the label of its kind before the first of each, then what must be known of them.
-///
-/// ```
-/// use hadar_scenario::Units;
-/// use hadar_study::companion::{Companion, Given};
-/// let bands = hadar::spectrum::Bands::uniform(800.0, 1200.0, 10.0)?;
-/// let camera = hadar::instrument::presets::get("flir-boson-640-14mm").ok();
-/// let given = Given { camera: camera.as_ref(), bands: &bands, size_m: Some(0.5), distance_m: Some(40.0), told: None };
-/// let text = hadar_report::companion::text(&Companion::of(&given)?, Units::default());
-/// assert!(text.contains("rule of thumb   pixels across it"));
-/// # Ok::<(), hadar::Error>(())
-/// ```
-#[must_use]
-pub fn text(companion: &Companion, units: Units) -> String {
+pub(crate) fn text(companion: &Companion, units: Units) -> String {
     let mut out = String::from("What sizing practice says beside the bound");
     match (companion.size_m, companion.distance_m) {
         (Some(size), Some(distance)) => {
@@ -152,39 +139,10 @@ fn resolvable(kelvin: f64) -> String {
     }
 }
 
-/// The tables of any number of cameras as one: a row a value.
-#[must_use]
-pub fn table<'a>(companions: impl IntoIterator<Item = &'a Companion>) -> Table {
-    let header = ["camera", "kind", "code", "task", "quantity", "value", "conditions", "caveat", "unknown"];
-    let mut table = Table::new(header);
-    for companion in companions {
-        for row in &companion.rows {
-            let conditions = row.conditions.iter().map(|(name, condition)| match condition {
-                Condition::Number(value) => format!("{name}={}", number(*value)),
-                Condition::Text(text) => format!("{name}={text}"),
-            });
-            let conditions = conditions.collect::<Vec<_>>().join("; ");
-            for (quantity, value) in row.named() {
-                table.push(vec![
-                    companion.camera.clone().unwrap_or_default(),
-                    row.measure.kind().code().into(),
-                    row.measure.code().into(),
-                    row.task.map_or("", |task| task.name()).into(),
-                    quantity.into(),
-                    optional(value),
-                    conditions.clone(),
-                    row.measure.caveat().code().into(),
-                    row.unknown().map_or_else(String::new, |unknown| unknown.say()),
-                ]);
-            }
-        }
-    }
-    table
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tables::companions;
     use hadar::instrument::{Camera, presets};
     use hadar::spectrum::Bands;
     use hadar_study::companion::{Given, Told};
@@ -246,7 +204,7 @@ mod tests {
     fn the_table_has_a_row_a_value_and_every_camera() {
         let camera = camera();
         let both = [companion(Some(&camera), 30.0), companion(None, 30.0)];
-        let table = table(&both);
+        let table = companions(&both);
         let rows = table.rows();
         // 2 of pixels, 4 + 3 of ranges, NETD, 4 + 4 of observers, 2 + 2 of bounds.
         assert_eq!(rows.len(), 2 * 22);

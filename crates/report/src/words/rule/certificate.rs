@@ -4,16 +4,17 @@ use super::sources::dates;
 use super::stop::decisions;
 use super::{measured, text};
 use crate::manifest::{Provenance, VERSION};
-use crate::text::footing::{gaussian, of_scene};
+use crate::text::footing::{RESTS_ON, gaussian, of_scene};
 use crate::text::significant;
 use crate::words::Say;
+use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use hadar_scenario::Units;
 use hadar_study::{ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
 use std::fmt::Write as _;
 
 /// The page.
-pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
+pub(crate) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
     let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
     let mut out = format!("# {}\n\n", title(answer));
     for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
@@ -47,7 +48,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
         }
         budgets(clause, &mut out);
     }
-    out.push_str("## What this rests on\n\n");
+    out.push_str(&format!("## {RESTS_ON}\n\n"));
     if let Some(study) = study.study() {
         let footing = of_scene(study, gaussian(study));
         footing.lines().skip(1).for_each(|line| {
@@ -74,17 +75,14 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
          `sha256sum` gives the hash of a file; of what is built in the program gives it.\n\n| input | SHA-256 |\n|---|---|\n",
     );
     for input in &provenance.inputs {
-        let hash = input
-            .sha256
-            .as_deref()
-            .map_or_else(|| "can be read only once".into(), |hash| format!("`{hash}`"));
+        let hash = input.sha256.as_deref().map_or_else(|| READ_ONCE.into(), |hash| format!("`{hash}`"));
         let _ = writeln!(out, "| {} | {hash} |", cell(&input.path));
     }
     out
 }
 
 /// What it is called.
-pub(super) fn title(answer: &RuleAnswer) -> String {
+pub(crate) fn title(answer: &RuleAnswer) -> String {
     let about = &answer.rule.about;
     let title = about.name.clone().or(answer.rule.scenario.title.clone());
     title.unwrap_or_else(|| "Which cameras meet the rule".into())

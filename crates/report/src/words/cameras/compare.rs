@@ -1,9 +1,11 @@
 //! Two cameras side by side: the answer, the numbers, what they rest on.
 
-use crate::cameras::text::noise;
-use crate::cameras::{Row, Sheet, SideBySide};
+use super::noise;
+use super::rows::{Row, alone, in_scene};
+use crate::cameras::{Sheet, SideBySide};
+use crate::text::footing::RESTS_ON;
 use crate::text::numbers::significant;
-use hadar::instrument::Comparison;
+use hadar::instrument::{Comparison, Readout};
 use std::fmt::Write as _;
 
 /// Relative difference below which two figures are the same.
@@ -11,7 +13,7 @@ const SAME: f64 = 5e-4;
 
 /// Which one collects more photons, which has less noise, and what that means for the distance d.
 #[must_use]
-pub fn comparison_sentence(both: &SideBySide) -> String {
+pub(crate) fn comparison_sentence(both: &SideBySide) -> String {
     let (a, b) = (both.a.preset.name.as_str(), both.b.preset.name.as_str());
     if a == b {
         return format!("{a} is compared with itself: all ratios are 1.");
@@ -84,7 +86,7 @@ fn incomplete(a: &Sheet, b: &Sheet) -> String {
 #[must_use]
 pub fn comparison(both: &SideBySide) -> String {
     let (a, b) = (&both.a.preset, &both.b.preset);
-    let (figures, scene) = (both.figures(), both.in_scene());
+    let (figures, scene) = (alone(both), in_scene(both));
     let cells = |row: &Row| row.values.map(|value| value.map_or_else(|| "-".to_owned(), row.shown));
     let widest = figures.iter().chain(&scene).flat_map(cells).map(|cell| cell.len()).max().unwrap_or(0);
     let width = widest.max(a.name.len()).max(b.name.len());
@@ -115,9 +117,47 @@ pub fn comparison(both: &SideBySide) -> String {
             out += &line("d in the time of the slower one", ["", ""], &times(ratios.distance_in_same_time));
         }
     }
-    out.push_str("\nWhat this rests on\n");
-    for caveat in both.caveats() {
+    let _ = writeln!(out, "\n{RESTS_ON}");
+    for caveat in caveats(both) {
         let _ = writeln!(out, "  - {caveat}");
     }
     out
+}
+
+/// What the comparison rests on.
+#[must_use]
+pub(crate) fn caveats(both: &SideBySide) -> Vec<String> {
+    let mut all = Vec::new();
+    for sheet in [&both.a, &both.b] {
+        let name = &sheet.preset.name;
+        for assumed in sheet.worked.iter().flat_map(|worked| &worked.camera.assumed) {
+            all.push(format!("{name}: {assumed}"));
+        }
+        if sheet.worked.is_none() {
+            let keys = &sheet.missing.0;
+            all.push(format!("{name}: not stated, to be given in a scenario: {}", keys.join(", ")));
+        }
+        let figures = &sheet.preset.figures;
+        match (figures.spectral_bands, figures.readout) {
+            (Some(1), None | Some(Readout::Sequential)) => all.push(format!(
+                "{name} has one band of its own: a spectrum takes filters, one after the other, here without loss"
+            )),
+            (Some(1), Some(readout)) => all.push(format!(
+                "{name} has one band of its own and is modelled as if it read a whole spectrum, {}",
+                readout.name()
+            )),
+            _ => {}
+        }
+        if both.b.preset.name == both.a.preset.name {
+            break;
+        }
+    }
+    if both.comparison.is_some() {
+        all.push(
+            "d is for spectra that differ by the same small share in every band and fill a pixel; pixels, and what they \
+             see at a distance, are not of the same size"
+                .into(),
+        );
+    }
+    all
 }

@@ -1,6 +1,6 @@
 //! Thermometry as text for people.
 
-use crate::simulate::thermometry::{decisive, rising};
+use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::text::significant;
 use crate::words::Say;
 use hadar::fisher::Nuisance;

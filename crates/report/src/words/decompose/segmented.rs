@@ -1,0 +1,96 @@
+//! A segmented cube in words: categories and objects.
+
+use hadar::words::{share, significant, whole};
+use hadar_estimate::segmentation::{Agreement, Rule};
+use hadar_study::decompose::Segmented;
+use std::fmt::Write as _;
+
+/// 0 degC, K.
+const FREEZING_K: f64 = 273.15;
+/// Objects that are listed.
+const LISTED: usize = 12;
+
+/// Categories and objects, in words.
+pub(super) fn text(found: &Segmented) -> String {
+    let width = found.categories.iter().map(|row| row.category.chars().count()).max().unwrap_or(0).max(8);
+    let mut out =
+        format!("Categories\n  {:width$}  {:>9}  {:>9}  {:>7}\n", "", "pixels", "decided", "objects");
+    for row in &found.categories {
+        let _ = writeln!(
+            out,
+            "  {:width$}  {:>9}  {:>9}  {:>7}",
+            row.category,
+            whole(row.pixels as u64),
+            whole(row.decided as u64),
+            row.objects
+        );
+    }
+    if found.none > 0 {
+        let _ = writeln!(out, "  {:width$}  {:>9}", "none", whole(found.none as u64));
+    }
+    let _ = writeln!(
+        out,
+        "\nObjects of {} pixels or more{}\n  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {:>14}  {:>10}",
+        found.smallest_object,
+        if found.objects.is_empty() { ": none" } else { "" },
+        "",
+        "pixels",
+        "decided",
+        "rows",
+        "columns",
+        "median (degC)",
+        "sigma (K)"
+    );
+    let span = |[first, after]: [usize; 2]| format!("{first} to {}", after - 1);
+    for row in found.objects.iter().take(LISTED) {
+        let celsius = match row.temperature_median_k {
+            k if k.is_finite() => format!("{:.1}", k - FREEZING_K),
+            _ => "-".to_owned(),
+        };
+        let sigma = match row.temperature_sigma_median_k {
+            k if k.is_finite() => significant(k, 2),
+            _ => "-".to_owned(),
+        };
+        let guessed = if 2 * row.decided < row.pixels { "  undecided" } else { "" };
+        let _ = writeln!(
+            out,
+            "  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {celsius:>14}  {sigma:>10}{guessed}",
+            row.category,
+            whole(row.pixels as u64),
+            whole(row.decided as u64),
+            span(row.rows),
+            span(row.columns)
+        );
+    }
+    if let Some(more) = found.objects.len().checked_sub(LISTED).filter(|more| *more > 0) {
+        let _ = writeln!(out, "  and {more} more: objects.csv");
+    }
+    let said = |agreement: &Agreement| match (agreement.mean_iou, agreement.right) {
+        (Some(iou), Some(right)) => {
+            format!("mIoU {}, {} of the pixels right", significant(iou, 3), share(right))
+        }
+        (None, Some(right)) => format!("no pixel is of a category or was given one, {} right", share(right)),
+        _ => "the truth of no pixel is known".to_owned(),
+    };
+    if let Some(agreement) = &found.agreement {
+        let _ = writeln!(out, "  against what is there: {}", said(agreement));
+    }
+    if let Some(agreement) = &found.agreement_by_brightness {
+        let _ = writeln!(
+            out,
+            "  the most that the brightness of a pixel in all bands together could say, laid out with what is there: {}",
+            said(agreement)
+        );
+    }
+    let rule = match found.rule {
+        Rule::Raster => "the neighbour before says it (Algorithm 4 of the paper)",
+        Rule::Regions => "what encloses its region, or the outside",
+    };
+    let _ = writeln!(
+        out,
+        "  decided: one material left, of this category; objects may join where they touch, and what is not in the library may be taken for what is\n  \
+         sigma: of one pixel, its material certain; no category: no material, or none that fits\n  a material in several categories: {rule}{}\n",
+        if found.smoothing { "; then the commonest of 5 x 5 pixels" } else { "" }
+    );
+    out
+}
