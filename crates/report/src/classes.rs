@@ -4,6 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Figure, Matrix};
 use crate::table::{Table, number, optional};
 use crate::text::significant;
+use crate::words::classes::LIGHTEST;
 use hadar_study::ClassAnswer;
 
 /// Every pair with its distance, or what is proved of it.
@@ -69,9 +70,7 @@ fn picture(answer: &ClassAnswer, place: Option<usize>) -> Plot {
         (Axis::log(axis).range(least, if most > 1.01 * least { most } else { 2.0 * least }), values),
     );
     if beyond {
-        figure = figure.subtitle(
-            "The lightest are proved to be at least as far as is drawn; they decide nothing.".to_owned(),
-        );
+        figure = figure.subtitle(LIGHTEST);
     }
     if let Some(required) = answer.required {
         let label = format!("not told apart: d below {}", significant(required, 3));

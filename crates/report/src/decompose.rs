@@ -3,7 +3,6 @@
 mod equalise;
 mod figures;
 mod segmented;
-mod shown;
 mod vision;
 
 pub use crate::words::decompose::text;
@@ -12,6 +11,7 @@ use vision::Brush;
 pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
+use crate::shown::Shown;
 use crate::table::{Table, number};
 use hadar::error::{Error, Result};
 use hadar_formats::cube::npy_map;
@@ -47,13 +47,13 @@ pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bu
             }
         }
     }
-    let stride = shown::stride(result.shape);
-    let pixels = result.kept.every(stride, result.shape)?;
+    let shown = Shown::of(result.shape);
+    let pixels = result.kept.every(shown.stride, result.shape)?;
     if let Some(found) = &result.segmentation {
         bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
         bundle.add_table("categories.csv", segmented::categories(found))?;
         bundle.add_table("objects.csv", segmented::objects(found))?;
-        bundle.add_plots(&[segmented::plot(result, found, &pixels, stride)])?;
+        bundle.add_plots(&[segmented::plot(found, &pixels, shown)])?;
     }
     if let Some(of_sky) = &result.vision.distilled {
         bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
@@ -73,7 +73,7 @@ pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bu
             bundle.add_file(IMAGE, path);
         }
     }
-    bundle.add_plots(&[vision::plot(&brush, &pixels, stride), figures::maps(result, &pixels, stride)])?;
+    bundle.add_plots(&[vision::plot(&brush, &pixels, shown), figures::maps(result, &pixels, shown)])?;
     Ok(bundle)
 }
 

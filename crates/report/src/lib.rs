@@ -26,6 +26,7 @@ pub mod range;
 pub mod render;
 pub mod rule;
 pub mod several;
+mod shown;
 pub mod simulate;
 pub mod size;
 pub mod sweep;

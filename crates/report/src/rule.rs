@@ -15,9 +15,8 @@ use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
 use super::tables;
-use super::text::significant;
 use crate::words::Say;
-use crate::words::rule::{certificate, measure};
+use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
@@ -266,24 +265,13 @@ fn margins(answer: &RuleAnswer) -> Plot {
         };
         values = values.intervals(end(0), end(1));
     }
-    let title = answer.rule.about.name.clone().or(answer.rule.scenario.title.clone());
-    let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
     let (axis, subtitle) = match only {
-        Some(only) => (
-            "margin: statistical distance over that demanded",
-            format!(
-                "Least over the envelope; demanded is d = {}. Full symbols meet the rule; a camera may have signal enough and \
-                 still fail by its image.",
-                significant(only.requirement.distance, 3)
-            ),
-        ),
-        None => (
-            "margin: what is there over what is demanded",
-            "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails."
-                .into(),
-        ),
+        Some(only) => {
+            ("margin: statistical distance over that demanded", one_clause(only.requirement.distance))
+        }
+        None => ("margin: what is there over what is demanded", ALL_CLAUSES.into()),
     };
-    let figure = NamedValues::new(title, names, Axis::log(axis))
+    let figure = NamedValues::new(certificate::title(answer), names, Axis::log(axis))
         .subtitle(subtitle)
         .series(values)
         .threshold(1.0, "demanded")

@@ -3,6 +3,7 @@
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::significant;
+use crate::words::several::unanswered;
 use hadar::error::Result;
 use hadar_study::sweep::Question;
 use serde::Serialize;
@@ -147,7 +148,7 @@ pub fn text(question: Question, rows: &[Row]) -> String {
     }
     let failed = rows.iter().filter(|row| row.answer.is_none()).count();
     if failed > 0 {
-        let _ = writeln!(out, "\n{failed} of {} scenarios without an answer.", rows.len());
+        let _ = writeln!(out, "\n{}", unanswered(failed, rows.len()));
     }
     out
 }

@@ -4,6 +4,7 @@ use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
+use crate::words::air_ranging::{one_reading, window, without_sky};
 use hadar::words::length;
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 
@@ -13,14 +14,6 @@ fn distance() -> Axis {
 
 fn of(curve: &[AirPoint], what: impl Fn(&AirPoint) -> Option<f64>) -> Vec<f64> {
     curve.iter().map(|point| what(point).unwrap_or(f64::NAN)).collect()
-}
-
-fn subtitle(result: &AirRanging) -> String {
-    let unknown = match result.sight.unknown.is_empty() {
-        true => "nothing unknown besides".to_owned(),
-        false => format!("unknown besides: {}", result.sight.unknown.join(", ")),
-    };
-    format!("{}, {} bands, one pixel, one reading; {unknown}.", result.camera, result.bands.len())
 }
 
 /// The least error over distances, with less unknown, and estimates beside it.
@@ -63,7 +56,7 @@ pub fn error_over_distance(result: &AirRanging) -> Plot {
         distance(),
         Axis::log("error of the distance (m)"),
     )
-    .subtitle(subtitle(result));
+    .subtitle(one_reading(result));
     for (label, _, style, colour, values) in columns {
         if values.iter().any(|value| value.is_finite()) {
             figure = figure.series(Series::line(label, x.clone(), values).style(style).colour(colour));
@@ -113,11 +106,7 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
         distance(),
         Axis::log("error of the distance (m)"),
     )
-    .subtitle(format!(
-        "Distance of {} from counts without noise, by a model that takes all of its light for its own emission. Size of the error; its sign \
-         is in the table.",
-        result.target
-    ))
+    .subtitle(without_sky(&result.target))
     .series(Series::line("off, without sky", x.clone(), own).style(Style::Marked).colour(1))
     .series(Series::line("bound, with sky", x.clone(), bound).colour(0))
     .series(Series::line("the distance itself", x.clone(), x.clone()).style(Style::Dotted).colour(6));
@@ -170,7 +159,7 @@ pub fn information(result: &AirRanging) -> Plot {
         wavenumber_axis(&x),
         Axis::linear("share of the information (%)"),
     )
-    .subtitle(subtitle(result))
+    .subtitle(one_reading(result))
     .series(
         Series::line(label("all else known", result.at.sigma_others_known_m), x.clone(), known)
             .style(Style::Dashed)
@@ -200,14 +189,7 @@ pub fn stereo(result: &AirRanging) -> Option<Plot> {
         distance(),
         Axis::log("error of the distance (m)"),
     )
-    .subtitle(format!(
-        "Window of {} × {} pixels of {}. Stereo: baseline {} m, texture {} % from pixel to pixel.",
-        spec.window[0],
-        spec.window[1],
-        result.target,
-        significant(spec.baseline_m, 2),
-        significant(100.0 * spec.texture, 2)
-    ))
+    .subtitle(window(&spec, &result.target))
     .series(Series::line("air", x.clone(), air).colour(0))
     .series(Series::line("stereo", x, stereo).style(Style::Dashed).colour(1));
     if let Some(crossing) = result.stereo_crossing_m {

@@ -7,8 +7,8 @@ use crate::cube_format::CubeFormat;
 use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, LineFigure, Panel, Series, Style};
 use crate::table::{Table, number};
+use crate::words::calibrate::blackbody::in_the_middle;
 use hadar::error::Result;
-use hadar::words::significant;
 use hadar_study::calibrate::{BlackbodyFound, ChannelRow};
 use std::path::Path;
 
@@ -106,10 +106,7 @@ fn figure(result: &BlackbodyFound) -> Plot {
         wavenumber_axis(&x),
         Axis::linear("response (peak: 1)"),
     )
-    .subtitle(format!(
-        "Errors of a radiance as temperature, at {} K in the middle of the blackbodies.",
-        significant(result.middle_k, 4)
-    ))
+    .subtitle(in_the_middle(result))
     .series(Series::line("response", x.clone(), of(&|row| row.response / peak)).colour(0))
     .lower(
         Panel::new(Axis::log("error (mK)"))

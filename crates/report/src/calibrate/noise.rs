@@ -6,9 +6,8 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
 use crate::table::{Table, number};
-use crate::words::calibrate::noise::camera;
+use crate::words::calibrate::noise::{camera, each_point};
 use hadar::error::Result;
-use hadar::words::significant;
 use hadar_estimate::calibrate::Line;
 use hadar_study::calibrate::NoiseFound;
 use std::path::Path;
@@ -110,11 +109,7 @@ fn transfer(result: &NoiseFound) -> Plot {
         Axis::linear("mean (unit of the cube)"),
         Axis::linear("variance (unit of the cube squared)"),
     )
-    .subtitle(format!(
-        "Each point: samples of nearly one mean in one band; line: all bands together, one photon = {} unit(s), electronic noise {} electrons.",
-        significant(common.per_photon, 3),
-        significant(common.noise_electrons(), 3)
-    ));
+    .subtitle(each_point(common));
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
     for band in &shown {
         let bins = &bands[*band].bins;

@@ -4,8 +4,10 @@ pub use crate::words::calibrate::response::text;
 
 use crate::bundle::Bundle;
 use crate::figures::{Plot, wavenumber_axis};
-use crate::plot::{Axis, Band, LineFigure, Picture, Pictures, Series, Style};
+use crate::plot::{Axis, Band, LineFigure, Pictures, Series, Style};
+use crate::shown::Shown;
 use crate::table::{Table, number, optional};
+use crate::words::calibrate::response::SHADED;
 use hadar::error::Result;
 use hadar_formats::cube::{npy_map, write_npy_to};
 use hadar_study::calibrate::{ResponseFound, ResponseRow};
@@ -113,7 +115,7 @@ fn figure(result: &ResponseFound) -> Plot {
         wavenumber_axis(&x),
         Axis::linear("response (peak: 1)"),
     )
-    .subtitle("Shaded: 95 %, of the readings together with what is known beforehand.")
+    .subtitle(SHADED)
     .band(Band::new("95 %", x.clone(), low, high).colour(1))
     .series(Series::line("known beforehand", x.clone(), typical).style(Style::Dashed).colour(6))
     .series(Series::line("estimated", x, values).style(Style::Marked).colour(1));
@@ -121,20 +123,9 @@ fn figure(result: &ResponseFound) -> Plot {
 }
 
 fn vignette(result: &ResponseFound, eta: &[f64]) -> Plot {
-    let [rows, columns] = result.size;
-    let stride = rows.max(columns).div_ceil(WIDEST);
-    let mut table = Table::new(["row", "column", "eta"]);
-    let mut shown = Vec::new();
-    for row in (0..rows).step_by(stride) {
-        for column in (0..columns).step_by(stride) {
-            let value = eta[row * columns + column];
-            table.push(vec![row.to_string(), column.to_string(), number(value)]);
-            shown.push(value);
-        }
-    }
-    let figure = Pictures::new(
-        "Relative transmittance of the filter wheel",
-        vec![Picture::new("η", Axis::linear("η (1 at the centre)"), columns.div_ceil(stride), shown)],
-    );
+    let shown = Shown::within(result.size, WIDEST);
+    let axis = Axis::linear("η (1 at the centre)");
+    let (table, pictures) = shown.layers(vec![("eta", "η", axis, shown.values(|at| eta[at]))]);
+    let figure = Pictures::new("Relative transmittance of the filter wheel", pictures);
     Plot { name: "eta".into(), figure: figure.into(), table }
 }

@@ -7,6 +7,7 @@ use crate::cube_format::CubeFormat;
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
+use crate::words::calibrate::stripes::of_band;
 use hadar::error::Result;
 use hadar_estimate::calibrate::Why;
 use hadar_formats::cube::npy_map;
@@ -123,10 +124,6 @@ fn before_and_after(result: &StripesFound) -> Plot {
     for ((row, column), (before, after)) in shown.iter().zip(before.iter().zip(&after)) {
         table.push(vec![row.to_string(), column.to_string(), number(*before), number(*after)]);
     }
-    let part = match (high, wide) == (rows, columns) {
-        true => String::new(),
-        false => format!(" The middle {high} × {wide} pixels of {rows} × {columns}."),
-    };
     let figure = Pictures::new(
         "A cube and its stripes",
         vec![
@@ -135,10 +132,7 @@ fn before_and_after(result: &StripesFound) -> Plot {
             Picture::new("taken out", Axis::linear("sample"), wide, taken),
         ],
     )
-    .subtitle(format!(
-        "Band {} (counted from 0), that of the most stripes, in the unit of the cube.{part}",
-        result.shown_band
-    ))
+    .subtitle(of_band(result.shown_band, [high, wide], [rows, columns]))
     .no_value("no sample");
     Plot { name: "before_and_after".into(), figure: figure.into(), table }
 }

@@ -1,11 +1,13 @@
 //! A segmented cube: categories and objects in tables and a picture.
 
-use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, categorical};
+use crate::shown::Shown;
 use crate::table::{Table, number};
+use crate::words::decompose::SEGMENTED;
+use crate::words::pictures::NOTHING_TOLD;
 use hadar_estimate::segmentation::Agreement;
-use hadar_study::decompose::{Block, Decomposed, Segmented};
+use hadar_study::decompose::{Block, Segmented};
 
 /// The colour of no category.
 const NONE: (u8, u8, u8) = (190, 190, 190);
@@ -57,23 +59,23 @@ pub(super) fn objects(found: &Segmented) -> Table {
     table
 }
 
-/// The map of categories beside the thermal image, of the pixels that are shown: every `stride`th row and column.
-pub(super) fn plot(result: &Decomposed, found: &Segmented, shown: &Block, stride: usize) -> Plot {
-    let (places, wide) = places(result.shape, stride);
+/// The map of categories beside the thermal image, of the pixels that are shown.
+pub(super) fn plot(found: &Segmented, pixels: &Block, shown: Shown) -> Plot {
+    let (places, wide) = (shown.places(), shown.wide());
     let colour = |category: u8| match usize::from(category) {
         place if place < found.categories.len() => categorical(place),
         _ => NONE,
     };
     let of = |at: &usize| found.map.get(*at).copied().unwrap_or(u8::MAX);
-    let pixels = places.iter().map(|[_, _, at]| colour(of(at))).collect();
-    let thermal: Vec<f64> = shown.thermal.iter().map(|x| f64::from(*x)).collect();
+    let painted = places.iter().map(|[_, _, at]| colour(of(at))).collect();
+    let thermal: Vec<f64> = pixels.thermal.iter().map(|x| f64::from(*x)).collect();
     let mut table = Table::new(["row", "column", "category", "thermal_photons_s1_m2_sr1"]);
     for ([row, column, at], thermal) in places.iter().zip(&thermal) {
         let name = found.categories.get(usize::from(of(at))).map_or("", |row| row.category.as_str());
         table.push(vec![row.to_string(), column.to_string(), name.to_owned(), number(*thermal)]);
     }
     let pictures = vec![
-        Picture::painted("Categories", Axis::linear(""), wide, Painted { pixels, ramp: None }),
+        Picture::painted("Categories", Axis::linear(""), wide, Painted { pixels: painted, ramp: None }),
         Picture::new(
             "Thermal image, all bands together",
             Axis::linear("radiance (photons s⁻¹ m⁻² sr⁻¹)"),
@@ -92,8 +94,8 @@ pub(super) fn plot(result: &Decomposed, found: &Segmented, shown: &Block, stride
         keys.push((NONE, "none".to_owned()));
     }
     let figure = Pictures::new("What is there, by its materials", pictures)
-        .subtitle("Every pixel is in segmentation.npy, every object in objects.csv.")
-        .no_value("nothing is told")
+        .subtitle(SEGMENTED)
+        .no_value(NOTHING_TOLD)
         .keys(keys);
     Plot { name: "segmentation".into(), figure: figure.into(), table }
 }

@@ -5,10 +5,11 @@
 //! ([`super::equalise`]), so that hues are seen in the shade too; where the lighting is unknown it is in the middle.
 
 use super::equalise::{Clahe, Curves, LIMIT};
-use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, Rgb, image_png};
+use crate::shown::Shown;
 use crate::table::{Table, number};
+use crate::words::decompose::brightness_said;
 use hadar::error::Result;
 use hadar_scenario::decompose::Brightness;
 use hadar_study::decompose::{Block, Decomposed, ranked};
@@ -186,14 +187,13 @@ fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> Rgb {
     (part(5.0), part(3.0), part(1.0))
 }
 
-/// The picture beside the thermal image, the material alone and the texture alone, of the pixels that are shown: every `stride`th row and
-/// column.
+/// The picture beside the thermal image, the material alone and the texture alone, of the pixels that are shown.
 #[must_use]
-pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
+pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
     let result = brush.result;
-    let (places, wide) = places(result.shape, stride);
+    let (places, wide) = (shown.places(), shown.wide());
     let asked = &result.vision;
-    let vision = brush.vision(shown, places.iter().map(|[_, _, at]| *at));
+    let vision = brush.vision(pixels, places.iter().map(|[_, _, at]| *at));
     let take = |all: &[f32], is_shown: fn(f32) -> bool| -> Vec<f64> {
         all.iter().map(|x| if is_shown(*x) { f64::from(*x) } else { f64::NAN }).collect()
     };
@@ -209,8 +209,8 @@ pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
         .unwrap_or(0.0);
     let ramp = [PALEST, 1.0].map(|saturation| rgb(ramp_hue, saturation, 1.0));
     let unit = "(photons s⁻¹ m⁻² sr⁻¹)";
-    let thermal = take(&shown.thermal, f32::is_finite);
-    let texture = take(&shown.texture, |x| x > 0.0);
+    let thermal = take(&pixels.thermal, f32::is_finite);
+    let texture = take(&pixels.texture, |x| x > 0.0);
     let mut pictures = vec![
         Picture::painted(
             "TeX vision: hue the material, saturation the temperature, brightness the texture",
@@ -277,13 +277,8 @@ pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
             of(&thermal, i),
         ]);
     }
-    let said = format!(
-        "Brightness: logarithm of the texture, equalised in tiles (contrast limited to {LIMIT}); {} where the lighting is unknown. \
-         Temperatures beyond the scale have the colours of its ends. Every pixel is in tex_vision_image.png, texture.npy and thermal.npy.",
-        number(0.5 * (DARKEST + 1.0)),
-    );
     let figure = Pictures::new("Material, temperature and texture of the heat cube", pictures)
-        .subtitle(said)
+        .subtitle(brightness_said(LIMIT, 0.5 * (DARKEST + 1.0)))
         .no_value("nothing is told, or no light")
         .keys(keys);
     Plot { name: "tex_vision".into(), figure: figure.into(), table }

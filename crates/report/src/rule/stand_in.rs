@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, LineFigure, Series};
 use crate::table::{Table, number, optional};
-use crate::words::probability::reliability;
+use crate::words::rule::below_a_line;
 use hadar::error::Result;
 use hadar_study::{StandIn, StandInAnswer};
 
@@ -64,10 +64,7 @@ fn picture(answer: &StandInAnswer) -> Plot {
         Axis::linear("tolerance of its emissivity, ±"),
         Axis::linear("tolerance of its temperature (K), ±"),
     )
-    .subtitle(format!(
-        "Below a line no test of one pixel tells it from a person more often than {}; open symbols: proved for all within.",
-        reliability(answer.distance)
-    ));
+    .subtitle(below_a_line(answer.distance));
     let mut groups: Vec<[&str; 3]> = Vec::new();
     for row in &answer.rows {
         let group = [row.camera.as_str(), row.person.as_str(), row.material.as_str()];

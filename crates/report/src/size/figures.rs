@@ -5,6 +5,7 @@
 use crate::figures::{Plot, band_axis, information_axis, over_bands, wavenumber_axis};
 use crate::plot::{self, Axis, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use crate::table::Table;
+use crate::words::size::captions;
 use hadar::spectrum::Bands;
 use hadar_study::{InformationCurves, PhotonMap, Spectra, Surface};
 
@@ -105,12 +106,8 @@ pub fn spectra(spectra: &Spectra, bands: &Bands, target: &str, alternative: &str
     };
     let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value.abs()).collect::<Vec<f64>>();
     let celsius = spectra.state.temperature_k - 273.15;
-    let lighting: Vec<String> = spectra.state.lighting.iter().map(|v| format!("{v:.3}")).collect();
-    let lit =
-        if lighting.is_empty() { String::new() } else { format!(" with lighting {}", lighting.join(", ")) };
     // What is left of a difference where there is none is rounding.
     let equal = difference.iter().all(|share| share.abs() < ROUNDING);
-    let alike = if equal { " The two spectra are equal: no camera tells them apart." } else { "" };
     let mut lower = Panel::new(Axis::log("share of the signal (%)"));
     if !equal {
         lower = lower.series(curve("|nearest − target|".into(), &percent(&difference)).colour(3));
@@ -131,7 +128,7 @@ pub fn spectra(spectra: &Spectra, bands: &Bands, target: &str, alternative: &str
         band_axis(bands),
         Axis::linear("photon radiance (photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹)"),
     )
-    .subtitle(format!("The nearest {alternative} is at {celsius:.2} °C{lit}.{alike}"))
+    .subtitle(captions::nearest(alternative, celsius, &spectra.state.lighting, equal))
     .series(curve(target.into(), &spectra.target).colour(0))
     .series(
         curve(format!("{alternative} at {celsius:.1} °C"), &spectra.nearest).style(Style::Dashed).colour(1),
@@ -193,7 +190,7 @@ pub fn identifiability(
         Axis::log("photons at the detector"),
         information_axis("information (bits)"),
     )
-    .subtitle("Information log₂ 2P; 1 bit is certainty. The camera's photons grow with its exposure.")
+    .subtitle(captions::INFORMATION)
     .series(Series::line("shot-noise limit (nearest distance)", x.clone(), curves.nearest_bits.clone()))
     .series(
         Series::line("shot noise, local distance", x.clone(), curves.local_bits.clone()).style(Style::Dashed),
@@ -266,14 +263,7 @@ pub fn photon_map(
         (Axis::linear("thermal lighting factor V"), map.lightings.clone()),
         (Axis::log("required photons").range(low, high), map.photons.clone()),
     )
-    .subtitle(if top == 1.0 {
-        format!(
-            "By the {by} distance, shot noise only. In equilibrium (V = 1, T = {:.1} °C) no number of photons suffices.",
-            map.equilibrium_k - 273.15
-        )
-    } else {
-        format!("By the {by} distance, shot noise only. V is that of the first of the surroundings, the others' held.")
-    })
+    .subtitle(captions::photon_map(by, (top == 1.0).then_some(map.equilibrium_k - 273.15)))
     .no_value("no number of photons suffices")
     .contours(levels);
     let at_equilibrium = top == 1.0 && here == (map.equilibrium_k, 1.0);

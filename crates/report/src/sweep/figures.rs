@@ -4,6 +4,7 @@ use super::swept::Swept;
 use crate::figures::Plot;
 use crate::plot::{Axis, HeatMap, LineFigure, Series, Style};
 use crate::table::Table;
+use crate::words::sweep::interpolated;
 use hadar_study::sweep::{Cell, Input};
 use std::collections::BTreeSet;
 
@@ -173,7 +174,7 @@ fn map(name: &str, values: &[f64], x: &Input, y: &Input) -> Option<Plot> {
     // A margin of 1 is what is demanded.
     let contours = if name.ends_with("margin") { vec![1.0] } else { Vec::new() };
     let figure = figure
-        .subtitle(format!("{} x {} values; colours between them are interpolated", columns.len(), rows.len()))
+        .subtitle(interpolated(columns.len(), rows.len()))
         .no_value("no value, or the row failed")
         .contours(contours);
     Some(Plot { name: file_name("map", name).into(), figure: figure.into(), table })

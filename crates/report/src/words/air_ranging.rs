@@ -3,6 +3,7 @@
 mod text;
 
 pub use text::text;
+pub(crate) use text::{one_reading, window, without_sky};
 
 use super::Say;
 use super::demand::error_of;

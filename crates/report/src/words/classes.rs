@@ -116,3 +116,7 @@ fn with_spectra(side: &ClassSide) -> String {
         (true, true) => format!("{} (mean of {} spectra)", side.name, side.spectra),
     }
 }
+
+/// Below the picture of all pairs.
+pub(crate) const LIGHTEST: &str =
+    "The lightest are proved to be at least as far as is drawn; they decide nothing.";

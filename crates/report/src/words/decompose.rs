@@ -2,6 +2,7 @@
 
 mod segmented;
 
+use crate::table::number;
 use crate::text::footing::{read_as, warnings};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
@@ -210,6 +211,18 @@ pub(crate) fn how(result: &Decomposed) -> &'static str {
         (None, Method::Te) => "Maximum likelihood without scattered light, every pixel for itself",
         (None, Method::GreyBody) => "Brightness temperature of every pixel, for itself",
     }
+}
+
+/// Below the picture of the categories.
+pub(crate) const SEGMENTED: &str = "Every pixel is in segmentation.npy, every object in objects.csv.";
+
+/// What brightness means in a picture whose contrast is limited so, and what it is where the lighting is unknown.
+pub(crate) fn brightness_said(limit: f64, unlit: f64) -> String {
+    format!(
+        "Brightness: logarithm of the texture, equalised in tiles (contrast limited to {limit}); {} where the lighting is unknown. \
+         Temperatures beyond the scale have the colours of its ends. Every pixel is in tex_vision_image.png, texture.npy and thermal.npy.",
+        number(unlit),
+    )
 }
 
 /// The prior over the image, a line; nothing where there is none.

@@ -1,6 +1,7 @@
 //! What is said of many materials.
 
 mod bands;
+pub(crate) mod captions;
 mod exact;
 mod matrix;
 mod terms;

@@ -1,6 +1,8 @@
 //! A library out of a cube, in words.
 
+use crate::shown::Shown;
 use crate::text::footing::{read_as, warnings};
+use crate::words::pictures::thinned;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_scenario::decompose::CubeUnit;
 use hadar_study::library::{LibraryFound, TruthOfClusters};
@@ -134,4 +136,15 @@ fn assumptions(result: &LibraryFound) -> String {
         scenario.environment.len(),
         whole((result.drawn - result.without_nem) as u64),
     )
+}
+
+/// Below the emissivities; `cut` says that not all of them are drawn.
+pub(crate) fn one_deviation(cut: bool) -> String {
+    let rest = if cut { " The clusters of the most pixels; all are in library.csv." } else { "" };
+    format!("Shaded: one standard deviation, with all temperatures and lightings unknown.{rest}")
+}
+
+/// Below the map of clusters.
+pub(crate) fn most_probable(shown: Shown) -> String {
+    format!("The most probable cluster of each pixel, and its temperature.{}", thinned(shown))
 }

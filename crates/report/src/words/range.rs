@@ -1,5 +1,6 @@
 //! How well depth can be measured, in a sentence.
 
+pub(crate) mod captions;
 mod text;
 
 pub use text::text;

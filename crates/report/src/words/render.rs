@@ -1,6 +1,8 @@
 //! A rendered scene in words: what is seen, what it was drawn with, what was assumed.
 
+use crate::shown::Shown;
 use crate::text::footing::warnings;
+use crate::words::pictures::thinned_alone;
 use hadar::words::{share, significant, whole};
 use hadar_study::render::Rendered;
 use std::fmt::Write as _;
@@ -67,4 +69,9 @@ pub fn text(result: &Rendered) -> String {
     );
     out.push_str(&warnings(&result.warnings));
     out
+}
+
+/// Below the pictures.
+pub(crate) fn rendered(bands: usize, shown: Shown) -> String {
+    format!("Rendered, {bands} bands.{}", thinned_alone(shown))
 }

@@ -12,6 +12,7 @@ mod text;
 pub use check::check;
 pub(crate) use measured::measure;
 pub use sources::{sources, tests};
+pub(crate) use stand_in::below_a_line;
 pub use stand_in::stand_in;
 pub use text::text;
 pub(crate) use text::together;
@@ -270,6 +271,19 @@ pub(crate) fn in_words_of_kind(kind: &str) -> &str {
         "depth-error" => "knows a distance",
         other => other,
     }
+}
+
+/// Below the margins over all clauses.
+pub(crate) const ALL_CLAUSES: &str =
+    "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails.";
+
+/// Below the margins of a rule that only tells materials apart.
+pub(crate) fn one_clause(distance: f64) -> String {
+    format!(
+        "Least over the envelope; demanded is d = {}. Full symbols meet the rule; a camera may have signal enough and \
+         still fail by its image.",
+        significant(distance, 3)
+    )
 }
 
 #[cfg(test)]

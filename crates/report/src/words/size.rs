@@ -1,5 +1,6 @@
 //! The verdict on a camera in a sentence.
 
+pub(crate) mod captions;
 pub mod rows;
 mod text;
 

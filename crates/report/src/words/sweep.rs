@@ -86,3 +86,8 @@ impl Say for Undrawn {
         }
     }
 }
+
+/// Below a map.
+pub(crate) fn interpolated(columns: usize, rows: usize) -> String {
+    format!("{columns} x {rows} values; colours between them are interpolated")
+}

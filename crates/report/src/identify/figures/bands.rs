@@ -3,6 +3,7 @@
 use crate::figures::{Plot, band_axis, over_bands};
 use crate::plot::{Axis, Band, LineFigure, Series, Style};
 use crate::table::Table;
+use crate::words::identify::captions::SHARES;
 use hadar_study::{BandsThatMatter, Study};
 
 /// Share of every band in the distance, with the best bands and filters marked.
@@ -27,7 +28,7 @@ pub(crate) fn bands_that_matter(found: &BandsThatMatter, study: &Study) -> Plot 
         band_axis(bands),
         Axis::linear("share of the squared distance (% per band)").range(0.0, top),
     )
-    .subtitle("What each band adds to the square of the distance once the unknowns are fitted.");
+    .subtitle(SHARES);
     // A choice that tells nothing is no best one.
     let choice = found.filters.as_ref().filter(|choice| choice.distance > 0.0);
     let filters = choice.map_or(&[][..], |choice| &choice.passbands);

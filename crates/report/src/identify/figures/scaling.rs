@@ -4,6 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
+use crate::words::identify::captions;
 use hadar_study::{Scaling, Study};
 
 /// Least distance against the size of the library; nothing where there is only one size.
@@ -30,14 +31,12 @@ pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Option<Plot> {
         Axis::log("materials in the library"),
         Axis::log("least distance (per √photon)"),
     )
-    .subtitle(format!(
-        "Expected {} distance from a target to the nearest of its alternatives, over all libraries of that size.{}",
-        scaling.by,
-        if of(2).iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
-    ))
+    .subtitle(captions::library_size(scaling.by, of(2).iter().all(|d| *d == 0.0)))
     .band(Band::new("10 % to 90 % of the targets", x.clone(), of(0), of(2)))
     .series(Series::line("median target", x.clone(), of(1)).style(Style::Marked).colour(0))
-    .series(Series::line(format!("target {target}"), x, library.target.clone()).style(Style::Marked).colour(1));
+    .series(
+        Series::line(format!("target {target}"), x, library.target.clone()).style(Style::Marked).colour(1),
+    );
     Some(Plot { name: "library_size".into(), figure: figure.into(), table })
 }
 
@@ -68,22 +67,13 @@ pub(crate) fn band_number(scaling: &Scaling, study: &Study) -> Option<Plot> {
     let photons = study.counting().map(|counting| counting.counts_per_radiance * study.photon_radiance());
     let at_photons =
         |values: &[f64]| values.iter().map(|d| d * photons.unwrap_or(1.0).sqrt()).collect::<Vec<f64>>();
-    let left_out = match bands.left_out.as_slice() {
-        [] => String::new(),
-        [one] => format!(" Without {one}, which light alone does not tell as required."),
-        more => format!(" Without {} alternatives that light alone does not tell as required.", more.len()),
-    };
     let axis = if photons.is_some() { "statistical distance d" } else { "distance (per √photon)" };
     let mut figure = LineFigure::new(
         format!("How many bands it takes to tell {target} from the library"),
         Axis::log("number of bands"),
         Axis::log(axis),
     )
-    .subtitle(format!(
-        "Neighbouring bands joined. Photons are the same for any number of bands{}.{left_out}{}",
-        if noisy { "; the camera's noise is added to every reading" } else { "" },
-        if bands.shot_noise_median.iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
-    ));
+    .subtitle(captions::band_number(scaling));
     let shot = (at_photons(&bands.shot_noise), at_photons(&bands.shot_noise_median));
     let mut curves =
         vec![("least, shot noise alone", &shot.0, 0, false), ("median, shot noise alone", &shot.1, 0, true)];

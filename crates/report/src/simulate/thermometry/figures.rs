@@ -4,7 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::table::Table;
-use crate::text::significant;
+use crate::words::simulate::thermometry as words;
 use hadar_simulate::efficiency::Errors;
 use hadar_study::{Reader, Thermometry, ThermometryRow};
 
@@ -79,13 +79,7 @@ pub fn errors(result: &Thermometry) -> Plot {
         true_temperature(),
         Axis::linear("mean error (K)"),
     )
-    .subtitle(format!(
-        "{}, {} spectra at each temperature, emissivity known to maximum likelihood. Below: maximum likelihood alone. Manual emissivity {} is calibrated at {:.1} °C.",
-        result.camera,
-        result.trials,
-        significant(result.manual.emissivity, 3),
-        result.calibrated_k - 273.15
-    ))
+    .subtitle(words::errors(result))
     .rule(Rule::horizontal(0.0, ""))
     .series(Series::points(label, celsius.clone(), own).colour(colour))
     .series(Series::line(fixed_label(result), celsius.clone(), fixed).style(FIXED.0).colour(FIXED.1))
@@ -147,17 +141,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
         true_temperature(),
         Axis::log("root mean squared error (K)"),
     )
-    .subtitle(format!(
-        "{}, {} spectra at each temperature. Bounds are Cramér-Rao's, for unbiased estimates.{}",
-        result.camera,
-        result.trials,
-        if rows.iter().any(|row| range_bound(row).is_some()) {
-            " Estimates that the range of the lighting holds are biased, and can err less than the bound for unknown lighting: \
-             to them the dotted one applies, for the error averaged over that range."
-        } else {
-            ""
-        }
-    ));
+    .subtitle(words::bounds(result, rows.iter().any(|row| range_bound(row).is_some())));
     for (label, style, colour, values) in columns {
         if values.iter().any(|value| value.is_finite()) {
             figure = figure.series(Series::line(label, celsius.clone(), values).style(style).colour(colour));

@@ -3,6 +3,7 @@
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use crate::words::Say;
 use hadar::words::{length, share, significant};
+use hadar_scenario::air_ranging::AirStereo;
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 use std::fmt::Write as _;
 
@@ -232,4 +233,32 @@ fn assumptions(result: &AirRanging) -> String {
         );
     }
     out
+}
+
+/// Below the pictures of one pixel.
+pub(crate) fn one_reading(result: &AirRanging) -> String {
+    let unknown = match result.sight.unknown.is_empty() {
+        true => "nothing unknown besides".to_owned(),
+        false => format!("unknown besides: {}", result.sight.unknown.join(", ")),
+    };
+    format!("{}, {} bands, one pixel, one reading; {unknown}.", result.camera, result.bands.len())
+}
+
+/// Below the errors of a model that leaves the sky out.
+pub(crate) fn without_sky(target: &str) -> String {
+    format!(
+        "Distance of {target} from counts without noise, by a model that takes all of its light for its own emission. Size of the error; its \
+         sign is in the table."
+    )
+}
+
+/// Below a window by the air and by stereo.
+pub(crate) fn window(spec: &AirStereo, target: &str) -> String {
+    format!(
+        "Window of {} × {} pixels of {target}. Stereo: baseline {} m, texture {} % from pixel to pixel.",
+        spec.window[0],
+        spec.window[1],
+        significant(spec.baseline_m, 2),
+        significant(100.0 * spec.texture, 2)
+    )
 }

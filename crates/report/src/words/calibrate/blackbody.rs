@@ -90,3 +90,9 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
     );
     out + &warnings(&result.warnings)
 }
+
+/// Below the picture of the response.
+pub(crate) fn in_the_middle(result: &BlackbodyFound) -> String {
+    let middle = significant(result.middle_k, 4);
+    format!("Errors of a radiance as temperature, at {middle} K in the middle of the blackbodies.")
+}

@@ -125,3 +125,12 @@ pub(crate) fn camera(result: &NoiseFound) -> Option<String> {
 fn indented(text: &str) -> String {
     text.lines().map(|line| format!("  {line}\n")).collect()
 }
+
+/// Below the picture of the photon transfer.
+pub(crate) fn each_point(common: &Line) -> String {
+    format!(
+        "Each point: samples of nearly one mean in one band; line: all bands together, one photon = {} unit(s), electronic noise {} electrons.",
+        significant(common.per_photon, 3),
+        significant(common.noise_electrons(), 3)
+    )
+}

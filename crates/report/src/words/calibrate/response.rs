@@ -91,3 +91,6 @@ pub fn text(result: &ResponseFound) -> String {
     );
     out + &warnings(&result.warnings)
 }
+
+/// Below the picture of the response.
+pub(crate) const SHADED: &str = "Shaded: 95 %, of the readings together with what is known beforehand.";

@@ -68,3 +68,12 @@ pub fn text(result: &StripesFound) -> String {
     );
     out + &warnings(&result.warnings)
 }
+
+/// Below the pictures of a band, of which the middle is shown.
+pub(crate) fn of_band(band: usize, [high, wide]: [usize; 2], [rows, columns]: [usize; 2]) -> String {
+    let part = match [high, wide] == [rows, columns] {
+        true => String::new(),
+        false => format!(" The middle {high} × {wide} pixels of {rows} × {columns}."),
+    };
+    format!("Band {band} (counted from 0), that of the most stripes, in the unit of the cube.{part}")
+}

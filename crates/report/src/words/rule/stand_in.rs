@@ -76,3 +76,11 @@ fn sentence(answer: &StandInAnswer) -> String {
 fn tolerance(kelvin: Option<f64>) -> String {
     kelvin.map_or_else(|| "told".into(), |kelvin| format!("{} K", significant(kelvin, 3)))
 }
+
+/// Below the picture of the tolerances.
+pub(crate) fn below_a_line(distance: f64) -> String {
+    format!(
+        "Below a line no test of one pixel tells it from a person more often than {}; open symbols: proved for all within.",
+        reliability(distance)
+    )
+}

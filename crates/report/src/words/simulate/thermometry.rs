@@ -296,6 +296,32 @@ fn reader(reader: &Reader) -> String {
     }
 }
 
+/// Below the mean errors.
+pub(crate) fn errors(result: &Thermometry) -> String {
+    format!(
+        "{}, emissivity known to maximum likelihood. Below: maximum likelihood alone. Manual emissivity {} is calibrated at {:.1} °C.",
+        of_each(result),
+        significant(result.manual.emissivity, 3),
+        result.calibrated_k - 273.15
+    )
+}
+
+/// Below the errors and their bounds; `held` says that the range of the lighting stops some fits.
+pub(crate) fn bounds(result: &Thermometry, held: bool) -> String {
+    let held = match held {
+        true => {
+            " Estimates that the range of the lighting holds are biased, and can err less than the bound for unknown lighting: \
+             to them the dotted one applies, for the error averaged over that range."
+        }
+        false => "",
+    };
+    format!("{}. Bounds are Cramér-Rao's, for unbiased estimates.{held}", of_each(result))
+}
+
+fn of_each(result: &Thermometry) -> String {
+    format!("{}, {} spectra at each temperature", result.camera, result.trials)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
