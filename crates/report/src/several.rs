@@ -3,7 +3,7 @@
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::significant;
-use crate::words::several::unanswered;
+use crate::words::several::{NOT_IN_FORCE, unanswered};
 use hadar::error::Result;
 use hadar_study::sweep::Question;
 use serde::Serialize;
@@ -77,7 +77,7 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
     // A rule without a camera, or on a day on which it does not hold, is met by none.
     let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
-        (Question::Rule, "verdict") if !is_in_force(answer) => "no, not in force".into(),
+        (Question::Rule, "verdict") if !is_in_force(answer) => NOT_IN_FORCE.into(),
         (Question::Rule, "verdict") if met && hang => "yes, if".into(),
         (Question::Rule, "verdict") => met.into(),
         (Question::Rule, "meet it") => {

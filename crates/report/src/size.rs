@@ -11,6 +11,7 @@ use crate::classes;
 use crate::figures::Plot;
 use crate::table::{Table, number, optional};
 use crate::tables;
+use crate::words::size::captions;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::policy::TradeOff;
@@ -63,13 +64,8 @@ pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &
     let mut closest = vec![study.target()];
     closest.extend(ranked.iter().take(DRAWN).map(|(_, surface)| *surface));
     let target = &study.target().name;
-    let title = match (closest.as_slice(), ranked.len()) {
-        ([_, one], _) => format!("Emissivities of {target} and {}", one.name),
-        (_, all) if all > DRAWN => {
-            format!("Emissivities of {target} and the {DRAWN} nearest of its {all} alternatives")
-        }
-        _ => format!("Emissivities of {target} and its alternatives"),
-    };
+    let others: Vec<&str> = closest.iter().skip(1).map(|surface| surface.name.as_str()).collect();
+    let title = captions::emissivities(target, &others, ranked.len());
     let mut drawn = figures::emissivities(&title, nodes, &closest);
     if let Some(surface) = study.alternative(limiting) {
         drawn.push(figures::spectra(&study.spectra(surface)?, study.bands(), target, &surface.name));

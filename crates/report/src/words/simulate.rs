@@ -239,3 +239,8 @@ pub(crate) fn pair(result: &Simulation) -> String {
         [] => String::new(),
     }
 }
+
+/// The title of all classifiers over photons.
+pub(crate) fn retrieved(pair: &str) -> String {
+    format!("Telling {pair}: what each classifier retrieves")
+}

@@ -2,6 +2,17 @@
 
 use hadar::policy::TradeOff;
 
+/// The title of the emissivities of the target and of some of `all` its alternatives.
+pub(crate) fn emissivities(target: &str, shown: &[&str], all: usize) -> String {
+    match shown {
+        [one] => format!("Emissivities of {target} and {one}"),
+        some if some.len() < all => {
+            format!("Emissivities of {target} and the {} nearest of its {all} alternatives", some.len())
+        }
+        _ => format!("Emissivities of {target} and its alternatives"),
+    }
+}
+
 /// Below information over photons.
 pub(crate) const INFORMATION: &str =
     "Information log₂ 2P; 1 bit is certainty. The camera's photons grow with its exposure.";
