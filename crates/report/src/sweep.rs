@@ -2,13 +2,14 @@
 
 mod figures;
 mod gathered;
+mod over;
 mod swept;
 
 pub use crate::words::sweep::text;
 pub use gathered::Gathered;
 pub use swept::Swept;
 
-pub(crate) use figures::{Undrawn, none};
+pub(crate) use over::{Undrawn, none};
 
 use crate::bundle::Bundle;
 use crate::parquet::{self, Column};

@@ -1,16 +1,15 @@
 //! Pictures of a sweep: a curve over one key, a heat map over two.
 
+use super::over::{Over, over};
 use super::swept::Swept;
 use crate::figures::Plot;
 use crate::plot::{Axis, HeatMap, LineFigure, Series, Style};
 use crate::table::Table;
 use crate::words::sweep::interpolated;
 use hadar_study::sweep::{Cell, Input};
-use std::collections::BTreeSet;
 
-/// Most pictures, and most curves in one.
+/// Most pictures.
 const MOST_PICTURES: usize = 12;
-const MOST_CURVES: usize = 7;
 /// Values that spread over more than this are shown on a logarithmic scale.
 const WIDE: f64 = 100.0;
 /// Units as results have them in their names, the longer ones first.
@@ -30,65 +29,6 @@ const UNITS: [(&str, &str); 14] = [
     ("_m", "m"),
     ("_s", "s"),
 ];
-
-/// Over what pictures are drawn.
-enum Over<'a> {
-    /// A curve.
-    One(&'a Input),
-    /// A curve for each value of the second.
-    OneForEach(&'a Input, &'a Input),
-    /// A map.
-    Two(&'a Input, &'a Input),
-}
-
-/// Why no picture of a sweep is drawn.
-pub(crate) enum Undrawn {
-    /// So many keys vary.
-    Keys(usize),
-    /// Some values of one key do not go with every value of the other.
-    NoGrid,
-    /// A key that takes a curve for each of so many values.
-    Curves { key: String, values: usize, most: usize },
-    /// Values without a place on an axis, of the one key or of both.
-    NoNumbers { keys: usize },
-}
-
-/// Over what pictures of a sweep can be drawn, or why there are none.
-fn over(swept: &Swept) -> Result<Over<'_>, Undrawn> {
-    let rows = swept.gathered.rows();
-    let varied: Vec<&Input> = swept.gathered.inputs.iter().filter(|input| input.cells.len() > 1).collect();
-    if varied.is_empty() || varied.len() > 2 {
-        return Err(Undrawn::Keys(varied.len()));
-    }
-    let mut places = BTreeSet::new();
-    let apart =
-        (0..rows).all(|row| places.insert(varied.iter().map(|input| input.index(row)).collect::<Vec<_>>()));
-    if !apart || varied.iter().map(|input| input.cells.len()).product::<usize>() != rows {
-        return Err(Undrawn::NoGrid);
-    }
-    let is_number = |input: &&Input| input.cells.iter().all(|cell| cell.number().is_some());
-    let few = |input: &Input| match input.cells.len() {
-        values if values > MOST_CURVES => {
-            Err(Undrawn::Curves { key: input.key.clone(), values, most: MOST_CURVES })
-        }
-        _ => Ok(()),
-    };
-    match varied.as_slice() {
-        [x] if is_number(x) => Ok(Over::One(x)),
-        [x, y] => match (is_number(x), is_number(y)) {
-            (true, true) => Ok(Over::Two(x, y)),
-            (true, false) => few(y).map(|()| Over::OneForEach(x, y)),
-            (false, true) => few(x).map(|()| Over::OneForEach(y, x)),
-            (false, false) => Err(Undrawn::NoNumbers { keys: 2 }),
-        },
-        _ => Err(Undrawn::NoNumbers { keys: 1 }),
-    }
-}
-
-/// Why a sweep of several rows has no pictures.
-pub(crate) fn none(swept: &Swept) -> Option<Undrawn> {
-    over(swept).err().filter(|_| swept.gathered.rows() > 1)
-}
 
 /// The pictures of a sweep over one or two keys, one for each column of numbers that is drawn.
 pub(super) fn plots(swept: &Swept) -> Vec<Plot> {
