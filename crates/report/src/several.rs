@@ -2,6 +2,7 @@
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
+use crate::text::columns::aligned;
 use crate::text::significant;
 use crate::words::several::{NOT_IN_FORCE, unanswered};
 use hadar::error::Result;
@@ -133,19 +134,7 @@ pub fn text(question: Question, rows: &[Row]) -> String {
         }
         lines.push(line);
     }
-    let last = lines.first().map_or(0, Vec::len);
-    let whole = |line: &&Vec<String>| line.len() == last;
-    // What went wrong is as long as it is.
-    let width = |at: usize| {
-        let cells = lines.iter().filter(|line| at == 0 || whole(line)).filter_map(|line| line.get(at));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..last).map(width).collect();
-    let mut out = String::new();
-    for line in &lines {
-        let padded = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
-        let _ = writeln!(out, "{}", padded.collect::<Vec<_>>().join("  ").trim_end());
-    }
+    let mut out = aligned(&lines, &[]);
     let failed = rows.iter().filter(|row| row.answer.is_none()).count();
     if failed > 0 {
         let _ = writeln!(out, "\n{}", unanswered(failed, rows.len()));

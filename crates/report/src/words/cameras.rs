@@ -10,6 +10,7 @@ pub use list::list;
 pub(crate) use rows::{alone, in_scene};
 
 use crate::cameras::Sheet;
+use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::{celsius, quantity, significant};
 use hadar::instrument::equivalents::blackbody_microflick;
 use hadar::instrument::figures::{CameraSpec, Kind, Line, Row, StatedNoise, TABLE};
@@ -233,21 +234,19 @@ fn equivalents(noise: &Equivalents) -> String {
 
 fn budget(budget: &[NoiseLine]) -> String {
     let total: f64 = budget.iter().map(|line| line.var_counts).sum();
-    let mut out = String::from("\nNoise of an average band of 1 cm^-1, blackbody at 300 K\n");
-    let _ = writeln!(out, "  {:<34} {:>12}  {:>8}  {:<8}  from", "line", "variance", "share", "grows as");
+    let mut table = Columns::new([
+        left("line", 34),
+        right("variance", 11),
+        right("share", 8),
+        left("grows as", 8),
+        left("from", 0),
+    ]);
     for line in budget {
-        let _ = writeln!(
-            out,
-            "  {:<34} {:>12}  {:>8}  {:<8}  {}",
-            line.label,
-            significant(line.var_counts, 3),
-            part(line.var_counts / total),
-            line.scaling,
-            line.source
-        );
+        let (variance, share) = (significant(line.var_counts, 3), part(line.var_counts / total));
+        table.row([line.label, &variance, &share, line.scaling, line.source]);
     }
-    let _ = writeln!(out, "  {:<34} {:>12}", "sum", significant(total, 3));
-    out
+    table.row(["sum", &significant(total, 3)]);
+    format!("\nNoise of an average band of 1 cm^-1, blackbody at 300 K\n{}", table.text())
 }
 
 fn part(share: f64) -> String {

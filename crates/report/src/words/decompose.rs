@@ -3,6 +3,7 @@
 mod segmented;
 
 use crate::table::number;
+use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{read_as, warnings};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
@@ -95,25 +96,28 @@ fn found(result: &Decomposed) -> String {
     }
     let shown = &result.found[..result.found.len().min(LISTED)];
     let width = shown.iter().map(|row| row.material.chars().count()).max().unwrap_or(0).max(8);
-    let mut out = format!(
-        "Materials, the most probable of each pixel\n  {:width$}  {:>9}  {:>9}  {:>14}  {:>18}  {:>10}\n",
-        "", "pixels", "decided", "median (degC)", "tenths (degC)", "sigma (K)"
-    );
+    let mut table = Columns::new([
+        left("", width),
+        right("pixels", 9),
+        right("decided", 9),
+        right("median (degC)", 14),
+        right("tenths (degC)", 18),
+        right("sigma (K)", 10),
+    ]);
     let celsius = |k: f64| format!("{:.1}", k - FREEZING_K);
     let says = |what: String| if result.method.has_likelihood() { what } else { "-".to_owned() };
     for row in shown {
-        let tenths =
-            format!("{} to {}", celsius(row.temperature_tenths_k[0]), celsius(row.temperature_tenths_k[1]));
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>9}  {:>9}  {:>14}  {tenths:>18}  {:>10}",
-            row.material,
+        let [low, high] = row.temperature_tenths_k.map(celsius);
+        table.row([
+            row.material.clone(),
             whole(row.pixels as u64),
             says(whole(row.decided as u64)),
             celsius(row.temperature_median_k),
-            says(significant(row.temperature_sigma_median_k, 2))
-        );
+            format!("{low} to {high}"),
+            says(significant(row.temperature_sigma_median_k, 2)),
+        ]);
     }
+    let mut out = format!("Materials, the most probable of each pixel\n{}", table.text());
     if let Some(more) = result.found.len().checked_sub(LISTED).filter(|more| *more > 0) {
         let _ = writeln!(out, "  and {more} more: materials.csv");
     }

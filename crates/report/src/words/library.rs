@@ -1,6 +1,7 @@
 //! A library out of a cube, in words.
 
 use crate::shown::Shown;
+use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{read_as, warnings};
 use crate::words::pictures::thinned;
 use hadar::words::{quantity, share, significant, whole};
@@ -42,23 +43,26 @@ fn sentence(result: &LibraryFound) -> String {
 
 fn clusters(result: &LibraryFound) -> String {
     let width = result.clusters.iter().map(|row| row.name.len()).max().unwrap_or(0).max(8);
-    let mut out = format!(
-        "Clusters, the most pixels first\n  {:width$}  {:>9}  {:>16}  {:>14}  {:>14}  {:>9}\n",
-        "", "pixels", "mean emissivity", "median (degC)", "in common (K)", "chi2/nu"
-    );
+    let mut table = Columns::new([
+        left("", width),
+        right("pixels", 9),
+        right("mean emissivity", 16),
+        right("median (degC)", 14),
+        right("in common (K)", 14),
+        right("chi2/nu", 9),
+    ]);
     for row in &result.clusters {
         let one = &row.cluster;
-        let mean = format!("{:.3} +- {}", row.emissivity_mean, significant(one.sigma_mean, 2));
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>9}  {mean:>16}  {:>14}  {:>14}  {:>9}",
-            row.name,
+        table.row([
+            row.name.clone(),
             whole(row.pixels as u64),
+            format!("{:.3} +- {}", row.emissivity_mean, significant(one.sigma_mean, 2)),
             format!("{:.1}", row.temperature_median_k - FREEZING_K),
             format!("+- {}", significant(one.sigma_temperature_k, 2)),
-            significant(one.chi_square_reduced, 3)
-        );
+            significant(one.chi_square_reduced, 3),
+        ]);
     }
+    let mut out = format!("Clusters, the most pixels first\n{}", table.text());
     out.push_str(
         "  In common: what all temperatures of a cluster may be off by together, as its emissivity is.\n\n",
     );
@@ -69,20 +73,21 @@ fn counts(result: &LibraryFound) -> String {
     if result.tried.is_empty() {
         return String::new();
     }
-    let mut out = format!(
-        "Counts tried, by their loss on pixels that were kept apart\n  {:>8}  {:>11}  {:>18}  {:>9}\n",
-        "clusters", "with pixels", "loss", "chi2/nu"
-    );
+    let mut table = Columns::new([
+        right("clusters", 8),
+        right("with pixels", 11),
+        right("loss", 18),
+        right("chi2/nu", 9),
+    ]);
     for one in &result.tried {
-        let loss = format!("{:.2} +- {}", one.loss, significant(one.error, 1));
-        let _ = writeln!(
-            out,
-            "  {:>8}  {:>11}  {loss:>18}  {:>9}",
-            one.count,
-            one.left,
-            significant(one.chi_square_reduced, 3)
-        );
+        table.row([
+            one.count.to_string(),
+            one.left.to_string(),
+            format!("{:.2} +- {}", one.loss, significant(one.error, 1)),
+            significant(one.chi_square_reduced, 3),
+        ]);
     }
+    let mut out = format!("Counts tried, by their loss on pixels that were kept apart\n{}", table.text());
     out.push_str("  The fewest within a standard error of the least loss are taken; errors are of the difference from it.\n\n");
     out
 }

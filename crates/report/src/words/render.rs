@@ -1,6 +1,7 @@
 //! A rendered scene in words: what is seen, what it was drawn with, what was assumed.
 
 use crate::shown::Shown;
+use crate::text::columns::{Columns, left, right};
 use crate::text::footing::warnings;
 use crate::words::pictures::thinned_alone;
 use hadar::words::{share, significant, whole};
@@ -21,11 +22,14 @@ pub fn text(result: &Rendered) -> String {
         whole(pixels as u64)
     );
     let width = result.surfaces.iter().map(|row| row.name.chars().count()).max().unwrap_or(0).max(8);
-    let _ = writeln!(
-        out,
-        "Surfaces\n  {:width$}  {:>8}  {:>8}  {:>12}  {:>16}  material",
-        "", "pixels", "pure", "mean (degC)", "depth (m)"
-    );
+    let mut table = Columns::new([
+        left("", width),
+        right("pixels", 8),
+        right("pure", 8),
+        right("mean (degC)", 12),
+        right("depth (m)", 16),
+        left("material", 0),
+    ]);
     for row in &result.surfaces {
         let depth = row.depth_m.map_or_else(
             || "-".to_owned(),
@@ -35,15 +39,11 @@ pub fn text(result: &Rendered) -> String {
             Some(_) if row.pure > 0 => format!("{:.1}", row.temperature_k - FREEZING_K),
             _ => "-".to_owned(),
         };
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>8}  {:>8}  {mean:>12}  {depth:>16}  {}",
-            row.name,
-            whole(row.pixels as u64),
-            whole(row.pure as u64),
-            if row.materials.is_empty() { "-".to_owned() } else { row.materials.join(", ") },
-        );
+        let materials = if row.materials.is_empty() { "-".to_owned() } else { row.materials.join(", ") };
+        let [pixels, pure] = [row.pixels, row.pure].map(|count| whole(count as u64));
+        table.row([row.name.clone(), pixels, pure, mean, depth, materials]);
     }
+    let _ = write!(out, "Surfaces\n{}", table.text());
     let _ = writeln!(
         out,
         "\nCounts of a sample: {} in the median, electronic noise {}",

@@ -2,7 +2,6 @@
 
 pub(crate) mod certificate;
 mod check;
-mod columns;
 mod measured;
 mod sources;
 mod stand_in;

@@ -2,6 +2,7 @@
 
 pub(crate) mod thermometry;
 
+use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
 use crate::text::numbers::significant;
@@ -137,38 +138,37 @@ fn experiment(point: &SimulatedPoint, result: &Simulation, units: Units) -> Stri
             significant(class.photons, 4)
         );
     }
-    let _ = writeln!(
-        out,
-        "  {:<32} {:>8}  {:<19} {:<22} against the limit",
-        "classifier",
-        "right",
-        format!("{} % interval", 100.0 * result.level),
-        "photons made use of"
-    );
+    let interval = format!("{} % interval", 100.0 * result.level);
+    let mut table = Columns::narrow([
+        left("classifier", 32),
+        right("right", 8),
+        left("", 0),
+        left(&interval, 19),
+        left("photons made use of", 22),
+        left("against the limit", 0),
+    ]);
     for found in &point.performances {
         let performance = &found.performance;
-        let _ = writeln!(
-            out,
-            "  {:<32} {:>8}  {:<19} {:<22} {}",
+        let [low, high] = [performance.interval.low, performance.interval.high].map(percent);
+        table.row([
             performance.words(),
             percent(performance.accuracy),
-            format!("{} to {}", percent(performance.interval.low), percent(performance.interval.high)),
+            String::new(),
+            format!("{low} to {high}"),
             used(found),
-            against(found, point)
-        );
+            against(found, point),
+        ]);
         if performance.confusion.unconverged > 0 {
-            let _ = writeln!(out, "    {} fits stopped early", performance.confusion.unconverged);
+            table.line(&format!("    {} fits stopped early", performance.confusion.unconverged));
         }
     }
     if let Some(limit) = point.limit_accuracy {
-        let _ = writeln!(out, "  {:<32} {:>8}  computed, no spectrum drawn", "limit", percent(limit));
-        let _ =
-            writeln!(out, "  {:<32} {:>8}", "promised by the local distance", percent(point.local_accuracy));
+        table.row(["limit", &percent(limit), "", "computed, no spectrum drawn"]);
+        table.row(["promised by the local distance", &percent(point.local_accuracy)]);
     } else if point.classes.len() == 2 {
-        let _ =
-            writeln!(out, "  {:<32} {:>8}  for many photons", "limit", percent(point.limit_accuracy_normal));
+        table.row(["limit", &percent(point.limit_accuracy_normal), "", "for many photons"]);
     }
-    out
+    out + &table.text()
 }
 
 /// Which class is taken for which, in percent of the true one; nothing for more classes than fit a line.

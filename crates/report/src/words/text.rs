@@ -1,5 +1,6 @@
 //! What several answers say in the same words: numbers, pairs of materials, what results rest on, what they took.
 
+pub(crate) mod columns;
 pub(crate) mod footing;
 pub(crate) mod numbers;
 pub(crate) mod pairs;

@@ -1,5 +1,6 @@
 //! A study of ranging by air as text: the answer, errors over distances, bands, the estimator, what it rests on.
 
+use crate::text::columns::{Columns, right};
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use crate::words::Say;
 use hadar::words::{length, share, significant};
@@ -38,6 +39,10 @@ fn shown(value: Option<f64>) -> String {
     value.map_or_else(|| "none".into(), length)
 }
 
+fn signed(bias: f64) -> String {
+    format!("{}{}", if bias < 0.0 { "-" } else { "+" }, length(bias.abs()))
+}
+
 /// A column: heading, whether there is anything in it, and its cells.
 type Column<'a> = (&'a str, Box<dyn Fn(&AirPoint) -> String>);
 
@@ -63,7 +68,7 @@ fn distances(result: &AirRanging) -> String {
                         "to the longest".into()
                     }
                 }
-                Some(bias) => format!("{}{}", if bias < 0.0 { "-" } else { "+" }, length(bias.abs())),
+                Some(bias) => signed(bias),
                 None => "no fit".into(),
             }),
         ));
@@ -74,19 +79,13 @@ fn distances(result: &AirRanging) -> String {
     }
     let mut out =
         String::from("Least error of the distance (Cramer-Rao), one pixel, one reading of all bands\n");
-    let width = |heading: &str| heading.chars().count().max(11);
-    let _ = write!(out, "  {:>9}", "distance");
-    columns.iter().for_each(|(heading, _)| {
-        let _ = write!(out, "  {heading:>width$}", width = width(heading));
-    });
-    out.push('\n');
+    let heads = columns.iter().map(|(heading, _)| right(heading, heading.chars().count().max(11)));
+    let mut table = Columns::new(std::iter::once(right("distance", 9)).chain(heads));
     for point in some(&result.curve) {
-        let _ = write!(out, "  {:>9}", format!("{} m", significant(point.distance_m, 3)));
-        for (heading, cell) in &columns {
-            let _ = write!(out, "  {:>width$}", cell(point), width = width(heading));
-        }
-        out.push('\n');
+        let distance = format!("{} m", significant(point.distance_m, 3));
+        table.row(std::iter::once(distance).chain(columns.iter().map(|(_, cell)| cell(point))));
     }
+    out.push_str(&table.text());
     if any(&|point| point.bias_without_sky_m) {
         out.push_str(
             "  off without sky: what a model finds too much that takes all light of the target for its own, from counts without noise\n",
@@ -115,27 +114,22 @@ fn bands(result: &AirRanging) -> String {
     }
     let mut order: Vec<&AirBand> = result.bands.iter().collect();
     order.sort_by(|a, b| b.information_per_m2.total_cmp(&a.information_per_m2));
-    let mut out = format!(
-        "Bands that tell most of it at {} m, of {}\n  {:>9}  {:>13}  {:>14}  {:>18}\n",
-        significant(result.at.distance_m, 3),
-        result.bands.len(),
-        "cm^-1",
-        "share of it",
-        "transmittance",
-        "light of the path"
-    );
+    let mut table = Columns::new([
+        right("cm^-1", 9),
+        right("share of it", 13),
+        right("transmittance", 14),
+        right("light of the path", 18),
+    ]);
     for band in order.iter().take(LISTED) {
-        let _ = writeln!(
-            out,
-            "  {:>9}  {:>13}  {:>14}  {:>18}",
+        table.row([
             format!("{:.1}", band.center_cm1),
             share(band.information_per_m2 / total),
             significant(band.transmittance, 3),
-            share(band.share_of_path)
-        );
+            share(band.share_of_path),
+        ]);
     }
-    out.push('\n');
-    out
+    let at = significant(result.at.distance_m, 3);
+    format!("Bands that tell most of it at {at} m, of {}\n{}\n", result.bands.len(), table.text())
 }
 
 fn best(result: &AirRanging) -> String {
@@ -161,34 +155,33 @@ fn estimates(result: &AirRanging) -> String {
     if result.witness.is_empty() {
         return String::new();
     }
-    let mut out = format!(
-        "Maximum likelihood beside the bound, {} spectra at each distance (95 % intervals), seed {}\n  {:>9}  {:>9}  {:>9}  {:>20}  \
-         {:>9}  {:>17}  {:>8}\n",
-        result.trials,
-        result.seed,
-        "distance",
-        "bound",
-        "rms",
-        "rms over bound",
-        "bias",
-        "verdict",
-        "at edge"
-    );
+    let mut table = Columns::new([
+        right("distance", 9),
+        right("bound", 9),
+        right("rms", 9),
+        right("rms over bound", 20),
+        right("bias", 9),
+        right("verdict", 17),
+        right("at edge", 8),
+    ]);
     for one in &result.witness {
         let interval = one.rmse_over_bound_interval;
-        let bias = one.errors.bias;
-        let _ = writeln!(
-            out,
-            "  {:>9}  {:>9}  {:>9}  {:>20}  {:>9}  {:>17}  {:>8}",
+        table.row([
             format!("{} m", significant(one.distance_m, 3)),
             length(one.bound_m),
             length(one.errors.rmse),
             format!("{:.3} ({:.3} to {:.3})", one.rmse_over_bound, interval.low, interval.high),
-            format!("{}{}", if bias < 0.0 { "-" } else { "+" }, length(bias.abs())),
-            one.verdict.text(),
-            share(one.at_edge)
-        );
+            signed(one.errors.bias),
+            one.verdict.text().to_owned(),
+            share(one.at_edge),
+        ]);
     }
+    let mut out = format!(
+        "Maximum likelihood beside the bound, {} spectra at each distance (95 % intervals), seed {}\n{}",
+        result.trials,
+        result.seed,
+        table.text()
+    );
     out.push_str(
         "  where the bound is not small beside the distance the estimate is biased and the bound, of unbiased ones, says little; at edge: fits \
          that end at an end of the table of the air\n\n",

@@ -1,5 +1,6 @@
 //! The response of a camera behind a filter wheel, in words.
 
+use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use hadar::words::{quantity, significant};
 use hadar_study::calibrate::{ResponseFound, ResponseRow};
@@ -70,15 +71,16 @@ pub fn text(result: &ResponseFound) -> String {
     if let Some(scene) = &result.scene {
         out.push_str("\nScene: radiance.npy, mean photon radiance over filter and response (photons s^-1 m^-2 sr^-1 per cm^-1)\n");
         let width = result.filters.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(6);
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>18}  {:>20}",
-            "filter", "noise of a sample", "common to all pixels"
-        );
+        let mut table = Columns::new([
+            left("filter", width),
+            right("noise of a sample", 18),
+            right("common to all pixels", 20),
+        ]);
         for (q, name) in result.filters.iter().enumerate() {
-            let [noise, common] = [scene.sigma_noise[q], scene.sigma_common[q]].map(|x| significant(x, 2));
-            let _ = writeln!(out, "  {name:width$}  {noise:>18}  {common:>20}");
+            let sigmas = [scene.sigma_noise[q], scene.sigma_common[q]].map(|x| significant(x, 2));
+            table.row(std::iter::once(name.clone()).chain(sigmas));
         }
+        out.push_str(&table.text());
     }
     let _ = writeln!(
         out,

@@ -1,5 +1,6 @@
 //! A segmented cube in words: categories and objects.
 
+use crate::text::columns::{Columns, left, right};
 use hadar::words::{share, significant, whole};
 use hadar_estimate::segmentation::{Agreement, Rule};
 use hadar_study::decompose::Segmented;
@@ -13,55 +14,46 @@ const LISTED: usize = 12;
 /// Categories and objects, in words.
 pub(super) fn text(found: &Segmented) -> String {
     let width = found.categories.iter().map(|row| row.category.chars().count()).max().unwrap_or(0).max(8);
-    let mut out =
-        format!("Categories\n  {:width$}  {:>9}  {:>9}  {:>7}\n", "", "pixels", "decided", "objects");
+    let mut table =
+        Columns::new([left("", width), right("pixels", 9), right("decided", 9), right("objects", 7)]);
     for row in &found.categories {
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>9}  {:>9}  {:>7}",
-            row.category,
-            whole(row.pixels as u64),
-            whole(row.decided as u64),
-            row.objects
-        );
+        let counts = [row.pixels, row.decided].map(|count| whole(count as u64));
+        table.row(std::iter::once(row.category.clone()).chain(counts).chain([row.objects.to_string()]));
     }
     if found.none > 0 {
-        let _ = writeln!(out, "  {:width$}  {:>9}", "none", whole(found.none as u64));
+        table.row(["none", &whole(found.none as u64)]);
     }
+    let mut out = format!("Categories\n{}", table.text());
     let _ = writeln!(
         out,
-        "\nObjects of {} pixels or more{}\n  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {:>14}  {:>10}",
+        "\nObjects of {} pixels or more{}",
         found.smallest_object,
         if found.objects.is_empty() { ": none" } else { "" },
-        "",
-        "pixels",
-        "decided",
-        "rows",
-        "columns",
-        "median (degC)",
-        "sigma (K)"
     );
+    let mut table = Columns::new([
+        left("", width),
+        right("pixels", 9),
+        right("decided", 9),
+        right("rows", 13),
+        right("columns", 13),
+        right("median (degC)", 14),
+        right("sigma (K)", 10),
+    ]);
     let span = |[first, after]: [usize; 2]| format!("{first} to {}", after - 1);
+    let known = |k: f64, shown: &dyn Fn(f64) -> String| if k.is_finite() { shown(k) } else { "-".to_owned() };
     for row in found.objects.iter().take(LISTED) {
-        let celsius = match row.temperature_median_k {
-            k if k.is_finite() => format!("{:.1}", k - FREEZING_K),
-            _ => "-".to_owned(),
-        };
-        let sigma = match row.temperature_sigma_median_k {
-            k if k.is_finite() => significant(k, 2),
-            _ => "-".to_owned(),
-        };
         let guessed = if 2 * row.decided < row.pixels { "  undecided" } else { "" };
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {celsius:>14}  {sigma:>10}{guessed}",
-            row.category,
+        table.row([
+            row.category.clone(),
             whole(row.pixels as u64),
             whole(row.decided as u64),
             span(row.rows),
-            span(row.columns)
-        );
+            span(row.columns),
+            known(row.temperature_median_k, &|k| format!("{:.1}", k - FREEZING_K)),
+            format!("{:>10}{guessed}", known(row.temperature_sigma_median_k, &|k| significant(k, 2))),
+        ]);
     }
+    out.push_str(&table.text());
     if let Some(more) = found.objects.len().checked_sub(LISTED).filter(|more| *more > 0) {
         let _ = writeln!(out, "  and {more} more: objects.csv");
     }

@@ -1,6 +1,7 @@
 //! All materials against all: who can be told from whom.
 
 use super::terms::{camera, no_limit};
+use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::{listed, shortened, significant};
 use crate::words::probability as words;
 use hadar_study::{Apart, Matrix, Study};
@@ -75,22 +76,21 @@ pub(super) fn matrix(matrix: &Matrix, study: &Study) -> String {
         if with_camera { "; camera d: statistical distance" } else { "" }
     );
     let width = short.width().max(8);
-    let _ = write!(out, "  {:<width$}  {:<width$}  {:>12}", "target", "hardest", "distance");
-    let _ = writeln!(out, "{}", if with_camera { "    camera d   as a target" } else { "" });
-    for target in matrix.hardest_first() {
-        let _ = write!(
-            out,
-            "  {:<width$}  {:<width$}  {:>12}",
-            short.of(&target.material),
-            short.of(&target.limiting),
-            significant(target.distance_minimum, 3)
-        );
-        if let (Some(d), Some(yes)) = (target.statistical_distance_minimum, target.identifiable) {
-            let answer = if yes { "yes" } else { "no" };
-            let _ = write!(out, "  {:>10}  {answer:>11}", significant(d, 3));
-        }
-        out.push('\n');
+    let mut columns = vec![left("target", width), left("hardest", width), right("distance", 12)];
+    if with_camera {
+        columns.extend([right("camera d", 10), right(" as a target", 11)]);
     }
+    let mut table = Columns::new(columns);
+    for target in matrix.hardest_first() {
+        let distance = significant(target.distance_minimum, 3);
+        let mut cells = vec![short.of(&target.material), short.of(&target.limiting), &distance];
+        let reached = target.statistical_distance_minimum.map_or_else(String::new, |d| significant(d, 3));
+        if let (false, Some(yes)) = (reached.is_empty(), target.identifiable) {
+            cells.extend([reached.as_str(), if yes { "yes" } else { "no" }]);
+        }
+        table.row(cells);
+    }
+    out.push_str(&table.text());
     out.push('\n');
     out
 }

@@ -1,5 +1,6 @@
 //! A ranging study in words: the answer, the bounds, what would have to change, what it rests on.
 
+use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{read_as, warnings};
 use crate::words::Say;
 use hadar::ranging::depth::DepthSolution as Solution;
@@ -55,50 +56,29 @@ fn bounds(result: &Ranging) -> String {
     let names: Vec<String> = result.objects.iter().map(name).collect();
     let first = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(6);
     let widths: Vec<usize> = signals.iter().map(|signal| signal.name().len().max(18)).collect();
-    let _ = write!(out, "  {:first$}  {:>8}", "", "windows");
-    for (signal, width) in signals.iter().zip(&widths) {
-        let _ = write!(out, "  {:>width$}", signal.name());
+    let heads = || signals.iter().zip(&widths).map(|(signal, width)| right(signal.name(), *width));
+    let mut table = Columns::new([left("", first), right("windows", 8)].into_iter().chain(heads()));
+    for (object, name) in result.objects.iter().zip(names) {
+        let start = [name, object.windows.to_string()];
+        table.row(start.into_iter().chain(object.signals.iter().map(cell)));
     }
-    out.push('\n');
-    for (object, name) in result.objects.iter().zip(&names) {
-        let _ = write!(out, "  {name:first$}  {:>8}", object.windows);
-        for (found, width) in object.signals.iter().zip(&widths) {
-            let _ = write!(out, "  {:>width$}", cell(found));
-        }
-        out.push('\n');
+    out.push_str(&table.text());
+    let Some(all) = result.objects.first() else { return out + "\n" };
+    let mut table = Columns::headless(std::iter::once(left("", first + 10)).chain(heads()));
+    let mut line = |label: String, value: &dyn Fn(&SignalBounds) -> String| {
+        table.row(std::iter::once(label).chain(all.signals.iter().map(value)));
+    };
+    line("information of a window, pixel^-2".into(), &|found| finite(found.information_per_px2));
+    line("photons of a window".into(), &|found| finite(found.photons));
+    line("noise over shot noise (gamma)".into(), &|found| finite(found.gamma));
+    line("sigma_c of one photon, pixels".into(), &|found| finite(found.sigma_correspondence_px));
+    line("least disparity error, pixels".into(), &|found| finite(found.disparity_error_px));
+    if all.signals.iter().any(|found| found.largest_depth_m.is_some()) && depth {
+        let share = 100.0 * result.scenario.requirement.share;
+        let label = format!("depth to which {share} % do, as seen");
+        line(label, &|found| found.largest_depth_m.map_or("-".into(), length));
     }
-    if let Some(all) = result.objects.first() {
-        for (label, value) in [
-            (
-                "information of a window, pixel^-2",
-                &(|found: &SignalBounds| found.information_per_px2) as &dyn Fn(&SignalBounds) -> f64,
-            ),
-            ("photons of a window", &|found: &SignalBounds| found.photons),
-            ("noise over shot noise (gamma)", &|found: &SignalBounds| found.gamma),
-            ("sigma_c of one photon, pixels", &|found: &SignalBounds| found.sigma_correspondence_px),
-            ("least disparity error, pixels", &|found: &SignalBounds| found.disparity_error_px),
-        ] {
-            let _ = write!(out, "  {label:width$}", width = first + 10);
-            for (found, width) in all.signals.iter().zip(&widths) {
-                let _ = write!(out, "  {:>width$}", finite(value(found)));
-            }
-            out.push('\n');
-        }
-        if all.signals.iter().any(|found| found.largest_depth_m.is_some()) && depth {
-            let share = 100.0 * result.scenario.requirement.share;
-            let _ = write!(
-                out,
-                "  {:width$}",
-                format!("depth to which {share} % do, as seen"),
-                width = first + 10
-            );
-            for (found, width) in all.signals.iter().zip(&widths) {
-                let shown = found.largest_depth_m.map_or("-".into(), length);
-                let _ = write!(out, "  {shown:>width$}");
-            }
-            out.push('\n');
-        }
-    }
+    out.push_str(&table.text());
     out.push('\n');
     out
 }
@@ -134,10 +114,11 @@ fn cells(result: &Ranging) -> String {
     let mut out =
         String::from("Information of a window with and without resolution, median, pixel^-2 (Table S4)\n");
     let rows = [("bands together", cells.total, cells.spatial), ("bands apart", cells.spectral, cells.full)];
-    let _ = writeln!(out, "  {:14}  {:>17}  {:>12}", "", "pixels together", "pixels apart");
+    let mut table = Columns::new([left("", 14), right("pixels together", 17), right("pixels apart", 12)]);
     for (label, joined, apart) in rows {
-        let _ = writeln!(out, "  {label:14}  {:>17}  {:>12}", finite(joined), finite(apart));
+        table.row([label.to_owned(), finite(joined), finite(apart)]);
     }
+    out.push_str(&table.text());
     if let Some(other) = cells.other_derivative {
         let _ = writeln!(
             out,
@@ -209,27 +190,33 @@ fn witnesses(result: &Ranging) -> String {
     let witnessed: Vec<_> = result.lines.iter().filter(|line| line.method.is_some()).collect();
     if !witnessed.is_empty() {
         out.push_str("Matching against the bound without diffraction, median over the windows of a line\n");
-        let _ = writeln!(
-            out,
-            "  {:>4}  {:26} {:18} {:>10} {:>10} {:>10} {:>14} {:>9}",
-            "row", "signal", "method", "bound", "rmse", "|bias|", "scatter/bound", "outliers"
-        );
+        let mut table = Columns::narrow([
+            right("row", 4),
+            left("", 0),
+            left("signal", 26),
+            left("method", 18),
+            right("bound", 10),
+            right("rmse", 10),
+            right("|bias|", 10),
+            right("scatter/bound", 14),
+            right("outliers", 9),
+        ]);
         for line in witnessed {
-            let middle = |values: &[f64]| hadar_study::range::median(values);
+            let middle = |values: &[f64]| length(hadar_study::range::median(values));
             let sizes: Vec<f64> = line.bias_m.iter().map(|bias| bias.abs()).collect();
-            let _ = writeln!(
-                out,
-                "  {:>4}  {:26} {:18} {:>10} {:>10} {:>10} {:>14} {:>9}",
-                line.row,
-                line.signal.name(),
-                line.method.unwrap_or_default(),
-                length(middle(&line.bound_without_diffraction_m)),
-                length(middle(&line.rmse_m)),
-                length(middle(&sizes)),
+            table.row([
+                line.row.to_string(),
+                String::new(),
+                line.signal.name().to_owned(),
+                line.method.unwrap_or_default().to_owned(),
+                middle(&line.bound_without_diffraction_m),
+                middle(&line.rmse_m),
+                middle(&sizes),
                 line.scatter_over_bound.map_or("-".into(), |ratio| significant(ratio, 2)),
-                percent(line.outliers.iter().sum::<f64>() / line.outliers.len().max(1) as f64)
-            );
+                percent(line.outliers.iter().sum::<f64>() / line.outliers.len().max(1) as f64),
+            ]);
         }
+        out.push_str(&table.text());
         out.push_str(
             "  bias: pixel locking, and disparity that changes within a window (a road does from row to row: try window = [1, 25]); it does not \
              shrink with more light. Where most matches are outliers the bound is out of reach: noise has more texture than the image\n\n",
@@ -237,27 +224,18 @@ fn witnesses(result: &Ranging) -> String {
     }
     if !result.matched.is_empty() {
         out.push_str("Whole view matched once, block matching (standard depth metrics)\n");
-        let _ = writeln!(
-            out,
-            "  {:26} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9}",
-            "signal", "Abs_Rel", "Sq_Rel m", "RMSE m", "RMSE_log", "d1", "d2", "d3", "pixels"
-        );
+        let heads = ["Abs_Rel", "Sq_Rel m", "RMSE m", "RMSE_log"].map(|head| right(head, 9));
+        let shares = ["d1", "d2", "d3"].map(|head| right(head, 8));
+        let all = std::iter::once(left("signal", 26)).chain(heads).chain(shares);
+        let mut table = Columns::narrow(all.chain([right("pixels", 9)]));
         for matched in &result.matched {
             let metrics = &matched.metrics;
-            let _ = writeln!(
-                out,
-                "  {:26} {:>9} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>9}",
-                matched.signal.name(),
-                significant(metrics.abs_rel, 3),
-                significant(metrics.sq_rel_m, 3),
-                significant(metrics.rmse_m, 3),
-                significant(metrics.rmse_log, 3),
-                percent(metrics.delta[0]),
-                percent(metrics.delta[1]),
-                percent(metrics.delta[2]),
-                metrics.used
-            );
+            let errors = [metrics.abs_rel, metrics.sq_rel_m, metrics.rmse_m, metrics.rmse_log];
+            let cells = std::iter::once(matched.signal.name().to_owned());
+            let cells = cells.chain(errors.map(|error| significant(error, 3)));
+            table.row(cells.chain(metrics.delta.map(percent)).chain([metrics.used.to_string()]));
         }
+        out.push_str(&table.text());
         out.push('\n');
     }
     out

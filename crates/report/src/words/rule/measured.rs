@@ -1,7 +1,7 @@
 //! Clauses that demand a quantity, and how well margins are known, as text.
 
-use super::columns::columns;
 use super::stop::{approach, metres};
+use crate::text::columns::aligned;
 use crate::text::numbers::{numbers, quantity, significant};
 use crate::words::Say;
 use crate::words::shortfall::in_words;
@@ -25,7 +25,7 @@ pub(super) fn of_measured(measured: &MeasuredAnswer, units: Units) -> String {
             measured_meets(camera),
         ]
     }));
-    let mut out = columns(&rows, &[1, 2]);
+    let mut out = aligned(&rows, &[1, 2]);
     let _ = writeln!(out, "  demanded: {}\n", measured.definition.say());
     for camera in &measured.cameras {
         let mut lines = Vec::new();

@@ -1,7 +1,7 @@
 //! The thermal stand-in in words: how exact it must be so that no camera of the rule tells it from a person.
 
-use super::columns::columns;
 use super::text::idle;
+use crate::text::columns::aligned;
 use crate::text::footing::warnings;
 use crate::text::significant;
 use crate::words::probability::reliability;
@@ -40,7 +40,7 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
             },
         ]
     }));
-    out.push_str(&columns(&rows, &[3, 4, 5]));
+    out.push_str(&aligned(&rows, &[3, 4, 5]));
     out.push_str(
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
          as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \

@@ -1,9 +1,9 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
-use super::columns::columns;
 use super::in_words_of_kind;
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
+use crate::text::columns::aligned;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use crate::words::Say;
@@ -89,7 +89,7 @@ fn overview(answer: &RuleAnswer) -> String {
             verdict,
         ]
     }));
-    columns(&rows, &[1]) + "\n"
+    aligned(&rows, &[1]) + "\n"
 }
 
 /// A clause that tells materials apart: a table, then each camera.
@@ -106,7 +106,7 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
             meets(camera),
         ]
     }));
-    let mut out = columns(&rows, &[1, 2, 3]);
+    let mut out = aligned(&rows, &[1, 2, 3]);
     let _ = writeln!(
         out,
         "  margin: least d over the envelope / {} demanded ({})\n",

@@ -1,6 +1,7 @@
 //! Thermometry as text for people.
 
 use crate::simulate::thermometry::rows::{decisive, rising};
+use crate::text::columns::{Columns, right};
 use crate::text::significant;
 use crate::words::Say;
 use hadar::fisher::Nuisance;
@@ -81,24 +82,19 @@ pub fn text(result: &Thermometry) -> String {
     out.push_str(
         "\n\nRoot mean squared error in K (bound; variance over that of the bound with its interval)\n",
     );
-    let line = |cells: [&str; 5]| {
-        let [t, known, unknown, fixed, manual] = cells;
-        let unknown = if two { format!("  {unknown:>34}") } else { String::new() };
-        format!("  {t:>8}  {known:>34}{unknown}  {fixed:>9}  {manual:>9}\n")
-    };
     let known = if result.environment_k.is_empty() { "maximum likelihood" } else { "lighting known" };
-    out.push_str(&line([units.temperature_unit(), known, "lighting unknown", "e fixed", "e manual"]));
+    let columns = [right(units.temperature_unit(), 8), right(known, 34)].into_iter();
+    let columns = columns.chain(two.then(|| right("lighting unknown", 34)));
+    let mut table = Columns::new(columns.chain([right("e fixed", 9), right("e manual", 9)]));
     for row in &rows {
         let imager =
             |errors: Option<Errors>| errors.map_or("none".into(), |e| trusted(e.bias, e.bias_interval));
-        out.push_str(&line([
-            &degrees(row.temperature_k, 2, units),
-            &reader(&row.lighting_known),
-            &row.lighting_unknown.as_ref().map_or_else(String::new, reader),
-            &imager(row.fixed.errors),
-            &imager(row.manual.errors),
-        ]));
+        let mut cells = vec![degrees(row.temperature_k, 2, units), reader(&row.lighting_known)];
+        cells.extend(two.then(|| row.lighting_unknown.as_ref().map_or_else(String::new, reader)));
+        cells.extend([imager(row.fixed.errors), imager(row.manual.errors)]);
+        table.row(cells);
     }
+    out.push_str(&table.text());
     out.push_str("  Last two columns: mean error of thermal imaging, K.\n\nAssumptions\n");
     for assumption in assumptions(result) {
         let _ = writeln!(out, "  {assumption}");

@@ -1,5 +1,6 @@
 //! The target against its alternatives, one line each.
 
+use super::columns::{Columns, left, right};
 use super::numbers::{numbers, photons, shortened, significant};
 use hadar_scenario::DistanceKind;
 use hadar_study::{NearestProof, PairResult, Study};
@@ -25,33 +26,33 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
         }
     }
     out.push('\n');
-    let _ = write!(
-        out,
-        "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {:>24}",
-        "alternative", "nearest", "local", "S29", "photons required", "nearest state"
-    );
-    out.push_str(if with_camera { "    camera d  told apart" } else { "" });
-    out.push_str(if with_camera && by_local { "    limit d\n" } else { "\n" });
+    let mut columns = vec![
+        left("alternative", width),
+        right("nearest", 9),
+        right("local", 9),
+        right("S29", 9),
+        right("photons required", 18),
+        right("nearest state", 24),
+    ];
+    if with_camera {
+        columns.extend([right("camera d", 10), right("told apart", 10)]);
+        columns.extend(by_local.then_some(right("limit d", 9)));
+    }
+    let mut table = Columns::new(columns);
     let mut sorted: Vec<&PairResult> = pairs.iter().collect();
     sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
     for pair in sorted {
         let nearest = &pair.nearest_state;
-        let state = study.units().temperature(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2);
-        let _ = write!(
-            out,
-            "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {state:>24}",
-            short.of(&pair.alternative),
-            significant(pair.distance_nearest, 3),
-            significant(pair.distance_local, 3),
-            significant(pair.distance_local_unknown_gain, 3),
-            photons(pair.photons_required)
-        );
-        let reached =
-            pair.statistical_distance.map_or_else(String::new, |d| format!("  {:>10}", significant(d, 3)));
-        let told = pair.told_apart.map_or("", |told| if told { "         yes" } else { "          no" });
+        let distances = [pair.distance_nearest, pair.distance_local, pair.distance_local_unknown_gain];
+        let mut cells = vec![short.of(&pair.alternative).to_owned()];
+        cells.extend(distances.map(|distance| significant(distance, 3)));
+        cells.push(photons(pair.photons_required));
+        cells.push(study.units().temperature(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2));
+        cells.extend(pair.statistical_distance.map(|d| significant(d, 3)));
+        cells.extend(pair.told_apart.map(|told| if told { "yes" } else { "no" }.to_owned()));
         let limit = pair.statistical_distance_nearest.filter(|_| by_local);
-        let limit = limit.map_or_else(String::new, |d| format!("  {:>9}", significant(d, 3)));
-        let _ = writeln!(out, "{reached}{told}{limit}");
+        cells.extend(limit.map(|d| significant(d, 3)));
+        table.row(cells);
     }
-    out
+    out + &table.text()
 }

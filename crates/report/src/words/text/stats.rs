@@ -1,25 +1,18 @@
 //! The ledger of what a question took, as aligned lines.
 
+use super::columns::aligned;
 use hadar::demand::{Line, Work};
 use hadar::words::whole;
-use std::fmt::Write as _;
 
 /// What there could have been, what was computed, what was spared and why.
 #[must_use]
 pub fn stats(work: &Work) -> String {
-    let head = [String::from("work"), "possible".into(), "computed".into(), "spared".into()];
+    let head = ["work", "possible", "computed", "spared", ""].map(str::to_owned);
     let rows = work.lines().map(|(thing, line)| {
         let [possible, computed, spared] = [line.possible(), line.computed(), line.spared()].map(whole);
-        ([thing.words().to_owned(), possible, computed, spared], why(line))
+        [thing.words().to_owned(), possible, computed, spared, why(line)]
     });
-    let rows: Vec<([String; 4], String)> = std::iter::once((head, String::new())).chain(rows).collect();
-    let width = |i: usize| rows.iter().map(|(row, _)| row[i].len()).max().unwrap_or(0);
-    let [name, possible, computed, spared] = [0, 1, 2, 3].map(width);
-    let mut out = String::new();
-    for ([what, of, done, left], why) in &rows {
-        let line = format!("{what:<name$}  {of:>possible$}  {done:>computed$}  {left:>spared$}  {why}");
-        let _ = writeln!(out, "{}", line.trim_end());
-    }
+    let mut out = aligned(&std::iter::once(head).chain(rows).collect::<Vec<_>>(), &[1, 2, 3]);
     if !work.spares_anything() {
         out.push_str(
             "nothing could be spared: all of it was asked for, and no proof made any of it needless\n",
