@@ -46,7 +46,7 @@ pub struct Output<'a> {
 pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, out: &Path) -> Result<Bundle> {
     let title = certificate::title(answer);
     let mut bundle = Bundle::about(Some(&title));
-    bundle.add("certificate.md", certificate::markdown(study, answer, provenance));
+    bundle.add("certificate.md", certificate::page(study, answer, provenance));
     let data = record::text(&record::record(study, answer, provenance)?)?;
     let statement = record::statement(answer, provenance, &data);
     bundle.add(record::NAME, data);

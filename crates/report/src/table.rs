@@ -1,4 +1,4 @@
-//! Tables as CSV, with the unit in every header.
+//! Tables as CSV, with the unit in every header, and as Markdown.
 
 use hadar::error::{Error, Result};
 
@@ -56,6 +56,32 @@ impl Table {
     }
 }
 
+/// A table in Markdown: its head, and a line for each row.
+#[must_use]
+pub fn markdown<R>(head: &[&str], rows: impl IntoIterator<Item = R>) -> String
+where
+    R: IntoIterator,
+    R::Item: AsRef<str>,
+{
+    ruled_markdown("---", head, rows)
+}
+
+/// The same with another rule below the head of a column.
+#[must_use]
+pub fn ruled_markdown<R>(rule: &str, head: &[&str], rows: impl IntoIterator<Item = R>) -> String
+where
+    R: IntoIterator,
+    R::Item: AsRef<str>,
+{
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    // A stroke would end the cell.
+    let cells = |row: R| row.into_iter().map(|cell| cell.as_ref().replace('|', "\\|")).collect();
+    let rule = format!("|{}\n", format!("{rule}|").repeat(head.len()));
+    line(head.iter().map(|name| (*name).to_owned()).collect())
+        + &rule
+        + &rows.into_iter().map(|row| line(cells(row))).collect::<String>()
+}
+
 /// A number with the digits that give it back; empty where there is none.
 #[must_use]
 pub fn number(value: f64) -> String {
@@ -78,6 +104,12 @@ pub fn optional(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stroke_ends_no_cell() {
+        let expected = "| a | b |\n|---|---|\n| 1 | x \\| y |\n";
+        assert_eq!(markdown(&["a", "b"], [["1", "x | y"]]), expected);
+    }
 
     #[test]
     fn numbers_survive_and_text_is_quoted() {

@@ -3,18 +3,21 @@
 use super::sources::dates;
 use super::stop::decisions;
 use super::{measured, text};
-use crate::manifest::{Provenance, VERSION};
+use crate::manifest::{Input, Provenance, VERSION};
+use crate::table::markdown;
 use crate::text::footing::{RESTS_ON, gaussian, of_scene};
 use crate::text::significant;
 use crate::words::Say;
 use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use hadar_scenario::Units;
-use hadar_study::{ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
+use hadar_study::{
+    ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, MeasuredVerdict, RuleAnswer, RuleStudy,
+};
 use std::fmt::Write as _;
 
 /// The page.
-pub(crate) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
+pub(crate) fn page(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
     let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
     let mut out = format!("# {}\n\n", title(answer));
     for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
@@ -70,15 +73,13 @@ pub(crate) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
         });
         out.push('\n');
     }
+    let hash = |input: &Input| input.sha256.as_deref().map_or(READ_ONCE.into(), |hash| format!("`{hash}`"));
+    let inputs = provenance.inputs.iter().map(|input| [input.path.clone(), hash(input)]);
     out.push_str(
         "## Inputs\n\nThe answer rests on these, by their content, and on the program above; made again with them it is the same, byte by byte. \
-         `sha256sum` gives the hash of a file; of what is built in the program gives it.\n\n| input | SHA-256 |\n|---|---|\n",
+         `sha256sum` gives the hash of a file; of what is built in the program gives it.\n\n",
     );
-    for input in &provenance.inputs {
-        let hash = input.sha256.as_deref().map_or_else(|| READ_ONCE.into(), |hash| format!("`{hash}`"));
-        let _ = writeln!(out, "| {} | {hash} |", cell(&input.path));
-    }
-    out
+    out + &markdown(&["input", "SHA-256"], inputs)
 }
 
 /// What it is called.
@@ -103,9 +104,18 @@ fn budgets(clause: &ClauseAnswer, out: &mut String) {
 /// A clause that tells materials apart.
 fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
     let _ = writeln!(out, "> {}\n", apart.requirement.quotable.say());
-    out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
-    out.push_str("|---|---|---|---|---|---|---|---|---|\n");
-    apart.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
+    let head = [
+        "camera",
+        "meets",
+        "margin",
+        "d at worst",
+        "right at most",
+        "bands",
+        "certificate",
+        "limiting scene",
+        "would do",
+    ];
+    out.push_str(&markdown(&head, apart.cameras.iter().map(|camera| row(camera, units))));
     out.push('\n');
     if let Some(part) = &apart.not_identifiable {
         let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
@@ -117,25 +127,22 @@ fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
     let _ = writeln!(out, "> Demanded: {}.\n", measured.definition.say());
     let head =
         ["camera", "meets", "margin", measured::measure(measured.quantity), "evidence", "limiting scene"];
-    let _ = writeln!(out, "| {} |\n|---|---|---|---|---|---|", head.join(" | "));
-    for camera in &measured.cameras {
-        let met = measured::measured_meets(camera);
-        let cells = [
+    let cells = |camera: &MeasuredVerdict| {
+        [
             camera.name.clone(),
-            met,
+            measured::measured_meets(camera),
             significant(camera.margin, 3),
             camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3)),
             camera.grade.name().to_owned(),
             measured::measured_scene(&camera.limiting, units),
-        ];
-        let _ = writeln!(out, "| {} |", cells.map(|text| cell(&text)).join(" | "));
-    }
+        ]
+    };
+    out.push_str(&markdown(&head, measured.cameras.iter().map(cells)));
     out.push('\n');
 }
 
-fn row(camera: &CameraVerdict, units: Units) -> String {
-    let fixes = camera.fixes.as_ref().map_or_else(String::new, |fixes| text::would_do(fixes, units));
-    let cells = [
+fn row(camera: &CameraVerdict, units: Units) -> [String; 9] {
+    [
         camera.name.clone(),
         text::meets(camera),
         significant(camera.margin, 3),
@@ -144,12 +151,6 @@ fn row(camera: &CameraVerdict, units: Units) -> String {
         text::reading(camera),
         text::certified(camera),
         text::scene(&camera.limiting, units),
-        fixes,
-    ];
-    format!("| {} |\n", cells.map(|text| cell(&text)).join(" | "))
-}
-
-/// Text that cannot end a cell.
-fn cell(text: &str) -> String {
-    text.replace('|', "\\|")
+        camera.fixes.as_ref().map_or_else(String::new, |fixes| text::would_do(fixes, units)),
+    ]
 }
