@@ -12,10 +12,10 @@ pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
 use crate::shown::Shown;
-use crate::table::{Table, number};
+use crate::table::{Table, number, optional};
 use hadar::error::{Error, Result};
 use hadar_formats::cube::npy_map;
-use hadar_study::decompose::{Block, Decomposed, Kept, TruthFound};
+use hadar_study::decompose::{Block, Decomposed, Kept, MaterialRow, TruthFound};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -97,34 +97,22 @@ fn add_maps(bundle: &mut Bundle, block: &Block, size: [usize; 2]) -> Result<()> 
 /// What was found, a row for every material.
 #[must_use]
 pub fn materials(result: &Decomposed) -> Table {
-    let mut table = Table::new([
-        "material",
-        "index",
-        "hue_deg",
-        "pixels",
-        "decided",
-        "temperature_median_k",
-        "temperature_tenth_k",
-        "temperature_nine_tenths_k",
-        "temperature_sigma_median_k",
-    ]);
-    for row in &result.found {
-        let index = result.materials.iter().position(|name| *name == row.material);
-        table.push(vec![
-            row.material.clone(),
-            index.map_or_else(String::new, |index| index.to_string()),
-            index
-                .and_then(|index| result.vision.hues_deg.get(index))
-                .map_or_else(String::new, |h| number(*h)),
-            row.pixels.to_string(),
-            row.decided.to_string(),
-            number(row.temperature_median_k),
-            number(row.temperature_tenths_k[0]),
-            number(row.temperature_tenths_k[1]),
-            number(row.temperature_sigma_median_k),
-        ]);
-    }
-    table
+    let index = |row: &MaterialRow| result.materials.iter().position(|name| *name == row.material);
+    let hue = |row: &MaterialRow| result.vision.hues_deg.get(index(row)?).copied();
+    Table::of(
+        &result.found,
+        &[
+            ("material", &|row| row.material.clone()),
+            ("index", &|row| index(row).map_or_else(String::new, |index| index.to_string())),
+            ("hue_deg", &|row| optional(hue(row))),
+            ("pixels", &|row| row.pixels.to_string()),
+            ("decided", &|row| row.decided.to_string()),
+            ("temperature_median_k", &|row| number(row.temperature_median_k)),
+            ("temperature_tenth_k", &|row| number(row.temperature_tenths_k[0])),
+            ("temperature_nine_tenths_k", &|row| number(row.temperature_tenths_k[1])),
+            ("temperature_sigma_median_k", &|row| number(row.temperature_sigma_median_k)),
+        ],
+    )
 }
 
 /// Pixels of what is there (rows) by what was found (columns).

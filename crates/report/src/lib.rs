@@ -1,4 +1,4 @@
-//! Results made readable: a module a command, with its text, its tables, its figures and the files of `--out`.
+//! Results made readable: a module a command, with its tables, its figures and the files of `--out`; what it says is in [`words`].
 //!
 //! What they share: [`plot`] draws, [`figures`] joins a figure and its table, [`table`] writes CSV, [`parquet`](mod@parquet) the same with types, [`tables`] and [`text`]
 //! say what several commands say, [`bundle`] gathers files and makes one page of them, [`folder`] puts them in place, all or none,

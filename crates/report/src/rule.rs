@@ -13,7 +13,7 @@ use super::bundle::Bundle;
 use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
-use super::table::{Table, number, optional};
+use super::table::{Table, joined, number, optional, yes_no};
 use super::tables;
 use crate::words::Say;
 use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
@@ -120,7 +120,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
             let of = |value: &dyn Fn(&CameraVerdict) -> String| own.map(value).unwrap_or_default();
             let mut row = vec![
                 line.camera.to_owned(),
-                if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
+                yes_no(line.verdict == Verdict::Meets),
                 codes(line.fails_by, " "),
                 line.provided.map(|proviso| proviso.say()).unwrap_or_default(),
                 of(&|camera| camera.bands.to_string()),
@@ -161,7 +161,6 @@ fn value(camera: &CameraVerdict, wanted: Quantity) -> Option<f64> {
 }
 
 fn worst_cases(answer: &RuleAnswer) -> Table {
-    let joined = |values: &[f64]| values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(" ");
     let mut table = Table::new([
         "clause",
         "camera",
@@ -240,7 +239,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
         let proved = own.and_then(|own| Some(own.lower_bound? / only?.requirement.distance));
         table.push(vec![
             camera.name.clone(),
-            if camera.passes { "yes" } else { "no" }.into(),
+            yes_no(camera.passes),
             fails,
             number(camera.margin),
             optional(proved),

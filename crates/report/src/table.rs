@@ -16,6 +16,34 @@ impl Table {
         Self { header: header.into_iter().map(Into::into).collect(), rows: Vec::new() }
     }
 
+    /// A row for each of `rows`, from columns that each have a name and make a cell of a row.
+    #[must_use]
+    pub fn of<T>(rows: &[T], columns: &[(&str, &dyn Fn(&T) -> String)]) -> Self {
+        let header = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let row = |row| columns.iter().map(|(_, cell)| cell(row)).collect();
+        Self { header, rows: rows.iter().map(row).collect() }
+    }
+
+    /// The same of numbers.
+    #[must_use]
+    pub fn of_numbers<T>(rows: &[T], columns: &[(&str, &dyn Fn(&T) -> f64)]) -> Self {
+        let header = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let row = |row| columns.iter().map(|(_, of)| number(of(row))).collect();
+        Self { header, rows: rows.iter().map(row).collect() }
+    }
+
+    /// A table of whole columns of numbers; as many rows as the first one has.
+    #[must_use]
+    pub fn of_columns<S: Into<String>>(columns: impl IntoIterator<Item = (S, impl AsRef<[f64]>)>) -> Self {
+        let (header, columns): (Vec<String>, Vec<_>) =
+            columns.into_iter().map(|(name, values)| (name.into(), values)).unzip();
+        let rows = columns.first().map_or(0, |first| first.as_ref().len());
+        let cell = |values: &[f64], row: usize| number(values.get(row).copied().unwrap_or(f64::NAN));
+        let row = |row: usize| columns.iter().map(|column| cell(column.as_ref(), row)).collect();
+        let rows = (0..rows).map(row).collect();
+        Self { header, rows }
+    }
+
     /// Adds a row of text cells.
     pub fn push(&mut self, row: Vec<String>) {
         self.rows.push(row);
@@ -93,6 +121,18 @@ pub fn number(value: f64) -> String {
     } else {
         format!("{value}")
     }
+}
+
+/// Numbers in one cell.
+#[must_use]
+pub fn joined(values: &[f64]) -> String {
+    values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" ")
+}
+
+/// Yes or no.
+#[must_use]
+pub fn yes_no(yes: bool) -> String {
+    if yes { "yes" } else { "no" }.to_owned()
 }
 
 /// An optional number; empty where there is none.

@@ -1,4 +1,7 @@
-//! What the program says: every sentence of an answer, each in one place.
+//! What the program says: every sentence, each in one place, those of a command in its file or folder.
+//!
+//! A command has its sentences as [`Say`], its text, and what stands below its pictures (`captions`); [`text`] has what several commands
+//! say, [`warnings`] a file for each topic.
 
 pub(crate) mod air_ranging;
 pub(crate) mod calibrate;

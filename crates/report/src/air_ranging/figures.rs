@@ -45,11 +45,8 @@ pub fn error_over_distance(result: &AirRanging) -> Plot {
             of(curve, |point| point.sigma_others_known_m),
         ),
     ];
-    let mut table = Table::new(["distance_m"].into_iter().chain(columns.iter().map(|column| column.1)));
-    for (i, x) in x.iter().enumerate() {
-        let row: Vec<f64> = std::iter::once(*x).chain(columns.iter().map(|column| column.4[i])).collect();
-        table.push_numbers(&row);
-    }
+    let of_table = columns.iter().map(|column| (column.1, &column.4));
+    let table = Table::of_columns(std::iter::once(("distance_m", &x)).chain(of_table));
     let name = &result.target;
     let mut figure = LineFigure::new(
         format!("How well the distance of {name} can be read from the air"),
@@ -97,10 +94,7 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
     let (own, edge) = (inside(false), inside(true));
     let signed = of(curve, |point| point.bias_without_sky_m);
     let bound = of(curve, |point| point.sigma_m);
-    let mut table = Table::new(["distance_m", "bias_without_sky_m", "sigma_m"]);
-    for (i, x) in x.iter().enumerate() {
-        table.push_numbers(&[*x, signed[i], bound[i]]);
-    }
+    let table = Table::of_columns([("distance_m", &x), ("bias_without_sky_m", &signed), ("sigma_m", &bound)]);
     let mut figure = LineFigure::new(
         "What a model loses that leaves out the sky",
         distance(),
@@ -136,24 +130,17 @@ pub fn information(result: &AirRanging) -> Plot {
         None => format!("{what}, none"),
     };
     let tau: Vec<f64> = result.bands.iter().map(|band| band.transmittance).collect();
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "information_per_m2",
-        "information_others_known_per_m2",
-        "transmittance",
-        "share_of_path",
-        "counts",
-    ]);
-    for band in &result.bands {
-        table.push_numbers(&[
-            band.center_cm1,
-            band.information_per_m2,
-            band.information_others_known_per_m2,
-            band.transmittance,
-            band.share_of_path,
-            band.counts,
-        ]);
-    }
+    let table = Table::of_numbers(
+        &result.bands,
+        &[
+            ("wavenumber_cm1", &|band| band.center_cm1),
+            ("information_per_m2", &|band| band.information_per_m2),
+            ("information_others_known_per_m2", &|band| band.information_others_known_per_m2),
+            ("transmittance", &|band| band.transmittance),
+            ("share_of_path", &|band| band.share_of_path),
+            ("counts", &|band| band.counts),
+        ],
+    );
     let figure = LineFigure::new(
         format!("What each band tells of {} m", significant(result.at.distance_m, 3)),
         wavenumber_axis(&x),
@@ -180,10 +167,7 @@ pub fn stereo(result: &AirRanging) -> Option<Plot> {
     let curve = &result.curve;
     let x: Vec<f64> = curve.iter().map(|point| point.distance_m).collect();
     let (air, stereo) = (of(curve, |point| point.sigma_window_m), of(curve, |point| point.sigma_stereo_m));
-    let mut table = Table::new(["distance_m", "sigma_air_m", "sigma_stereo_m"]);
-    for (i, x) in x.iter().enumerate() {
-        table.push_numbers(&[*x, air[i], stereo[i]]);
-    }
+    let table = Table::of_columns([("distance_m", &x), ("sigma_air_m", &air), ("sigma_stereo_m", &stereo)]);
     let mut figure = LineFigure::new(
         "A window by the air and by stereo",
         distance(),

@@ -45,35 +45,22 @@ pub fn bundle(result: &BlackbodyFound, format: CubeFormat, out: &Path) -> Result
 }
 
 fn response(result: &BlackbodyFound) -> Table {
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "response",
-        "response_sigma",
-        "response_sigma_by_noise",
-        "response_sigma_by_temperatures",
-        "offset",
-        "offset_sigma",
-        "covariance",
-        "sigma_middle_by_noise_k",
-        "sigma_middle_by_temperatures_k",
-        "noise_middle_k",
-    ]);
-    for row in &result.channels {
-        table.push_numbers(&[
-            row.wavenumber_cm1,
-            row.response,
-            row.response_error.sigma(),
-            row.response_error.var_noise.sqrt(),
-            row.response_error.var_temperature.sqrt(),
-            row.offset,
-            row.offset_error.sigma(),
-            row.covariance,
-            row.sigma_middle_k[0],
-            row.sigma_middle_k[1],
-            row.noise_middle_k,
-        ]);
-    }
-    table
+    Table::of_numbers(
+        &result.channels,
+        &[
+            ("wavenumber_cm1", &|row| row.wavenumber_cm1),
+            ("response", &|row| row.response),
+            ("response_sigma", &|row| row.response_error.sigma()),
+            ("response_sigma_by_noise", &|row| row.response_error.var_noise.sqrt()),
+            ("response_sigma_by_temperatures", &|row| row.response_error.var_temperature.sqrt()),
+            ("offset", &|row| row.offset),
+            ("offset_sigma", &|row| row.offset_error.sigma()),
+            ("covariance", &|row| row.covariance),
+            ("sigma_middle_by_noise_k", &|row| row.sigma_middle_k[0]),
+            ("sigma_middle_by_temperatures_k", &|row| row.sigma_middle_k[1]),
+            ("noise_middle_k", &|row| row.noise_middle_k),
+        ],
+    )
 }
 
 fn temperatures(result: &BlackbodyFound) -> Table {
@@ -91,23 +78,21 @@ fn figure(result: &BlackbodyFound) -> Plot {
     let (noise, temperature) =
         (of(&|row| 1e3 * row.sigma_middle_k[0]), of(&|row| 1e3 * row.sigma_middle_k[1]));
     let own = of(&|row| 1e3 * row.noise_middle_k);
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "response_over_peak",
-        "common_by_noise_mk",
-        "common_by_temperatures_mk",
-        "noise_of_a_sample_mk",
+    let response = of(&|row| row.response / peak);
+    let table = Table::of_columns([
+        ("wavenumber_cm1", &x),
+        ("response_over_peak", &response),
+        ("common_by_noise_mk", &noise),
+        ("common_by_temperatures_mk", &temperature),
+        ("noise_of_a_sample_mk", &own),
     ]);
-    for (c, row) in result.channels.iter().enumerate() {
-        table.push_numbers(&[x[c], row.response / peak, noise[c], temperature[c], own[c]]);
-    }
     let figure = LineFigure::new(
         "Response by blackbodies, and the errors it leaves",
         wavenumber_axis(&x),
         Axis::linear("response (peak: 1)"),
     )
     .subtitle(in_the_middle(result))
-    .series(Series::line("response", x.clone(), of(&|row| row.response / peak)).colour(0))
+    .series(Series::line("response", x.clone(), response).colour(0))
     .lower(
         Panel::new(Axis::log("error (mK)"))
             .series(Series::line("common to all pixels, by noise", x.clone(), noise).colour(1))

@@ -5,10 +5,10 @@ pub use crate::words::calibrate::noise::text;
 use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
-use crate::table::{Table, number};
+use crate::table::{Table, number, optional};
 use crate::words::calibrate::noise::{camera, each_point};
 use hadar::error::Result;
-use hadar_estimate::calibrate::Line;
+use hadar_estimate::calibrate::{Line, OfBand};
 use hadar_study::calibrate::NoiseFound;
 use std::path::Path;
 
@@ -35,49 +35,34 @@ pub fn bundle(result: &NoiseFound, out: &Path) -> Result<Bundle> {
 
 /// What was found of each band.
 fn bands(result: &NoiseFound) -> Table {
-    let mut table = Table::new([
-        "band",
-        "mean_of_all",
-        "mean",
-        "variance",
-        "variance_sigma",
-        "texture_share",
-        "electronic_variance",
-        "electronic_variance_sigma",
-        "per_photon",
-        "per_photon_sigma",
-        "gain_variance",
-        "gain_variance_sigma",
-    ]);
-    for (i, band) in result.transfer.bands.iter().enumerate() {
-        let line = band.line.as_ref();
-        let of = |value: fn(&Line) -> f64| line.map_or_else(String::new, |line| number(value(line)));
-        table.push(vec![
-            i.to_string(),
-            number(band.mean_of_all),
-            number(band.mean),
-            number(band.variance),
-            number(band.sigma_variance),
-            number(band.texture),
-            of(|line| line.electronic),
-            of(|line| line.sigma_electronic),
-            of(|line| line.per_photon),
-            of(|line| line.sigma_per_photon),
-            of(|line| line.spread),
-            of(|line| line.sigma_spread),
-        ]);
-    }
-    table
+    let of = |band: &OfBand, value: fn(&Line) -> f64| optional(band.line.as_ref().map(value));
+    let bands: Vec<(usize, &OfBand)> = result.transfer.bands.iter().enumerate().collect();
+    Table::of(
+        &bands,
+        &[
+            ("band", &|(i, _)| i.to_string()),
+            ("mean_of_all", &|(_, band)| number(band.mean_of_all)),
+            ("mean", &|(_, band)| number(band.mean)),
+            ("variance", &|(_, band)| number(band.variance)),
+            ("variance_sigma", &|(_, band)| number(band.sigma_variance)),
+            ("texture_share", &|(_, band)| number(band.texture)),
+            ("electronic_variance", &|(_, band)| of(band, |line| line.electronic)),
+            ("electronic_variance_sigma", &|(_, band)| of(band, |line| line.sigma_electronic)),
+            ("per_photon", &|(_, band)| of(band, |line| line.per_photon)),
+            ("per_photon_sigma", &|(_, band)| of(band, |line| line.sigma_per_photon)),
+            ("gain_variance", &|(_, band)| of(band, |line| line.spread)),
+            ("gain_variance_sigma", &|(_, band)| of(band, |line| line.sigma_spread)),
+        ],
+    )
 }
 
 /// Variance of the electronic noise in photons squared, as the `[cube]` of a ranging scenario reads it.
 fn variances(result: &NoiseFound) -> Table {
     let common = &result.transfer.common;
     let variance = common.noise_electrons().powi(2);
+    let variance = number(if variance.is_finite() { variance } else { 0.0 });
     let mut table = Table::new(["band", "variance_counts2"]);
-    for band in 0..result.transfer.bands.len() {
-        table.push(vec![band.to_string(), number(if variance.is_finite() { variance } else { 0.0 })]);
-    }
+    (0..result.transfer.bands.len()).for_each(|band| table.push(vec![band.to_string(), variance.clone()]));
     table
 }
 

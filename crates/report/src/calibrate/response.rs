@@ -47,25 +47,17 @@ pub fn bundle(result: &ResponseFound, out: &Path) -> Result<Bundle> {
 }
 
 fn response(result: &ResponseFound) -> Table {
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "response",
-        "sigma",
-        "sigma_beforehand",
-        "sigma_readings_alone",
-        "typical",
-    ]);
-    for row in &result.response {
-        table.push(vec![
-            number(row.wavenumber_cm1),
-            number(row.response),
-            number(row.sigma),
-            number(row.sigma_beforehand),
-            optional(row.sigma_readings_alone),
-            number(row.typical),
-        ]);
-    }
-    table
+    Table::of(
+        &result.response,
+        &[
+            ("wavenumber_cm1", &|row| number(row.wavenumber_cm1)),
+            ("response", &|row| number(row.response)),
+            ("sigma", &|row| number(row.sigma)),
+            ("sigma_beforehand", &|row| number(row.sigma_beforehand)),
+            ("sigma_readings_alone", &|row| optional(row.sigma_readings_alone)),
+            ("typical", &|row| number(row.typical)),
+        ],
+    )
 }
 
 fn square(result: &ResponseFound, values: &[f64]) -> Table {
@@ -102,14 +94,17 @@ fn figure(result: &ResponseFound) -> Plot {
         result.response.iter().map(|row| pick(row) / peak).collect::<Vec<f64>>()
     };
     let (values, sigma, typical) = (of(&|row| row.response), of(&|row| row.sigma), of(&|row| row.typical));
-    let mut table = Table::new(["wavenumber_cm1", "response_over_peak", "low_95", "high_95", "typical"]);
     let edge = |sign: f64| -> Vec<f64> {
         values.iter().zip(&sigma).map(|(value, sigma)| value + sign * 1.96 * sigma).collect()
     };
     let (low, high) = (edge(-1.0), edge(1.0));
-    for j in 0..x.len() {
-        table.push_numbers(&[x[j], values[j], low[j], high[j], typical[j]]);
-    }
+    let table = Table::of_columns([
+        ("wavenumber_cm1", &x),
+        ("response_over_peak", &values),
+        ("low_95", &low),
+        ("high_95", &high),
+        ("typical", &typical),
+    ]);
     let figure = LineFigure::new(
         format!("Response: {} of {} values are determined by the readings", result.determined, x.len()),
         wavenumber_axis(&x),

@@ -68,31 +68,20 @@ fn left(result: &StripesFound) -> Table {
 }
 
 fn stripes(result: &StripesFound) -> Table {
-    let mut table = Table::new([
-        "line",
-        "band",
-        "gain",
-        "gain_sigma",
-        "offset",
-        "offset_sigma",
-        "level",
-        "off_at_level",
-        "off_sigma",
-    ]);
-    for stripe in &result.destriped.stripes {
-        let numbers = [
-            stripe.gain,
-            stripe.sigma_gain,
-            stripe.offset,
-            stripe.sigma_offset,
-            stripe.level,
-            stripe.off,
-            stripe.sigma,
-        ];
-        let places = [stripe.line, stripe.band].map(|place| place.to_string());
-        table.push(places.into_iter().chain(numbers.map(number)).collect());
-    }
-    table
+    Table::of(
+        &result.destriped.stripes,
+        &[
+            ("line", &|stripe| stripe.line.to_string()),
+            ("band", &|stripe| stripe.band.to_string()),
+            ("gain", &|stripe| number(stripe.gain)),
+            ("gain_sigma", &|stripe| number(stripe.sigma_gain)),
+            ("offset", &|stripe| number(stripe.offset)),
+            ("offset_sigma", &|stripe| number(stripe.sigma_offset)),
+            ("level", &|stripe| number(stripe.level)),
+            ("off_at_level", &|stripe| number(stripe.off)),
+            ("off_sigma", &|stripe| number(stripe.sigma)),
+        ],
+    )
 }
 
 /// The band of the most stripes, before, after, and what was taken out.

@@ -35,28 +35,20 @@ pub(super) fn categories(found: &Segmented) -> Table {
 
 /// Objects, a row for each; rows and columns from the first to the one after the last.
 pub(super) fn objects(found: &Segmented) -> Table {
-    let mut table = Table::new([
-        "category",
-        "pixels",
-        "decided",
-        "first_row",
-        "after_last_row",
-        "first_column",
-        "after_last_column",
-        "temperature_median_k",
-        "temperature_sigma_median_k",
-    ]);
-    for row in &found.objects {
-        let places = [row.pixels, row.decided, row.rows[0], row.rows[1], row.columns[0], row.columns[1]];
-        let kelvin =
-            [row.temperature_median_k, row.temperature_sigma_median_k].map(|k| match k.is_finite() {
-                true => number(k),
-                false => String::new(),
-            });
-        let cells = std::iter::once(row.category.clone());
-        table.push(cells.chain(places.map(|place| place.to_string())).chain(kelvin).collect());
-    }
-    table
+    Table::of(
+        &found.objects,
+        &[
+            ("category", &|row| row.category.clone()),
+            ("pixels", &|row| row.pixels.to_string()),
+            ("decided", &|row| row.decided.to_string()),
+            ("first_row", &|row| row.rows[0].to_string()),
+            ("after_last_row", &|row| row.rows[1].to_string()),
+            ("first_column", &|row| row.columns[0].to_string()),
+            ("after_last_column", &|row| row.columns[1].to_string()),
+            ("temperature_median_k", &|row| number(row.temperature_median_k)),
+            ("temperature_sigma_median_k", &|row| number(row.temperature_sigma_median_k)),
+        ],
+    )
 }
 
 /// The map of categories beside the thermal image, of the pixels that are shown.

@@ -8,7 +8,7 @@ use super::equalise::{Clahe, Curves, LIMIT};
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, Rgb, image_png};
 use crate::shown::Shown;
-use crate::table::{Table, number};
+use crate::table::{Table, optional};
 use crate::words::decompose::brightness_said;
 use hadar::error::Result;
 use hadar_scenario::decompose::Brightness;
@@ -256,27 +256,20 @@ pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
     if result.decided < result.pixels {
         keys.push((plain(&None), "undecided, or not told".to_owned()));
     }
-    let mut table = Table::new([
-        "row",
-        "column",
-        "hue_deg",
-        "saturation",
-        "brightness",
-        "texture_photons_s1_m2_sr1",
-        "thermal_photons_s1_m2_sr1",
-    ]);
-    for (i, [row, column, _]) in places.iter().enumerate() {
-        let of = |values: &[f64], i: usize| values.get(i).map_or_else(String::new, |x| number(*x));
-        table.push(vec![
-            row.to_string(),
-            column.to_string(),
-            vision.hue_deg.get(i).copied().flatten().map_or_else(String::new, number),
-            of(&vision.saturation, i),
-            of(&vision.brightness, i),
-            of(&texture, i),
-            of(&thermal, i),
-        ]);
-    }
+    let at = |values: &[f64], i: usize| optional(values.get(i).copied());
+    let rows: Vec<(usize, &[usize; 3])> = places.iter().enumerate().collect();
+    let table = Table::of(
+        &rows,
+        &[
+            ("row", &|(_, [row, ..])| row.to_string()),
+            ("column", &|(_, [_, column, _])| column.to_string()),
+            ("hue_deg", &|(i, _)| optional(vision.hue_deg.get(*i).copied().flatten())),
+            ("saturation", &|(i, _)| at(&vision.saturation, *i)),
+            ("brightness", &|(i, _)| at(&vision.brightness, *i)),
+            ("texture_photons_s1_m2_sr1", &|(i, _)| at(&texture, *i)),
+            ("thermal_photons_s1_m2_sr1", &|(i, _)| at(&thermal, *i)),
+        ],
+    );
     let figure = Pictures::new("Material, temperature and texture of the heat cube", pictures)
         .subtitle(brightness_said(LIMIT, 0.5 * (DARKEST + 1.0)))
         .no_value("nothing is told, or no light")

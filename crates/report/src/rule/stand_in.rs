@@ -3,7 +3,7 @@
 use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, LineFigure, Series};
-use crate::table::{Table, number, optional};
+use crate::table::{Table, joined, number, optional};
 use crate::words::rule::below_a_line;
 use hadar::error::Result;
 use hadar_study::{StandIn, StandInAnswer};
@@ -20,41 +20,24 @@ pub fn stand_in_bundle(answer: &StandInAnswer) -> Result<Bundle> {
 }
 
 fn table(answer: &StandInAnswer) -> Table {
-    let mut table = Table::new([
-        "camera",
-        "person",
-        "stand_in",
-        "emissivity_tolerance",
-        "temperature_tolerance_k",
-        "temperature_tolerance_proved_k",
-        "statistical_distance",
-        "farthest_emissivity_offset",
-        "farthest_temperature_k",
-        "farthest_lighting",
-        "farthest_surroundings_k",
-        "person_temperature_k",
-        "person_lighting",
-    ]);
-    let joined = |values: &[f64]| values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(" ");
-    for row in &answer.rows {
-        let there = &row.farthest;
-        table.push(vec![
-            row.camera.clone(),
-            row.person.clone(),
-            row.material.clone(),
-            number(row.emissivity_tolerance),
-            optional(row.temperature_tolerance_k),
-            optional(row.temperature_tolerance_proved_k),
-            number(row.distance),
-            number(there.emissivity_offset),
-            number(there.temperature_k),
-            joined(&there.lighting),
-            joined(&there.surroundings_k),
-            number(there.person_temperature_k),
-            joined(&there.person_lighting),
-        ]);
-    }
-    table
+    Table::of(
+        &answer.rows,
+        &[
+            ("camera", &|row| row.camera.clone()),
+            ("person", &|row| row.person.clone()),
+            ("stand_in", &|row| row.material.clone()),
+            ("emissivity_tolerance", &|row| number(row.emissivity_tolerance)),
+            ("temperature_tolerance_k", &|row| optional(row.temperature_tolerance_k)),
+            ("temperature_tolerance_proved_k", &|row| optional(row.temperature_tolerance_proved_k)),
+            ("statistical_distance", &|row| number(row.distance)),
+            ("farthest_emissivity_offset", &|row| number(row.farthest.emissivity_offset)),
+            ("farthest_temperature_k", &|row| number(row.farthest.temperature_k)),
+            ("farthest_lighting", &|row| joined(&row.farthest.lighting)),
+            ("farthest_surroundings_k", &|row| joined(&row.farthest.surroundings_k)),
+            ("person_temperature_k", &|row| number(row.farthest.person_temperature_k)),
+            ("person_lighting", &|row| joined(&row.farthest.person_lighting)),
+        ],
+    )
 }
 
 /// The edge of every stand-in that passes: temperature over emissivity.

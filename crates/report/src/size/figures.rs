@@ -22,13 +22,9 @@ const SEEN: f64 = 4e-3;
 pub fn emissivities(title: &str, wavenumbers_cm1: &[f64], surfaces: &[&Surface]) -> Vec<Plot> {
     let pictures = surfaces.len().div_ceil(CURVES);
     let one = |(i, drawn): (usize, &[&Surface])| {
-        let header = drawn.iter().map(|surface| format!("emissivity_{}", surface.name));
-        let mut table = Table::new(std::iter::once("wavenumber_cm1".to_owned()).chain(header));
-        for (j, &nu) in wavenumbers_cm1.iter().enumerate() {
-            let row: Vec<f64> =
-                std::iter::once(nu).chain(drawn.iter().map(|surface| surface.emissivity[j])).collect();
-            table.push_numbers(&row);
-        }
+        let curves = drawn.iter().map(|own| (format!("emissivity_{}", own.name), own.emissivity.as_slice()));
+        let nodes = ("wavenumber_cm1".to_owned(), wavenumbers_cm1);
+        let table = Table::of_columns(std::iter::once(nodes).chain(curves));
         let (low, high) = emissivity_range(drawn);
         let (name, title) = match pictures {
             1 => ("emissivities".into(), title.to_owned()),
@@ -75,31 +71,24 @@ fn emissivity_range(drawn: &[&Surface]) -> (f64, f64) {
 #[must_use]
 pub fn spectra(spectra: &Spectra, bands: &Bands, target: &str, alternative: &str) -> Plot {
     let unit = "photons_per_s_m2_sr_cm1";
-    let mut header = vec![
-        "wavenumber_cm1".to_owned(),
-        format!("target_{target}_{unit}"),
-        format!("nearest_{alternative}_{unit}"),
-        "relative_difference".to_owned(),
-    ];
     let noisy = !spectra.sigma.is_empty();
-    if noisy {
-        header.push("relative_sigma_shot".to_owned());
-        header.push("relative_sigma_camera".to_owned());
-    }
-    let mut table = Table::new(header);
     let difference: Vec<f64> =
         spectra.nearest.iter().zip(&spectra.target).map(|(nearest, own)| nearest / own - 1.0).collect();
     let share = |sigma: &[f64]| -> Vec<f64> {
         sigma.iter().zip(&spectra.target).map(|(sigma, own)| sigma / own).collect()
     };
     let (shot, total) = (share(&spectra.sigma_shot), share(&spectra.sigma));
-    for j in 0..spectra.wavenumber_cm1.len() {
-        let mut row = vec![spectra.wavenumber_cm1[j], spectra.target[j], spectra.nearest[j], difference[j]];
-        if noisy {
-            row.extend([shot[j], total[j]]);
-        }
-        table.push_numbers(&row);
+    let mut columns = vec![
+        ("wavenumber_cm1".to_owned(), &spectra.wavenumber_cm1),
+        (format!("target_{target}_{unit}"), &spectra.target),
+        (format!("nearest_{alternative}_{unit}"), &spectra.nearest),
+        ("relative_difference".to_owned(), &difference),
+    ];
+    if noisy {
+        columns.push(("relative_sigma_shot".to_owned(), &shot));
+        columns.push(("relative_sigma_camera".to_owned(), &total));
     }
+    let table = Table::of_columns(columns);
     let curve = |label: String, values: &[f64]| {
         let (x, y) = over_bands(bands, values);
         Series::line(label, x, y)
@@ -171,19 +160,14 @@ pub fn identifiability(
     alternative: &str,
     marks: &InformationMarks,
 ) -> Plot {
-    let mut header = vec!["photons", "information_bits_nearest", "information_bits_local"];
     let with_camera = !curves.camera_bits.is_empty();
-    if with_camera {
-        header.push("information_bits_camera");
-    }
-    let mut table = Table::new(header);
-    for j in 0..curves.photons.len() {
-        let mut row = vec![curves.photons[j], curves.nearest_bits[j], curves.local_bits[j]];
-        if with_camera {
-            row.push(curves.camera_bits[j]);
-        }
-        table.push_numbers(&row);
-    }
+    let mut columns = vec![
+        ("photons", &curves.photons),
+        ("information_bits_nearest", &curves.nearest_bits),
+        ("information_bits_local", &curves.local_bits),
+    ];
+    columns.extend(with_camera.then_some(("information_bits_camera", &curves.camera_bits)));
+    let table = Table::of_columns(columns);
     let x = &curves.photons;
     let mut figure = LineFigure::new(
         format!("How many photons it takes to tell {target} from {alternative}"),

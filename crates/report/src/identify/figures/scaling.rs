@@ -14,18 +14,15 @@ pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Option<Plot> {
     if library.materials.len() < 2 {
         return None;
     }
-    let mut table = Table::new([
-        "materials".to_owned(),
-        format!("expected_minimum_{target}_per_sqrt_photon"),
-        "quantile_10_percent_per_sqrt_photon".into(),
-        "median_per_sqrt_photon".into(),
-        "quantile_90_percent_per_sqrt_photon".into(),
-    ]);
     let x: Vec<f64> = library.materials.iter().map(|&count| count as f64).collect();
-    for ((x, own), [low, middle, high]) in x.iter().zip(&library.target).zip(&library.quantiles) {
-        table.push_numbers(&[*x, *own, *low, *middle, *high]);
-    }
     let of = |i: usize| library.quantiles.iter().map(|q| q[i]).collect::<Vec<f64>>();
+    let table = Table::of_columns([
+        ("materials", &x),
+        (&format!("expected_minimum_{target}_per_sqrt_photon"), &library.target),
+        ("quantile_10_percent_per_sqrt_photon", &of(0)),
+        ("median_per_sqrt_photon", &of(1)),
+        ("quantile_90_percent_per_sqrt_photon", &of(2)),
+    ]);
     let figure = LineFigure::new(
         "More materials, less distance between them",
         Axis::log("materials in the library"),
@@ -50,19 +47,17 @@ pub(crate) fn band_number(scaling: &Scaling, study: &Study) -> Option<Plot> {
     }
     let target = &study.target().name;
     let noisy = !bands.camera.is_empty();
-    let mut header = vec!["bands", "minimum_per_sqrt_photon", "median_per_sqrt_photon"];
-    if noisy {
-        header.extend(["minimum_camera_statistical_distance", "median_camera_statistical_distance"]);
-    }
-    let mut table = Table::new(header);
     let x: Vec<f64> = bands.bands.iter().map(|&count| count as f64).collect();
-    for (i, x) in x.iter().enumerate() {
-        let mut row = vec![*x, bands.shot_noise[i], bands.shot_noise_median[i]];
-        if noisy {
-            row.extend([bands.camera[i], bands.camera_median[i]]);
-        }
-        table.push_numbers(&row);
+    let mut columns = vec![
+        ("bands", &x),
+        ("minimum_per_sqrt_photon", &bands.shot_noise),
+        ("median_per_sqrt_photon", &bands.shot_noise_median),
+    ];
+    if noisy {
+        columns.push(("minimum_camera_statistical_distance", &bands.camera));
+        columns.push(("median_camera_statistical_distance", &bands.camera_median));
     }
+    let table = Table::of_columns(columns);
     // With a camera, what its photons make of them.
     let photons = study.counting().map(|counting| counting.counts_per_radiance * study.photon_radiance());
     let at_photons =

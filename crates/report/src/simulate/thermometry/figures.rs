@@ -50,17 +50,14 @@ pub fn errors(result: &Thermometry) -> Plot {
     );
     let fixed = of(&|row| imager_error(row.fixed.errors, |errors| errors.bias));
     let manual = of(&|row| imager_error(row.manual.errors, |errors| errors.bias));
-    let mut table = Table::new([
-        "temperature_k",
-        "error_maximum_likelihood_k",
-        "error_maximum_likelihood_low_k",
-        "error_maximum_likelihood_high_k",
-        "error_fixed_emissivity_k",
-        "error_manual_emissivity_k",
+    let table = Table::of_columns([
+        ("temperature_k", &of(&|row| row.temperature_k)),
+        ("error_maximum_likelihood_k", &own),
+        ("error_maximum_likelihood_low_k", &low),
+        ("error_maximum_likelihood_high_k", &high),
+        ("error_fixed_emissivity_k", &fixed),
+        ("error_manual_emissivity_k", &manual),
     ]);
-    for (i, row) in rows.iter().enumerate() {
-        table.push_numbers(&[row.temperature_k, own[i], low[i], high[i], fixed[i], manual[i]]);
-    }
     // Millikelvin where that keeps the numbers short.
     let largest = low.iter().chain(&high).fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let (factor, unit) = if largest < 1.0 { (1e3, "mK") } else { (1.0, "K") };
