@@ -6,6 +6,7 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
 use crate::table::{Table, number, optional};
+use crate::text::numbers::some;
 use crate::words::calibrate::noise::{camera, each_point};
 use hadar::error::Result;
 use hadar_estimate::calibrate::{Line, OfBand};
@@ -83,10 +84,7 @@ fn sigmas(result: &NoiseFound) -> Table {
 /// Variance over mean, some bands.
 fn transfer(result: &NoiseFound) -> Plot {
     let bands = &result.transfer.bands;
-    let shown: Vec<usize> = match bands.len() {
-        few if few <= MOST => (0..few).collect(),
-        many => (0..MOST).map(|i| i * (many - 1) / (MOST - 1)).collect(),
-    };
+    let shown = some(bands.len(), MOST);
     let mut table = Table::new(["band", "mean", "variance", "variance_sigma", "common_line"]);
     let common = &result.transfer.common;
     let mut figure = LineFigure::new(

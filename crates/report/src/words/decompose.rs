@@ -4,15 +4,15 @@ mod segmented;
 
 use crate::table::number;
 use crate::text::columns::{Columns, left, right};
+use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
+use crate::text::numbers::degrees;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar_scenario::decompose::CubeUnit;
 use hadar_study::decompose::{CORRELATION_CM1, Decomposed, TruthFound};
 use std::fmt::Write as _;
 
-/// 0 degC, K.
-const FREEZING_K: f64 = 273.15;
 /// Materials that are listed.
 const LISTED: usize = 12;
 
@@ -104,15 +104,14 @@ fn found(result: &Decomposed) -> String {
         right("tenths (degC)", 18),
         right("sigma (K)", 10),
     ]);
-    let celsius = |k: f64| format!("{:.1}", k - FREEZING_K);
     let says = |what: String| if result.method.has_likelihood() { what } else { "-".to_owned() };
     for row in shown {
-        let [low, high] = row.temperature_tenths_k.map(celsius);
+        let [low, high] = row.temperature_tenths_k.map(degrees);
         table.row([
             row.material.clone(),
             whole(row.pixels as u64),
             says(whole(row.decided as u64)),
-            celsius(row.temperature_median_k),
+            degrees(row.temperature_median_k),
             format!("{low} to {high}"),
             says(significant(row.temperature_sigma_median_k, 2)),
         ]);
@@ -161,7 +160,7 @@ fn against(truth: &TruthFound, result: &Decomposed) -> String {
         Method::Ml => "its Cramér–Rao bound",
         _ => "the deviation that the method says",
     };
-    let mut out = String::from("Against what is there\n");
+    let mut out = format!("{AGAINST}\n");
     let percent = |x: f64| format!("{} %", significant(100.0 * x, 4));
     if let Some(right) = truth.right_material {
         let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
@@ -256,16 +255,12 @@ fn neighbours(result: &Decomposed) -> String {
 fn assumptions(result: &Decomposed) -> String {
     let scenario = &result.scenario;
     let [low, high] = scenario.unknown.temperature_k;
-    let total = scenario
-        .unknown
-        .lighting_total
-        .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
-    let noise = match scenario.cube.unit {
-        CubeUnit::Radiance => "the stated noise, the same for all samples",
-        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
-            "Poisson counts with the stated electronic noise, variance from the model"
-        }
+    let total = lighting_total(scenario.unknown.lighting_total);
+    let model = match scenario.cube.unit {
+        CubeUnit::Radiance => "",
+        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => ", variance from the model",
     };
+    let noise = noise(&scenario.cube.unit).to_owned() + model;
     let library =
         scenario.library.emissivity_error.filter(|error| *error > 0.0).map_or_else(String::new, |error| {
             let over = scenario.library.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1);

@@ -2,15 +2,13 @@
 
 use crate::shown::Shown;
 use crate::text::columns::{Columns, left, right};
+use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
+use crate::text::numbers::degrees;
 use crate::words::pictures::thinned;
 use hadar::words::{quantity, share, significant, whole};
-use hadar_scenario::decompose::CubeUnit;
 use hadar_study::library::{LibraryFound, TruthOfClusters};
 use std::fmt::Write as _;
-
-/// 0 degC, K.
-const FREEZING_K: f64 = 273.15;
 
 /// The whole answer.
 #[must_use]
@@ -57,7 +55,7 @@ fn clusters(result: &LibraryFound) -> String {
             row.name.clone(),
             whole(row.pixels as u64),
             format!("{:.3} +- {}", row.emissivity_mean, significant(one.sigma_mean, 2)),
-            format!("{:.1}", row.temperature_median_k - FREEZING_K),
+            degrees(row.temperature_median_k),
             format!("+- {}", significant(one.sigma_temperature_k, 2)),
             significant(one.chi_square_reduced, 3),
         ]);
@@ -93,7 +91,7 @@ fn counts(result: &LibraryFound) -> String {
 }
 
 fn against(truth: &TruthOfClusters) -> String {
-    let mut out = String::from("Against what is there\n");
+    let mut out = format!("{AGAINST}\n");
     if let Some(right) = truth.right_material {
         let _ = writeln!(
             out,
@@ -117,16 +115,8 @@ fn against(truth: &TruthOfClusters) -> String {
 fn assumptions(result: &LibraryFound) -> String {
     let scenario = &result.scenario;
     let [low, high] = scenario.unknown.temperature_k;
-    let total = scenario
-        .unknown
-        .lighting_total
-        .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
-    let noise = match scenario.cube.unit {
-        CubeUnit::Radiance => "the stated noise, the same for all samples",
-        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
-            "Poisson counts with the stated electronic noise"
-        }
-    };
+    let total = lighting_total(scenario.unknown.lighting_total);
+    let noise = noise(&scenario.cube.unit);
     let known = scenario.emissivity;
     format!(
         "Assumptions\n  groups: NEM at a largest emissivity of {} under the smoothest of some lightings, ratios, K-means; then least squares on the heat signal\n  \

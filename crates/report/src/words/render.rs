@@ -3,12 +3,11 @@
 use crate::shown::Shown;
 use crate::text::columns::{Columns, left, right};
 use crate::text::footing::warnings;
+use crate::text::numbers::degrees;
 use crate::words::pictures::thinned_alone;
 use hadar::words::{share, significant, whole};
 use hadar_study::render::Rendered;
 use std::fmt::Write as _;
-
-const FREEZING_K: f64 = 273.15;
 
 /// The whole answer.
 #[must_use]
@@ -36,7 +35,7 @@ pub fn text(result: &Rendered) -> String {
             |[near, far]| format!("{} to {}", significant(near, 3), significant(far, 3)),
         );
         let mean = match row.depth_m {
-            Some(_) if row.pure > 0 => format!("{:.1}", row.temperature_k - FREEZING_K),
+            Some(_) if row.pure > 0 => degrees(row.temperature_k),
             _ => "-".to_owned(),
         };
         let materials = if row.materials.is_empty() { "-".to_owned() } else { row.materials.join(", ") };

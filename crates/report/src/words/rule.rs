@@ -18,6 +18,7 @@ pub(crate) use text::together;
 
 use super::Say;
 use super::probability::demanded;
+use super::text::numbers::in_a_row;
 use hadar::ranging::depth::Demand;
 use hadar::words::{self, length, quantity, significant};
 use hadar_scenario::{Units, interval};
@@ -237,11 +238,7 @@ fn with_spectra(envelope: &EnvelopeResult, names: &[String]) -> Vec<String> {
 
 /// `a, b or c`.
 fn either(names: &[String]) -> String {
-    match names {
-        [] => "nothing".into(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} or {last}", first.join(", ")),
-    }
+    if names.is_empty() { "nothing".into() } else { in_a_row(names, "or") }
 }
 
 /// The ranges of an envelope in a few words.

@@ -4,8 +4,7 @@ pub(crate) mod thermometry;
 
 use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{assumptions, warnings};
-use crate::text::numbers::shortened;
-use crate::text::numbers::significant;
+use crate::text::numbers::{shortened, significant, some};
 use crate::words::probability::percent;
 use hadar_scenario::Units;
 use hadar_study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
@@ -26,11 +25,7 @@ const SHOWN: usize = 5;
 pub fn text(result: &Simulation, study: &Study) -> String {
     let mut out = format!("{}\n\n", sentence(result));
     let points = &result.points;
-    let shown: Vec<usize> = if points.len() <= SHOWN {
-        (0..points.len()).collect()
-    } else {
-        (0..SHOWN).map(|i| i * (points.len() - 1) / (SHOWN - 1)).collect()
-    };
+    let shown = some(points.len(), SHOWN);
     if shown.len() < points.len() {
         let _ = writeln!(out, "{} of {} experiments; --out DIR has them all\n", shown.len(), points.len());
     }

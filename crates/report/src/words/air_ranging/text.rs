@@ -2,6 +2,7 @@
 
 use crate::text::columns::{Columns, right};
 use crate::text::footing::{ASSUMPTIONS, warnings};
+use crate::text::numbers::{listed, some};
 use crate::words::Say;
 use hadar::words::{length, share, significant};
 use hadar_scenario::air_ranging::AirStereo;
@@ -24,15 +25,6 @@ pub fn text(result: &AirRanging) -> String {
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
     out
-}
-
-/// Some of many, from the first to the last.
-fn some<T>(all: &[T]) -> Vec<&T> {
-    let count = all.len();
-    match count <= SHOWN {
-        true => all.iter().collect(),
-        false => (0..SHOWN).filter_map(|i| all.get(i * (count - 1) / (SHOWN - 1))).collect(),
-    }
 }
 
 fn shown(value: Option<f64>) -> String {
@@ -81,7 +73,7 @@ fn distances(result: &AirRanging) -> String {
         String::from("Least error of the distance (Cramer-Rao), one pixel, one reading of all bands\n");
     let heads = columns.iter().map(|(heading, _)| right(heading, heading.chars().count().max(11)));
     let mut table = Columns::new(std::iter::once(right("distance", 9)).chain(heads));
-    for point in some(&result.curve) {
+    for point in some(result.curve.len(), SHOWN).into_iter().filter_map(|i| result.curve.get(i)) {
         let distance = format!("{} m", significant(point.distance_m, 3));
         table.row(std::iter::once(distance).chain(columns.iter().map(|(_, cell)| cell(point))));
     }
@@ -140,7 +132,7 @@ fn best(result: &AirRanging) -> String {
         (false, Some(least)) => format!("no choice of as many is below +- {}: proved", length(least)),
         (false, None) => "nothing is proved of other choices".to_owned(),
     };
-    let centres = crate::text::numbers::listed(&centres);
+    let centres = listed(&centres);
     format!(
         "Best {} bands at {} m: +- {} ({proved}; all {}: +- {})\n  at {centres} cm^-1, exposed as all are\n\n",
         best.count,

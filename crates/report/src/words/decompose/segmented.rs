@@ -1,13 +1,12 @@
 //! A segmented cube in words: categories and objects.
 
 use crate::text::columns::{Columns, left, right};
+use crate::text::numbers::degrees;
 use hadar::words::{share, significant, whole};
 use hadar_estimate::segmentation::{Agreement, Rule};
 use hadar_study::decompose::Segmented;
 use std::fmt::Write as _;
 
-/// 0 degC, K.
-const FREEZING_K: f64 = 273.15;
 /// Objects that are listed.
 const LISTED: usize = 12;
 
@@ -49,7 +48,7 @@ pub(super) fn text(found: &Segmented) -> String {
             whole(row.decided as u64),
             span(row.rows),
             span(row.columns),
-            known(row.temperature_median_k, &|k| format!("{:.1}", k - FREEZING_K)),
+            known(row.temperature_median_k, &degrees),
             format!("{:>10}{guessed}", known(row.temperature_sigma_median_k, &|k| significant(k, 2))),
         ]);
     }

@@ -2,6 +2,7 @@
 
 use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::text::columns::{Columns, right};
+use crate::text::numbers::in_a_row;
 use crate::text::significant;
 use crate::words::Say;
 use hadar::fisher::Nuisance;
@@ -61,15 +62,6 @@ fn span(values: &[f64], unit: &str, show: impl Fn(f64) -> String) -> String {
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (least, most) = (show(low), show(high));
     if least == most { format!("{least} {unit}") } else { format!("{least} to {most} {unit}") }
-}
-
-/// `a`, `a and b`, `a, b and c`.
-fn list(items: &[&str]) -> String {
-    match items {
-        [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
 }
 
 /// The answer in a sentence, then the numbers, then what they rest on.
@@ -134,7 +126,7 @@ fn assumptions(result: &Thermometry) -> Vec<String> {
             "surroundings {}",
             if bare { "without radiation".to_owned() } else { environment.join(", ") }
         ),
-        format!("known: {}; unknown: {unknown}", list(&known)),
+        format!("known: {}; unknown: {unknown}", in_a_row(&known, "and")),
     ];
     if is_unknown(Nuisance::Lighting) {
         lines.push("the reader with the lighting known differs in that alone".into());

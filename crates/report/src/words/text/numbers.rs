@@ -11,6 +11,29 @@ pub(crate) fn celsius(kelvin: f64) -> String {
     format!("{:.2} degC", kelvin - 273.15)
 }
 
+/// Degrees Celsius, without their unit.
+pub(crate) fn degrees(kelvin: f64) -> String {
+    format!("{:.1}", kelvin - 273.15)
+}
+
+/// `a`, `a and b`, `a, b and c`, or with another word before the last one.
+pub(crate) fn in_a_row<S: AsRef<str>>(names: &[S], before_last: &str) -> String {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    match names.as_slice() {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{} {before_last} {last}", first.join(", ")),
+    }
+}
+
+/// Places of `most` of many things, evenly from the first to the last; of all where they are no more.
+pub(crate) fn some(all: usize, most: usize) -> Vec<usize> {
+    match all <= most {
+        true => (0..all).collect(),
+        false => (0..most).map(|i| i * (all - 1) / (most - 1)).collect(),
+    }
+}
+
 /// Numbers with `decimals` decimals behind a label; nothing where there are none.
 pub(crate) fn numbers(label: &str, values: &[f64], decimals: usize) -> String {
     let values: Vec<String> = values.iter().map(|value| format!("{value:.decimals$}")).collect();
