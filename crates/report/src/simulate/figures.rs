@@ -68,14 +68,11 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
         Axis::log("normalised photon number N d₀²"),
         information_axis("information log₂ 2P (bits)"),
     );
-    let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
     if points.len() > 2 {
-        let reach = |point: &SimulatedPoint, sign: f64| {
-            let p = limit_of(point);
-            // Two classes of so many test spectra each.
-            bits((p + sign * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()).clamp(0.5, 1.0))
+        let of = |point: &SimulatedPoint, sign: f64| {
+            bits((limit_of(point) + sign * 1.96 * spread(result, point)).clamp(0.5, 1.0))
         };
-        let edge = |sign: f64| points.iter().map(|point| reach(point, sign)).collect();
+        let edge = |sign: f64| points.iter().map(|point| of(point, sign)).collect();
         let label = "where 95 % of an ideal classifier's points lie";
         figure = figure.band(Band::new(label, x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
     }
@@ -123,12 +120,9 @@ fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
     let mut panel = Panel::new(Axis::linear("accuracy − limit (points)"));
     for result in std::iter::once(result).chain(other) {
         let x: Vec<f64> = result.points.iter().map(|point| point.normalised_photons).collect();
-        let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
-        let reach = |point: &SimulatedPoint| {
-            let p = limit_of(point);
-            100.0 * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()
+        let edge = |sign: f64| {
+            result.points.iter().map(|point| sign * (100.0 * 1.96 * spread(result, point))).collect()
         };
-        let edge = |sign: f64| result.points.iter().map(|point| sign * reach(point)).collect();
         if x.len() > 2 {
             panel = panel.band(Band::new("", x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
         }
@@ -175,6 +169,12 @@ fn series(result: &Simulation, place: usize, label: String) -> Series {
     };
     let x = result.points.iter().map(|point| point.normalised_photons).collect();
     Series::points(label, x, result.points.iter().map(of).collect())
+}
+
+/// The deviation of the accuracy of an ideal classifier: two classes of so many test spectra each.
+fn spread(result: &Simulation, point: &SimulatedPoint) -> f64 {
+    let (p, spectra) = (limit_of(point), result.spectra_per_class);
+    (p * (1.0 - p) / (2.0 * (spectra - 2 * (spectra / 4)) as f64)).sqrt()
 }
 
 fn limit_of(point: &SimulatedPoint) -> f64 {
