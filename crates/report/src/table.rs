@@ -2,6 +2,9 @@
 
 use hadar::error::{Error, Result};
 
+/// A column: its name, and its cell in a row.
+pub type Column<'a, T, C = String> = (&'a str, &'a dyn Fn(&T) -> C);
+
 /// A table of text cells.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
@@ -18,7 +21,7 @@ impl Table {
 
     /// A row for each of `rows`, from columns that each have a name and make a cell of a row.
     #[must_use]
-    pub fn of<T>(rows: &[T], columns: &[(&str, &dyn Fn(&T) -> String)]) -> Self {
+    pub fn of<T>(rows: &[T], columns: &[Column<'_, T>]) -> Self {
         let header = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
         let row = |row| columns.iter().map(|(_, cell)| cell(row)).collect();
         Self { header, rows: rows.iter().map(row).collect() }
@@ -26,7 +29,7 @@ impl Table {
 
     /// The same of numbers.
     #[must_use]
-    pub fn of_numbers<T>(rows: &[T], columns: &[(&str, &dyn Fn(&T) -> f64)]) -> Self {
+    pub fn of_numbers<T>(rows: &[T], columns: &[Column<'_, T, f64>]) -> Self {
         let header = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
         let row = |row| columns.iter().map(|(_, of)| number(of(row))).collect();
         Self { header, rows: rows.iter().map(row).collect() }

@@ -27,8 +27,10 @@ pub fn bundle(study: &Study, result: &Thermometry, out: &Path) -> Result<Bundle>
     Ok(bundle)
 }
 
-/// Columns of a reader, with its cell in each.
-const OF_READER: [(&str, fn(&Reader) -> String); 14] = [
+/// A column, with the cell of a reader in it.
+type OfReader = (&'static str, fn(&Reader) -> String);
+
+const OF_READER: [OfReader; 14] = [
     ("bound_k", |reader| optional(reader.bound_k)),
     ("bias_k", |reader| number(reader.errors.bias)),
     ("bias_low_k", |reader| number(reader.errors.bias_interval.low)),
