@@ -12,6 +12,8 @@ pub mod grid;
 pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
+pub mod order;
+pub mod parallel;
 pub mod random;
 pub mod root;
 pub mod simd;

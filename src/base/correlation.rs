@@ -5,6 +5,7 @@
 //!
 //! Source: Rasmussen and Williams, 'Gaussian Processes for Machine Learning' (2006), section 4.2.
 
+use crate::order;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Modes whose deviation is a smaller share of the largest one's are left out.
@@ -23,7 +24,7 @@ pub fn matern(apart: f64, length: f64) -> f64 {
 pub fn modes(covariance: DMatrix<f64>, most: usize) -> DMatrix<f64> {
     let eigen = SymmetricEigen::new(covariance);
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    order::descending(&mut order, |b| eigen.eigenvalues[*b]);
     let least = SMALL_MODE * SMALL_MODE * eigen.eigenvalues.max();
     order.retain(|k| eigen.eigenvalues[*k] > least);
     order.truncate(most);

@@ -16,7 +16,7 @@ mod ledger;
 mod sink;
 
 pub use ledger::{Line, Reason, Thing, Work};
-pub use sink::{Ledger, add, computed, gathered, ledger_of, spared};
+pub use sink::{Ledger, add, computed, ledger_of, spared};
 
 use crate::error::Result;
 

@@ -7,6 +7,7 @@
 //! Source: paper S7, Methods 'Guiding public policy'.
 
 use super::counting::Counting;
+use super::figures::every_figure;
 use super::{EfficiencyCurve, NoiseSpec, Readout, View};
 use crate::error::Result;
 use crate::planck;
@@ -17,69 +18,17 @@ const SAME_TIME: f64 = 1e-12;
 /// How far the angle of a pixel may be outside what field of view and pixels across it say, as a share: distortion.
 const DISTORTION: f64 = 0.1;
 
-/// A spectral thermal camera.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Camera {
-    /// Name, as in `camera.preset`.
-    pub name: String,
-    /// What it is, in one line.
-    pub description: String,
-    /// Where the figures are from, and what is known to be wrong with them.
-    pub provenance: Vec<String>,
-    /// Figures that no document states, and what stands for them.
-    pub assumed: Vec<String>,
-    /// Exposure of one frame, s.
-    pub exposure_s: f64,
-    /// Side of a square pixel, m.
-    pub pixel_m: f64,
-    /// f-number F.
-    pub f_number: f64,
-    /// Focal length, m.
-    pub focal_length_m: f64,
-    /// Share of the photons that the optics pass, in (0, 1].
-    pub optics_efficiency: f64,
-    /// Share of the photons on the detector that are counted, in (0, 1].
-    pub quantum_efficiency: f64,
-    /// Efficiencies that depend on wavenumber, of the optics and of the detector, to be multiplied with the two above.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub efficiency_curves: Vec<EfficiencyCurve>,
-    /// Electronic noise of one band reading.
-    pub noise: NoiseSpec,
-    /// Exposure at which that noise is stated, s.
-    pub noise_exposure_s: f64,
-    /// Share of the noise variance at that exposure which is flicker, in [0, 1].
-    pub flicker_fraction: f64,
-    /// Counts per second without any light.
-    pub dark_rate_per_s: f64,
-    /// Deviation that every reading adds whatever its exposure, counts.
-    pub read_noise_counts: f64,
-    /// Bits of the converter that divides the full well into steps, if known.
-    pub quantisation_bits: Option<u32>,
-    /// Counts at which a pixel is full, if known.
-    pub full_well: Option<f64>,
-    /// Whether the bunching of thermal photons adds its noise.
-    pub photon_bunching: bool,
-    /// When the bands are exposed.
-    pub readout: Readout,
-    /// Bands that it has of its own, if known; with one of them a spectrum takes filters.
-    pub spectral_bands: Option<u32>,
-    /// Frames that are averaged.
-    pub frames: u32,
-    /// Frames per second, if known: an exposure is no longer than a frame.
-    pub frame_rate_hz: Option<f64>,
-    /// Temperature of the sensor, whose emission filters throw back onto it (K of S8), K, if known.
-    pub sensor_temperature_k: Option<f64>,
-    /// Temperature of the filters (F of S8), K, if known; else that of the sensor.
-    pub filter_temperature_k: Option<f64>,
-    /// Full field of view across, rad, if known.
-    pub field_of_view_rad: Option<f64>,
-    /// Pixels across the field of view, if known.
-    pub pixels: Option<u32>,
-    /// Temperature of the blackbody at which photons and γ are quoted, K.
-    pub reference_temperature_k: f64,
-    /// The spectral range of the detector, cm⁻¹, in which NETD and photons are quoted.
-    pub spectral_range_cm1: [f64; 2],
+macro_rules! camera {
+    ($spec:tt [$($field:tt)*] $both:tt $own:tt $rows:tt) => {
+        /// A spectral thermal camera.
+        #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+        pub struct Camera {
+            $($field)*
+        }
+    };
 }
+
+every_figure!(camera);
 
 impl Camera {
     /// Étendue of a pixel, m² sr, for a target at `distance_m` (infinitely far where `None`) (S7).

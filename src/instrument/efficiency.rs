@@ -7,6 +7,7 @@
 //! Source: η° of S8.
 
 use crate::error::{Error, Result, check};
+use crate::order;
 use crate::spectrum::Bands;
 
 /// Efficiency at ascending wavenumbers, straight lines between the rows.
@@ -38,7 +39,7 @@ impl EfficiencyCurve {
             check::positive(&format!("wavenumber of {name}"), wavenumber, "cm^-1")?;
             check::unit_interval(&name, efficiency)?;
         }
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut rows, |a| a.0);
         if let Some(twice) = rows.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             let found = format!("wavenumber {} cm^-1 comes twice in {name}", twice[0].0);
             return Err(Error::malformed(found, "keep one of the rows"));

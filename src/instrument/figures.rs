@@ -6,18 +6,16 @@
 //! laying one camera over another, checking ranges, naming a changed camera, the sheet of a camera, what is asked
 //! for where it is missing, and the documentation of `[camera]` ([`documentation`]) are loops over it.
 //!
-//! A new figure takes
-//!
-//! 1. a field of [`CameraSpec`], whose name is its key in the cameras' documents and in JSON;
-//! 2. a row of [`TABLE`];
-//! 3. its use: a field of [`super::Camera`], filled in and read back in `made.rs`, where the compiler asks for both, and the
-//!    physics that takes it.
+//! A new figure takes a block of `figures/list.rs`, of which fields, row, reading and writing are made, and the physics that uses it. What
+//! stands for it where it is not stated is said in `made.rs`, unless it is nothing.
 
+mod list;
 mod noise;
 mod row;
 mod spec;
 mod table;
 
+pub(super) use list::every_figure;
 pub use noise::{NoiseFigures, StatedNoise};
 pub use row::{BLANK, Kind, Line, Part, Row, Slot};
 pub use spec::{CameraSpec, Efficiency};

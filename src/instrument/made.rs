@@ -4,9 +4,9 @@
 //! exposure (an NETD is of a frame, so that signal and noise stretch alike and only shot noise depends on it), an efficiency
 //! of 1 beside an NETD (which was measured through the same lens). Every such figure is listed in [`Camera::assumed`].
 //!
-//! [`Preset::camera`] and [`CameraSpec::of`] take every field apart: a figure that one of them forgets does not compile.
+//! All other figures are taken as they are ([`Taken`]), there and back.
 
-use super::figures::{NoiseFigures, Part, StatedNoise, TABLE};
+use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, every_figure};
 use super::presets::{Missing, Preset};
 use super::{Camera, CameraSpec, Efficiency, NoiseSpec, Readout};
 
@@ -14,6 +14,61 @@ use super::{Camera, CameraSpec, Efficiency, NoiseSpec, Readout};
 pub const REFERENCE_K: f64 = 303.15;
 /// The range in which the paper counts photons, cm⁻¹.
 pub const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
+
+/// A figure in the other struct: what a camera has of what is stated, what is stated of what it has.
+trait Taken<T> {
+    fn taken(&self) -> T;
+}
+
+impl<T: Copy + Default> Taken<T> for Option<T> {
+    fn taken(&self) -> T {
+        self.unwrap_or_default()
+    }
+}
+
+impl<T: Copy> Taken<Self> for Option<T> {
+    fn taken(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Copy> Taken<Option<T>> for T {
+    fn taken(&self) -> Option<T> {
+        Some(*self)
+    }
+}
+
+impl Taken<f64> for Option<Efficiency> {
+    /// What depends on wavenumber is in the curves.
+    fn taken(&self) -> f64 {
+        self.as_ref().and_then(Efficiency::number).unwrap_or(1.0)
+    }
+}
+
+impl Taken<Option<Efficiency>> for f64 {
+    fn taken(&self) -> Option<Efficiency> {
+        Some(Efficiency::Number(*self))
+    }
+}
+
+macro_rules! conversions {
+    ($spec:tt $camera:tt [$($name:ident)*] [$($own:ident)*] $rows:tt) => {
+        impl Camera {
+            /// What is stated, and nothing for all else.
+            fn as_stated(figures: &CameraSpec) -> Self {
+                Self { $($name: figures.$name.taken(),)* $($own: Default::default(),)* }
+            }
+        }
+
+        impl CameraSpec {
+            fn as_taken(camera: &Camera) -> Self {
+                Self { $($name: camera.$name.taken(),)* ..Self::default() }
+            }
+        }
+    };
+}
+
+every_figure!(conversions);
 
 impl Preset {
     /// The camera with these figures, what stands for missing ones listed in [`Camera::assumed`].
@@ -24,58 +79,30 @@ impl Preset {
         let mut assumed = Vec::new();
         let Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency } =
             self.required(&mut assumed)?;
-        let CameraSpec {
-            preset: _,
-            own: _,
-            exposure_s: _,
-            frame_rate_hz,
-            pixel_m: _,
-            f_number: _,
-            focal_length_m: _,
-            optics_efficiency: _,
-            quantum_efficiency,
-            noise,
-            noise_exposure_s,
-            flicker_fraction,
-            dark_rate_per_s,
-            read_noise_counts,
-            quantisation_bits,
-            full_well,
-            photon_bunching,
-            readout,
-            spectral_bands,
-            frames,
-            sensor_temperature_k,
-            filter_temperature_k,
-            field_of_view_rad,
-            pixels,
-            lines: _,
-            reference_temperature_k,
-            spectral_range_cm1,
-        } = self.figures.clone();
+        let figures = &self.figures;
         let noise = match &self.noise_table {
             Some(table) => table.clone(),
-            None => noise_of(noise.stated(), [f_number, optics_efficiency, pixel_m], &mut assumed),
+            None => noise_of(figures.noise.stated(), [f_number, optics_efficiency, pixel_m], &mut assumed),
         };
-        let spectral_range_cm1 = spectral_range_cm1.unwrap_or_else(|| {
+        let spectral_range_cm1 = figures.spectral_range_cm1.unwrap_or_else(|| {
             let [low, high] = PAPER_RANGE_CM1;
             assumed.push(format!("spectral range: not stated; {low} to {high} cm^-1 is taken"));
             PAPER_RANGE_CM1
         });
-        let flicker_fraction = flicker_fraction.unwrap_or_else(|| {
+        let flicker_fraction = figures.flicker_fraction.unwrap_or_else(|| {
             if noise != NoiseSpec::None && noise != (NoiseSpec::Counts { sigma_counts: 0.0 }) {
                 let why = "0 is taken, so that frames average all of the noise out";
                 assumed.push(format!("flicker_fraction: not stated; {why}"));
             }
             0.0
         });
-        let readout = readout.unwrap_or(match spectral_bands {
+        let readout = figures.readout.unwrap_or(match figures.spectral_bands {
             // Filters before a camera of one band are exposed one after the other.
             Some(1) => Readout::Sequential,
             _ => Readout::Simultaneous,
         });
-        let frames = frames.unwrap_or(1);
-        if frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
+        let frames = figures.frames.unwrap_or(1);
+        if figures.frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
             assumed.push(
                 "frame_rate: not stated; exposures are taken to follow each other without a pause".into(),
             );
@@ -90,26 +117,16 @@ impl Preset {
             f_number,
             focal_length_m,
             optics_efficiency,
-            quantum_efficiency: quantum_efficiency.as_ref().map_or(1.0, number),
             efficiency_curves: self.efficiency_curves.clone(),
             noise,
-            noise_exposure_s: noise_exposure_s.unwrap_or(exposure_s),
+            noise_exposure_s: figures.noise_exposure_s.unwrap_or(exposure_s),
             flicker_fraction,
-            dark_rate_per_s: dark_rate_per_s.unwrap_or(0.0),
-            read_noise_counts: read_noise_counts.unwrap_or(0.0),
-            quantisation_bits,
-            full_well,
-            photon_bunching: photon_bunching.unwrap_or(false),
             readout,
-            spectral_bands,
             frames,
-            frame_rate_hz,
-            sensor_temperature_k,
-            filter_temperature_k,
-            field_of_view_rad,
-            pixels,
-            reference_temperature_k: reference_temperature_k.unwrap_or(REFERENCE_K),
+            frame_rate_hz: figures.frame_rate_hz,
+            reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
             spectral_range_cm1,
+            ..Camera::as_stated(figures)
         })
     }
 
@@ -140,7 +157,8 @@ impl Preset {
         if !missing.0.is_empty() {
             return Err(missing);
         }
-        let optics_efficiency = self.figures.optics_efficiency.as_ref().map(number).unwrap_or_else(|| {
+        let optics_efficiency = &self.figures.optics_efficiency;
+        if optics_efficiency.is_none() {
             let why = match stated {
                 Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
                     "1 is taken, the noise being stated through the same optics"
@@ -148,8 +166,8 @@ impl Preset {
                 _ => "1 is taken",
             };
             assumed.push(format!("optics_efficiency: not stated; {why}"));
-            1.0
-        });
+        }
+        let optics_efficiency = optics_efficiency.taken();
         Ok(Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency })
     }
 }
@@ -161,11 +179,6 @@ struct Required {
     f_number: f64,
     focal_length_m: f64,
     optics_efficiency: f64,
-}
-
-/// An efficiency that is one number; what depends on wavenumber is in the curves.
-fn number(efficiency: &Efficiency) -> f64 {
-    efficiency.number().unwrap_or(1.0)
 }
 
 /// The noise that is stated; an NETD without its conditions is one of this camera.
@@ -210,65 +223,10 @@ impl CameraSpec {
     /// Every figure of a camera, as it would be stated; curves and tables over wavenumber are no figures.
     #[must_use]
     pub fn of(camera: &Camera) -> Self {
-        let Camera {
-            name: _,
-            description: _,
-            provenance: _,
-            assumed: _,
-            exposure_s,
-            pixel_m,
-            f_number,
-            focal_length_m,
-            optics_efficiency,
-            quantum_efficiency,
-            efficiency_curves: _,
-            ref noise,
-            noise_exposure_s,
-            flicker_fraction,
-            dark_rate_per_s,
-            read_noise_counts,
-            quantisation_bits,
-            full_well,
-            photon_bunching,
-            readout,
-            spectral_bands,
-            frames,
-            frame_rate_hz,
-            sensor_temperature_k,
-            filter_temperature_k,
-            field_of_view_rad,
-            pixels,
-            reference_temperature_k,
-            spectral_range_cm1,
-        } = *camera;
         Self {
-            preset: None,
-            own: None,
-            exposure_s: Some(exposure_s),
-            frame_rate_hz,
-            pixel_m: Some(pixel_m),
-            f_number: Some(f_number),
-            focal_length_m: Some(focal_length_m),
-            optics_efficiency: Some(Efficiency::Number(optics_efficiency)),
-            quantum_efficiency: Some(Efficiency::Number(quantum_efficiency)),
-            noise: NoiseFigures::of(noise),
-            noise_exposure_s: Some(noise_exposure_s),
-            flicker_fraction: Some(flicker_fraction),
-            dark_rate_per_s: Some(dark_rate_per_s),
-            read_noise_counts: Some(read_noise_counts),
-            quantisation_bits,
-            full_well,
-            photon_bunching: Some(photon_bunching),
-            readout: Some(readout),
-            spectral_bands,
-            frames: Some(frames),
-            sensor_temperature_k,
-            filter_temperature_k,
-            field_of_view_rad,
-            pixels,
-            lines: None,
-            reference_temperature_k: Some(reference_temperature_k),
-            spectral_range_cm1: Some(spectral_range_cm1),
+            frame_rate_hz: camera.frame_rate_hz,
+            noise: NoiseFigures::of(&camera.noise),
+            ..Self::as_taken(camera)
         }
     }
 }

@@ -1,10 +1,11 @@
 //! When the bands of a camera are exposed.
 
 /// When the bands are exposed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Readout {
     /// All in the same exposure.
+    #[default]
     Simultaneous,
     /// One after the other, an exposure each: a wheel of filters, a scanned monochromator.
     Sequential,

@@ -7,6 +7,7 @@ pub use crate::words::library::text;
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use hadar::error::Result;
+use hadar::order;
 use hadar_formats::cube::npy_map;
 use hadar_scenario::decompose::{LibrarySpec, TruthSpec};
 use hadar_scenario::{DecomposeScenario, Source};
@@ -49,7 +50,7 @@ fn library(result: &LibraryFound) -> Table {
     let mut table = Table::new(std::iter::once("wavenumber_cm1").chain(names));
     let nu = &result.wavenumbers_cm1;
     let mut order: Vec<usize> = (0..nu.len()).collect();
-    order.sort_by(|a, b| nu[*a].total_cmp(&nu[*b]));
+    order::ascending(&mut order, |a| nu[*a]);
     let mut row = |at: f64, band: usize| {
         let values = result.clusters.iter().map(|own| own.cluster.emissivity[band]);
         table.push(std::iter::once(at).chain(values).map(number).collect());

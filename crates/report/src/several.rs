@@ -6,6 +6,7 @@ use crate::text::columns::aligned;
 use crate::text::significant;
 use crate::words::several::{NOT_IN_FORCE, unanswered};
 use hadar::error::Result;
+use hadar::order;
 use hadar_study::sweep::Question;
 use serde::Serialize;
 use serde_json::Value;
@@ -105,7 +106,7 @@ fn best_first(answer: &Value) -> Value {
     let mut answer = answer.clone();
     if let Some(cameras) = answer.get_mut("cameras").and_then(Value::as_array_mut) {
         let margin = |camera: &Value| camera["margin"].as_f64().unwrap_or(f64::NEG_INFINITY);
-        cameras.sort_by(|a, b| margin(b).total_cmp(&margin(a)));
+        order::descending(cameras, margin);
     }
     answer
 }

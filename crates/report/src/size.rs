@@ -14,6 +14,7 @@ use crate::tables;
 use crate::words::size::captions;
 use hadar::error::Result;
 use hadar::identifiability::detection;
+use hadar::order;
 use hadar::policy::TradeOff;
 use hadar_study::{PairResult, Sensitivity, Sizing, Study, Surface};
 use std::path::Path;
@@ -59,7 +60,7 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
 /// A scene without photons.
 pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &str) -> Result<Vec<Plot>> {
     let mut ranked: Vec<_> = pairs.iter().zip(study.alternatives()).collect();
-    ranked.sort_by(|a, b| a.0.distance_nearest.total_cmp(&b.0.distance_nearest));
+    order::ascending(&mut ranked, |a| a.0.distance_nearest);
     let nodes = study.surroundings().nodes_cm1();
     let mut closest = vec![study.target()];
     closest.extend(ranked.iter().take(DRAWN).map(|(_, surface)| *surface));

@@ -22,13 +22,13 @@ use super::draws::{Draws, STREAMS, generator};
 use super::thermometry::value;
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
+use hadar::parallel;
 use hadar::planck;
 use hadar::ranging::air::{AirParameter, AirSolver, AirState};
 use hadar::scene::Parameter;
 use hadar::statistics::Statistics;
 use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
-use rayon::prelude::*;
 
 /// Distance that a search begins with at least, and the factor from one beginning to the next.
 const FIRST_M: f64 = 3.0;
@@ -187,7 +187,7 @@ impl<'a> AirFitter<'a> {
                 .collect();
             self.fit(&counts, state, &centres)
         };
-        (0..trials).into_par_iter().map(one).collect()
+        parallel::try_map(trials, one)
     }
 
     /// A place to begin at, at a distance.

@@ -40,7 +40,7 @@ pub trait Classifier: Send + Sync {
 }
 
 /// A classifier at work.
-pub trait Judge {
+pub trait Judge: Send {
     /// Writes a score for every class of one spectrum; `false` if they are not as good as they should be (a fit that
     /// did not converge).
     fn score(&mut self, counts: &[f64], scores: &mut [f64]) -> bool;

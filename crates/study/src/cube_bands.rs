@@ -6,6 +6,7 @@
 use crate::Warning;
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
+use hadar::order;
 use hadar::spectrum::Bands;
 use hadar::words::significant;
 use hadar_formats::cube::{Axes, Found, Opened};
@@ -29,7 +30,7 @@ impl InOrder {
         let mut order: Vec<usize> = (0..cube.shape().bands()).collect();
         if let Some(centres) = &found.centres_cm1 {
             let centre = |band: &usize| centres.get(*band).copied().unwrap_or(f64::NAN);
-            order.sort_by(|a, b| centre(a).total_cmp(&centre(b)));
+            order::ascending(&mut order, centre);
         }
         Ok(Self { cube: cube.with_bands(order.clone())?, found, order })
     }

@@ -71,26 +71,7 @@ impl DecomposeStudy {
         keep: Keep<'_>,
         done: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<Decomposed> {
-        if !method.has_likelihood() && self.scenario.unknown.gain {
-            let found = format!("the method {} does not know an unknown gain", method.name());
-            let error = Error::malformed(found, "write gain = false, or take --method ml or te");
-            return Err(error.at(self.scenario.place("unknown.gain")));
-        }
-        if !method.names_materials() && !self.scenario.categories.is_empty() {
-            let found = format!("the method {} names no materials", method.name());
-            let error = Error::malformed(found, "leave [[category]] out, or take --method ml");
-            return Err(error.at(self.scenario.place("category")));
-        }
-        if !method.has_likelihood() && self.scenario.spatial.is_some() {
-            let found = format!("the method {} knows no prior over the image", method.name());
-            let error = Error::malformed(found, "leave [spatial] out, or take --method ml or te");
-            return Err(error.at(self.scenario.place("spatial")));
-        }
-        if !method.has_likelihood() && self.scenario.vision.sky.is_some() {
-            let found = format!("the method {} has no residue to distil a texture of", method.name());
-            let error = Error::malformed(found, "leave vision.sky out, or take --method ml");
-            return Err(error.at(self.scenario.place("vision.sky")));
-        }
+        self.check(method)?;
         let shape = self.cube.shape();
         let lights = self.lights.len();
         let (files, height) = match keep {
@@ -101,38 +82,10 @@ impl DecomposeStudy {
         };
         let _memory = match &files {
             Some(_) => None,
-            None => {
-                let per_pixel = match &self.scenario.spatial {
-                    None => KEPT + KEPT_LIGHT * lights as u64,
-                    Some(_) => KEPT_BESIDE_OTHERS,
-                };
-                let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
-                let instead = "cut the cube into parts of fewer rows";
-                let promised = memory::promise(bytes, "the maps of all pixels", instead);
-                Some(promised.map_err(|error| error.at(self.scenario.place("cube.data")))?)
-            }
+            None => Some(self.memory()?),
         };
         let start = std::time::Instant::now();
-        let unknown = self.scenario.unknown;
-        let setting = Setting {
-            bands: &self.bands,
-            library: &self.library,
-            surroundings: &self.lights,
-            counts_per_radiance: &self.counts_per_radiance,
-            var_added: &self.var_added,
-            units_per_count: self.units_per_count,
-            temperature_k: unknown.temperature_k,
-            lighting_total: unknown.lighting_total,
-            gain: unknown.gain,
-            bad_bands: &self.bad_bands,
-        };
-        let spec = &self.scenario.library;
-        let library_error = spec.emissivity_error.filter(|error| *error > 0.0).map(|relative| LibraryError {
-            relative,
-            correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
-        });
-        let options =
-            Options { prior: self.prior.clone(), library_error, skipping, spatial: self.scenario.spatial };
+        let (setting, options) = (self.setting(), self.options(skipping));
         let finished = std::sync::atomic::AtomicUsize::new(0);
         let progress = |more: usize| {
             let so_far = finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more;
@@ -161,7 +114,7 @@ impl DecomposeStudy {
             .map_err(|error| self.at_cube(error))?;
         let seconds = start.elapsed().as_secs_f64();
         let mut warnings = self.warnings.clone();
-        if library_error.is_none() && method.names_materials() {
+        if options.library_error.is_none() && method.names_materials() {
             warnings.push(Warning::LibraryTakenAsExact);
         }
         let truth = held.map(|(_, held)| held.found(self)).transpose()?;
@@ -179,5 +132,68 @@ impl DecomposeStudy {
         let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
         let answer = (truth, vision, segmented);
         Ok(summary(self, (method, seconds), (&counted, found), answer, warnings, kept))
+    }
+
+    /// Refuses what the scenario asks for and the method has not.
+    fn check(&self, method: Method) -> Result<()> {
+        let (scenario, likely) = (&self.scenario, method.has_likelihood());
+        let refused = |key: &str, lack: &str, instead: &str| {
+            let found = format!("the method {} {lack}", method.name());
+            Err(Error::malformed(found, instead).at(scenario.place(key)))
+        };
+        if !likely && scenario.unknown.gain {
+            let instead = "write gain = false, or take --method ml or te";
+            return refused("unknown.gain", "does not know an unknown gain", instead);
+        }
+        if !method.names_materials() && !scenario.categories.is_empty() {
+            return refused("category", "names no materials", "leave [[category]] out, or take --method ml");
+        }
+        if !likely && scenario.spatial.is_some() {
+            let instead = "leave [spatial] out, or take --method ml or te";
+            return refused("spatial", "knows no prior over the image", instead);
+        }
+        if !likely && scenario.vision.sky.is_some() {
+            let instead = "leave vision.sky out, or take --method ml";
+            return refused("vision.sky", "has no residue to distil a texture of", instead);
+        }
+        Ok(())
+    }
+
+    /// Room for the maps of all pixels.
+    fn memory(&self) -> Result<memory::Promised<'static>> {
+        let shape = self.cube.shape();
+        let per_pixel = match &self.scenario.spatial {
+            None => KEPT + KEPT_LIGHT * self.lights.len() as u64,
+            Some(_) => KEPT_BESIDE_OTHERS,
+        };
+        let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
+        let instead = "cut the cube into parts of fewer rows";
+        memory::promise(bytes, "the maps of all pixels", instead)
+            .map_err(|error| error.at(self.scenario.place("cube.data")))
+    }
+
+    fn setting(&self) -> Setting<'_> {
+        let unknown = self.scenario.unknown;
+        Setting {
+            bands: &self.bands,
+            library: &self.library,
+            surroundings: &self.lights,
+            counts_per_radiance: &self.counts_per_radiance,
+            var_added: &self.var_added,
+            units_per_count: self.units_per_count,
+            temperature_k: unknown.temperature_k,
+            lighting_total: unknown.lighting_total,
+            gain: unknown.gain,
+            bad_bands: &self.bad_bands,
+        }
+    }
+
+    fn options(&self, skipping: Skipping) -> Options {
+        let (spec, spatial) = (&self.scenario.library, self.scenario.spatial);
+        let library_error = spec.emissivity_error.filter(|error| *error > 0.0).map(|relative| LibraryError {
+            relative,
+            correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
+        });
+        Options { prior: self.prior.clone(), library_error, skipping, spatial }
     }
 }

@@ -9,6 +9,7 @@ use hadar::error::{Error, Result};
 use hadar::grid::Grid;
 use hadar::instrument::View;
 use hadar::material::Library;
+use hadar::order;
 use hadar::planck;
 use hadar::spectrum::{Bands, interpolated};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
@@ -94,26 +95,7 @@ impl Said<'_> {
             camera_bands::check(camera, spec, &asked, &bands, &|key| self.source.place(key))?;
             bands = camera.received(&bands);
         }
-        if let Some(bad) = self.cube.bad_bands.iter().find(|band| **band >= bands.len()) {
-            let found = format!("band {bad} of {}", bands.len());
-            let instead = format!("count from 0 up to {}", bands.len() - 1);
-            return Err(at("cube.bad_bands")(Error::malformed(found, instead)));
-        }
-        let is_bad: Vec<bool> = (0..bands.len())
-            .map(|band| self.cube.bad_bands.contains(&band) || opened.found.bad_bands.contains(&band))
-            .collect();
-        let bad_bands: Vec<usize> = opened
-            .rising(&is_bad)
-            .iter()
-            .enumerate()
-            .filter(|(_, bad)| **bad)
-            .map(|(band, _)| band)
-            .collect();
-        if bad_bands.len() == bands.len() {
-            let found =
-                Error::malformed("all bands are bad", "leave some of them, or mend the list of the file");
-            return Err(at("cube.bad_bands")(found));
-        }
+        let bad_bands = self.bad_bands(&opened, bands.len()).map_err(at("cube.bad_bands"))?;
         let widths = bands.widths_cm1();
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
@@ -174,6 +156,24 @@ impl Said<'_> {
             units_per_count,
         })
     }
+
+    /// Bands that are left out, as the scenario and the file say, in rising wavenumber.
+    fn bad_bands(&self, opened: &InOrder, bands: usize) -> Result<Vec<usize>> {
+        if let Some(bad) = self.cube.bad_bands.iter().find(|band| **band >= bands) {
+            let found = format!("band {bad} of {bands}");
+            return Err(Error::malformed(found, format!("count from 0 up to {}", bands - 1)));
+        }
+        let is_bad =
+            |band: usize| self.cube.bad_bands.contains(&band) || opened.found.bad_bands.contains(&band);
+        let is_bad = opened.rising(&(0..bands).map(is_bad).collect::<Vec<bool>>());
+        let bad = is_bad.into_iter().enumerate().filter(|(_, bad)| *bad);
+        let bad: Vec<usize> = bad.map(|(band, _)| band).collect();
+        if bad.len() == bands {
+            let instead = "leave some of them, or mend the list of the file";
+            return Err(Error::malformed("all bands are bad", instead));
+        }
+        Ok(bad)
+    }
 }
 
 /// Name and rows (cm⁻¹, value) of a column.
@@ -228,7 +228,7 @@ pub(super) fn spectrum(path: &Path, column: &str, nodes_cm1: &[f64]) -> Result<V
         return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
     };
     let mut rows = rows.clone();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut rows, |a| a.0);
     on_nodes(&rows, nodes_cm1).map_err(|error| error.in_file(path))
 }
 

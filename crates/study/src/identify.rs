@@ -33,10 +33,10 @@ use hadar::identifiability::Status;
 use hadar::identifiability::detection;
 use hadar::identifiability::multi;
 use hadar::instrument::Camera;
+use hadar::parallel;
 use hadar::policy;
 use hadar::scene::Parameter;
 use hadar_scenario::DistanceKind;
-use rayon::prelude::*;
 
 impl Study {
     /// Distances to every alternative; with a camera also what it makes of them.
@@ -46,11 +46,11 @@ impl Study {
     pub fn identify(&self) -> Result<Identification> {
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
-        let found = self.alternatives.par_iter().enumerate().map(|(index, alternative)| {
+        let found = parallel::booked(self.alternatives.len(), |index| {
             let mixtures = self.classes.get(index).and_then(|answer| answer.mixtures.as_ref());
-            demand::ledger_of(|| self.against(index).pair(alternative, mixtures))
-        });
-        let (pairs, pair_warnings): (Vec<_>, Vec<_>) = demand::gathered(found)?.into_iter().unzip();
+            self.against(index).pair(&self.alternatives[index], mixtures)
+        })?;
+        let (pairs, pair_warnings): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let limiting =
             self.limiting(&pairs).map_or_else(String::new, |index| pairs[index].alternative.clone());
         let mut warnings = self.warnings.clone();
@@ -142,15 +142,7 @@ impl Study {
         let photon_radiance: f64 = signal.iter().sum();
         let camera_photons = counting.as_ref().map(|counting| counting.counts_per_radiance * photon_radiance);
         // Priors weigh by the number of photons they compete with: the camera's, else those required.
-        let with_priors = if self.unknowns.has_priors() {
-            Some(PhotonsRequired {
-                nearest: self.photons_with_priors(DistanceKind::Nearest, alternative)?,
-                local: self.photons_with_priors(DistanceKind::Local, alternative)?,
-                local_unknown_gain: self.photons_with_priors(DistanceKind::LocalUnknownGain, alternative)?,
-            })
-        } else {
-            None
-        };
+        let with_priors = self.photons_by_priors(alternative)?;
         let photons = camera_photons.or(with_priors.and_then(|by| by.of(kind))).unwrap_or(f64::INFINITY);
         let PerPhoton { local, local_unknown_gain: unknown_gain, nearest, back } =
             self.per_photon(alternative, photons)?;
@@ -174,13 +166,12 @@ impl Study {
             }
         };
         let shortcut = counting.as_ref().map(|counting| {
-            let gamma = hadar::instrument::gamma_per_band(counting, &signal);
             let distance = match kind {
                 DistanceKind::Nearest => nearest.distance,
                 DistanceKind::Local => local.distance,
                 DistanceKind::LocalUnknownGain => unknown_gain.distance,
             };
-            (photon_radiance * counting.counts_per_radiance / (1.0 + gamma)).sqrt() * distance
+            shortcut(counting, &signal, distance)
         });
         let condition = local.condition_number();
         let blind = (local.status == Status::Blind).then(|| {
@@ -239,9 +230,20 @@ impl Study {
         warnings.extend(self.placeholders(alternative));
         Ok((result, warnings))
     }
-}
 
-impl Study {
+    /// Photons required by each kind of distance, where prior knowledge makes it depend on their number.
+    fn photons_by_priors(&self, alternative: &Surface) -> Result<Option<PhotonsRequired>> {
+        if !self.unknowns.has_priors() {
+            return Ok(None);
+        }
+        let photons = |kind| self.photons_with_priors(kind, alternative);
+        Ok(Some(PhotonsRequired {
+            nearest: photons(DistanceKind::Nearest)?,
+            local: photons(DistanceKind::Local)?,
+            local_unknown_gain: photons(DistanceKind::LocalUnknownGain)?,
+        }))
+    }
+
     /// What is to be said of an alternative of which, as of the target, nothing but one number is known.
     pub(super) fn placeholders(&self, alternative: &Surface) -> Option<Warning> {
         self.target.placeholders(alternative).map(|emissivities| Warning::Placeholders {
@@ -250,6 +252,13 @@ impl Study {
             emissivities,
         })
     }
+}
+
+/// Statistical distance of photons and γ, the noise of a band over its photons.
+fn shortcut(counting: &Counting, signal: &[f64], distance_per_photon: f64) -> f64 {
+    let gamma = hadar::instrument::gamma_per_band(counting, signal);
+    let photon_radiance: f64 = signal.iter().sum();
+    (photon_radiance * counting.counts_per_radiance / (1.0 + gamma)).sqrt() * distance_per_photon
 }
 
 /// Name of a parameter as it stands in results.

@@ -32,6 +32,7 @@ use super::{Warning, memory};
 use hadar::cube::{Cube, Shape};
 use hadar::demand::{self, Ledger, Skipping, Thing};
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
@@ -40,7 +41,6 @@ use hadar::spectrum::Bands;
 use hadar_formats::cube::Found;
 use hadar_scenario::RangeScenario;
 use hadar_simulate::render::{Part, StereoPair};
-use rayon::prelude::*;
 
 /// Bytes of a pixel that are kept of cubes, beside those of the file; measured.
 const ONE_VIEW: u64 = 320;
@@ -160,8 +160,8 @@ impl RangeStudy {
         let Some(first) = informed.left.first() else { return Err(nothing_to_see()) };
         let windows = ground.windows(first, [window.half_rows(), window.half_columns()]);
         let of_all = |ground: &Ground<'_>, windows: &[(usize, usize)]| -> Vec<Vec<f64>> {
-            let maps = informed.left.par_iter().enumerate();
-            maps.map(|(i, left)| ground.variances(left, informed.right.get(i), windows)).collect()
+            let of = |i: usize| ground.variances(&informed.left[i], informed.right.get(i), windows);
+            parallel::map(informed.left.len(), of)
         };
         let variances = of_all(&ground, &windows);
         let objects = ground.objects(&windows, &informed.left, &variances)?;

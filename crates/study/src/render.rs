@@ -12,6 +12,8 @@ use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::{Camera, View as OpticalView};
 use hadar::material::Library;
+use hadar::order;
+use hadar::parallel;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
@@ -19,7 +21,6 @@ use hadar_estimate::decompose::NO_MATERIAL;
 use hadar_scenario::RenderScenario;
 use hadar_simulate::draws::{Draws, generator};
 use hadar_simulate::render::{Emissivity, Part, Rig, View};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Lighting below which a surface is none of the surroundings.
@@ -286,24 +287,21 @@ impl RenderStudy {
         let var: Vec<f64> = (0..shape.bands()).map(|band| self.counting.var_added(band)).collect();
         let noisy = !matches!(camera_noise(&self.counting, shape.bands()), NoiseVariance::None);
         let mut counts = vec![0.0_f32; shape.len()];
-        counts.par_chunks_mut(shape.row_len()).enumerate().try_for_each_init(
-            Vec::new,
-            |row_of, (row, out)| {
-                view.rows_into(Part::Total, self.counting.counts_per_radiance, row..row + 1, row_of);
-                if let Some((seed, side)) = draw {
-                    let mut rng = generator(seed, (side << 32) + row as u64);
-                    for pixel in row_of.chunks_mut(shape.bands()) {
-                        let mut draws = Draws::new(&Statistics::Poisson, pixel)?;
-                        if noisy {
-                            draws = draws.with_electronic_noise(&var)?;
-                        }
-                        draws.draw_into(&mut rng, pixel);
+        parallel::fill(&mut counts, shape.row_len(), Vec::new, |row_of: &mut Vec<f64>, row, out| {
+            view.rows_into(Part::Total, self.counting.counts_per_radiance, row..row + 1, row_of);
+            if let Some((seed, side)) = draw {
+                let mut rng = generator(seed, (side << 32) + row as u64);
+                for pixel in row_of.chunks_mut(shape.bands()) {
+                    let mut draws = Draws::new(&Statistics::Poisson, pixel)?;
+                    if noisy {
+                        draws = draws.with_electronic_noise(&var)?;
                     }
+                    draws.draw_into(&mut rng, pixel);
                 }
-                out.iter_mut().zip(row_of.iter()).for_each(|(to, from)| *to = *from as f32);
-                Ok::<(), Error>(())
-            },
-        )?;
+            }
+            out.iter_mut().zip(row_of.iter()).for_each(|(to, from)| *to = *from as f32);
+            Ok::<(), Error>(())
+        })?;
         let material = |i: usize| {
             let own = materials.get(usize::from(view.surface[i]));
             own.filter(|_| view.pure[i]).map_or(NO_MATERIAL, |own| own[usize::from(view.texture[i] > 0.5)])
@@ -360,7 +358,7 @@ fn surroundings(view: &View, surfaces: usize) -> (Vec<usize>, f64) {
         most.iter_mut().zip(lit).for_each(|(most, v)| *most = most.max(*v));
     }
     let mut others: Vec<usize> = (2..surfaces).filter(|k| most[*k] > DARK).collect();
-    others.sort_by(|a, b| most[*b].total_cmp(&most[*a]));
+    order::descending(&mut others, |b| most[*b]);
     others.truncate(SURROUNDINGS - 2);
     let chosen: Vec<usize> = [0, 1].into_iter().chain(others).collect();
     let left_out = |lit: &[f64]| -> f64 {

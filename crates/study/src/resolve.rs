@@ -16,6 +16,7 @@ use hadar::identifiability::detection;
 use hadar::material::{Library, Material};
 use hadar::scene::{EnvironmentObject, Surroundings};
 use hadar_scenario::{Reliability, Scenario};
+use std::borrow::Cow;
 
 impl Study {
     /// Looks up everything that `scenario` names, materials in `library`.
@@ -63,26 +64,7 @@ impl Study {
         finder.check_names()?;
         let target =
             finder.group("target.material", &scenario.target.material, scenario.target.extrapolate)?;
-        let environment = scenario
-            .environment
-            .iter()
-            .enumerate()
-            .map(|(k, object)| {
-                let found = object.material.as_ref().map(|material| {
-                    finder.find(&format!("environment[{k}].material"), material, object.extrapolate)
-                });
-                found.transpose()
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let behind = match scenario.background.as_ref().map(|behind| (behind.temperature_k, &behind.material))
-        {
-            None => None,
-            Some((temperature_k, None)) => Some((temperature_k, None)),
-            Some((temperature_k, Some(material))) => {
-                let extrapolate = scenario.background.as_ref().and_then(|behind| behind.extrapolate);
-                Some((temperature_k, Some(finder.find("background.material", material, extrapolate)?)))
-            }
-        };
+        let (environment, behind) = (finder.environment()?, finder.behind()?);
         let camera =
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let asked =
@@ -107,21 +89,7 @@ impl Study {
         let on_nodes = |material: &Material, key: &str| {
             Surface::of(material, nodes).map_err(|error| error.at(scenario.place(key)))
         };
-        let objects = scenario
-            .environment
-            .iter()
-            .zip(&environment)
-            .enumerate()
-            .map(|(k, (object, material))| {
-                let key = format!("environment[{k}].material");
-                let surface = material.as_ref().map(|material| on_nodes(material, &key)).transpose()?;
-                Ok(EnvironmentObject {
-                    temperature_k: object.temperature_k,
-                    emissivity: surface.map(|surface| surface.emissivity),
-                })
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let surroundings = Surroundings::new(nodes, objects)?;
+        let surroundings = surroundings(&scenario, &environment, nodes, &on_nodes)?;
         let lighting: Vec<f64> = scenario.environment.iter().map(|object| object.lighting).collect();
         let state = surroundings
             .state(scenario.target.temperature_k, &lighting)
@@ -143,17 +111,7 @@ impl Study {
                 Ok::<_, Error>(Behind { surface, temperature_k })
             })
             .transpose()?;
-        let required = match scenario.requirement.reliability {
-            Reliability::Distance(distance) => distance,
-            Reliability::DetectionProbability(probability) => {
-                detection::distance_for_probability(probability)
-                    .map_err(|error| error.at(scenario.place("requirement.detection_probability")))?
-            }
-            Reliability::Rates { detection, false_alarm } => {
-                detection::distance_for_rates(detection, false_alarm)
-                    .map_err(|error| error.at(scenario.place("requirement.false_alarm_probability")))?
-            }
-        };
+        let required = required(&scenario)?;
         let atmosphere = Air::of(&scenario)?;
         scenario.bands.source = asked;
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
@@ -190,6 +148,36 @@ impl Study {
         study.check_magnitudes()?;
         Ok(study)
     }
+}
+
+/// What is around the target, at the nodes.
+fn surroundings(
+    scenario: &Scenario,
+    materials: &[Option<Cow<'_, Material>>],
+    nodes_cm1: &[f64],
+    on_nodes: &dyn Fn(&Material, &str) -> Result<Surface>,
+) -> Result<Surroundings> {
+    let objects = scenario.environment.iter().zip(materials).enumerate().map(|(k, (object, material))| {
+        let key = format!("environment[{k}].material");
+        let surface = material.as_ref().map(|material| on_nodes(material, &key)).transpose()?;
+        let emissivity = surface.map(|surface| surface.emissivity);
+        Ok(EnvironmentObject { temperature_k: object.temperature_k, emissivity })
+    });
+    Surroundings::new(nodes_cm1, objects.collect::<Result<_>>()?)
+}
+
+/// The statistical distance that is asked for.
+fn required(scenario: &Scenario) -> Result<f64> {
+    let (distance, key) = match scenario.requirement.reliability {
+        Reliability::Distance(distance) => return Ok(distance),
+        Reliability::DetectionProbability(probability) => {
+            (detection::distance_for_probability(probability), "requirement.detection_probability")
+        }
+        Reliability::Rates { detection, false_alarm } => {
+            (detection::distance_for_rates(detection, false_alarm), "requirement.false_alarm_probability")
+        }
+    };
+    distance.map_err(|error| error.at(scenario.place(key)))
 }
 
 fn no_members() -> Error {

@@ -26,10 +26,10 @@ use hadar::demand::{self, Ledger, Thing, Work};
 use hadar::error::Result;
 use hadar::fisher::Unknowns;
 use hadar::instrument::Camera;
+use hadar::parallel;
 use hadar_simulate::classifier::{SavedModel, Trained};
 use hadar_simulate::draws::{GENERATOR, LARGEST_EXACT};
 use hadar_simulate::experiment::Design;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Chance that an optimal classifier is called better than the limit anywhere in one simulation.
@@ -184,14 +184,11 @@ impl Study {
         let level = 1.0 - 2.0 * FALSE_ALARM / comparisons.max(1) as f64;
         let done = AtomicUsize::new(0);
         progress(0, photons.len());
-        let experiments: Vec<(SimulatedPoint, Vec<Trained>)> = photons
-            .par_iter()
-            .map(|&photons_here| {
-                let outcome = self.experiment(plan, &rivals, photons_here, level)?;
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1, photons.len());
-                Ok(outcome)
-            })
-            .collect::<Result<_>>()?;
+        let experiments: Vec<(SimulatedPoint, Vec<Trained>)> = parallel::try_map(photons.len(), |i| {
+            let outcome = self.experiment(plan, &rivals, photons[i], level)?;
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1, photons.len());
+            Ok(outcome)
+        })?;
         for _ in &photons {
             // States of the rivals, and the nearest of them once more without electronic noise.
             demand::computed(Thing::NearestSearches, rivals.len() as u64 + 1);

@@ -4,11 +4,10 @@
 //! nothing is. Ledgers nest, and what stands in the inner one is not in the outer one unless it is added there.
 //!
 //! A thread that waits for others may take up work of another question. Jobs that run in parallel therefore have each a
-//! ledger of its own ([`ledger_of`]), and [`gathered`] adds them up in the one that was open around them.
+//! ledger of its own ([`ledger_of`]), and [`crate::parallel::booked`] adds them up in the one that was open around them.
 
 use super::{Reason, Thing, Work};
 use crate::error::Result;
-use rayon::iter::ParallelIterator;
 use std::cell::RefCell;
 use std::marker::PhantomData;
 
@@ -57,15 +56,6 @@ impl Drop for Ledger {
 pub fn ledger_of<T>(job: impl FnOnce() -> Result<T>) -> Result<(T, Work)> {
     let ledger = Ledger::open();
     Ok((job()?, ledger.close()))
-}
-
-/// What comes of jobs in parallel, each with the ledger it filled ([`ledger_of`]); what they took is booked here.
-///
-/// # Errors
-/// That of a job.
-pub fn gathered<T: Send>(jobs: impl ParallelIterator<Item = Result<(T, Work)>>) -> Result<Vec<T>> {
-    let done: Vec<(T, Work)> = jobs.collect::<Result<_>>()?;
-    Ok(done.into_iter().inspect(|(_, work)| add(work)).map(|(made, _)| made).collect())
 }
 
 /// So many were computed.

@@ -1,7 +1,7 @@
 use super::*;
 use crate::error::Error;
+use crate::parallel;
 use proptest::prelude::*;
-use rayon::prelude::*;
 use std::cell::Cell;
 
 const THINGS: [Thing; 3] = [Thing::OwnStateDistances, Thing::FewBandSearches, Thing::NearestSearches];
@@ -95,13 +95,13 @@ fn jobs_in_parallel_add_up_for_any_number_of_threads() {
     };
     let job = |outer: u64| {
         computed(Thing::Windows, 1);
-        let found = gathered((0..outer).into_par_iter().map(|inner| ledger_of(|| task(inner))))?;
+        let found = parallel::booked(outer as usize, |inner| task(inner as u64))?;
         computed(Thing::Windows, 1);
         Ok(found.len() as u64)
     };
     for threads in [1, 2, 7] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let all = || gathered((0..40).into_par_iter().map(|outer| ledger_of(|| job(outer))));
+        let all = || parallel::booked(40, |outer| job(outer as u64));
         let (found, work) = pool.install(|| ledger_of(all)).unwrap();
         assert_eq!(found, (0..40).collect::<Vec<u64>>());
         assert_eq!((work.computed(Thing::Windows), work.computed(Thing::Samples)), (80, 780));

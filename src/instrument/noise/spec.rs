@@ -1,12 +1,14 @@
 //! The electronic noise of a camera as it is stated, its conditions complete.
 
 use crate::error::{Error, Result, check};
+use crate::order;
 
 /// How the noise of a camera is stated.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum NoiseSpec {
     /// No electronic noise at all.
+    #[default]
     None,
     /// Noise-equivalent temperature difference.
     Netd {
@@ -73,7 +75,7 @@ impl NoiseSpec {
             check::positive("wavenumber of the noise", wavenumber, "cm^-1")?;
             check::non_negative("noise", sigma, "counts")?;
         }
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut rows, |a| a.0);
         if rows.is_empty() || rows.windows(2).any(|pair| pair[0].0 == pair[1].0) {
             let found = "the table of noise has no rows, or a wavenumber comes twice";
             return Err(Error::malformed(found, "give each wavenumber one row"));

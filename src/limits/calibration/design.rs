@@ -19,6 +19,7 @@
 use super::determined::CurvePrior;
 use super::filter_wheel::{FilterWheel, Reading};
 use crate::error::{Error, Result, check};
+use crate::order;
 use crate::planck;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -139,7 +140,7 @@ impl Design {
                 design.shares.iter().filter(|share| share.1 == *q).map(|share| share.2).sum()
             };
             let fewer = left.len() - ((left.len() - count) / 3).max(1);
-            left.sort_by(|a, b| share(b).total_cmp(&share(a)));
+            order::descending(&mut left, share);
             left.truncate(fewer);
             left.sort_unstable();
         }

@@ -24,6 +24,7 @@
 
 use crate::correlation::{matern, modes};
 use crate::error::{Error, Result, check};
+use crate::order;
 use nalgebra::{DMatrix, DVector};
 
 /// A direction is determined if its coefficient is known to this share of the curve's peak.
@@ -180,7 +181,7 @@ pub(crate) fn right_vectors(matrix: DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f
     let svd = tall.qr().r().try_svd(false, true, f64::EPSILON, 0)?;
     let v = svd.v_t?.transpose();
     let mut order: Vec<usize> = (0..columns).collect();
-    order.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
+    order::descending(&mut order, |b| svd.singular_values[*b]);
     let values = order.iter().map(|i| svd.singular_values[*i]).collect();
     Some((values, DMatrix::from_fn(columns, columns, |j, i| v[(j, order[i])])))
 }

@@ -33,6 +33,7 @@ use self::search::EmissionTable;
 pub use super::space::StateRange;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
+use crate::order;
 use crate::scene::{State, Surroundings};
 use crate::spectrum::Bands;
 
@@ -339,7 +340,7 @@ impl<'a> NearestSolver<'a> {
         let starts = self.comparison.starts(&mut self.table, &target, own_cost, reach);
         let mut minima: Vec<NearestDistance> =
             starts.into_iter().map(|start| refine(&mut self.comparison, &target, start, None, 0.0)).collect();
-        minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        order::ascending(&mut minima, |a| a.distance);
         let farthest = minima.first().map_or(0.0, |least| least.distance + reach);
         let mut distinct: Vec<NearestDistance> = Vec::new();
         for minimum in minima.into_iter().filter(|minimum| minimum.distance <= farthest) {

@@ -4,6 +4,7 @@
 use super::growth::{Growth, Lengths, same};
 use crate::error::{Error, Result, check};
 use crate::grid::Grid;
+use crate::order;
 
 const COLUMNS: &str =
     "name the columns wavenumber_cm1,tau_0.1km,tau_1km or wavenumber_cm1,tau_100m,tau_1000m";
@@ -31,7 +32,7 @@ pub(super) fn table(text: &str) -> Result<Table> {
         let length_m = length_m(column).map_err(|error| in_header(error.for_key(column)))?;
         columns.push((length_m, index));
     }
-    columns.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut columns, |a| a.0);
     if columns.len() < 2 {
         let found = "there is one path length, which does not say how absorption grows with it";
         return Err(in_header(Error::malformed(found, "give at least two")));
@@ -45,7 +46,7 @@ pub(super) fn table(text: &str) -> Result<Table> {
     for (line, cells) in &grid.rows {
         rows.push(row(&lengths, &columns, cells, &grid.header).map_err(|error| error.on_line(*line))?);
     }
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut rows, |a| a.0);
     if rows.len() < 2 {
         return Err(Error::malformed(format!("{} rows", rows.len()), "a spectrum needs at least 2 rows"));
     }

@@ -2,6 +2,7 @@
 
 use super::rows::{distinct, interpolated};
 use crate::error::{Error, Result, check};
+use crate::order;
 
 /// By so much transmittance and reflectance may exceed 1: rounding of a table.
 const ROUNDING: f64 = 1e-3;
@@ -29,7 +30,7 @@ impl FilterCurve {
             check::positive("wavenumber of a filter", wavenumber, "cm^-1")?;
             check::unit_interval(&format!("transmittance of filter `{name}`"), transmittance)?;
         }
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut rows, |a| a.0);
         distinct(rows.iter().map(|row| row.0), &format!("filter `{name}`"))?;
         if rows.len() < 2 || rows.iter().all(|row| row.1 == 0.0) {
             return Err(Error::malformed(
@@ -61,7 +62,7 @@ impl FilterCurve {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn with_reflectance(mut self, mut rows: Vec<(f64, f64)>) -> Result<Self> {
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut rows, |a| a.0);
         let quantity = format!("reflectance of filter `{}`", self.name);
         if !rows.iter().map(|row| &row.0).eq(&self.wavenumbers_cm1) {
             let instead = "give both in the same rows";

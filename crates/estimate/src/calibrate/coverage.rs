@@ -11,9 +11,9 @@ use super::response::Response;
 use super::spectrometer::Calibration;
 use super::twin::{FilterWheelTwin, SpectrometerTwin, normal};
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::planck;
 use hadar::random::generator;
-use rayon::prelude::*;
 
 /// ± so many deviations are a 95 % interval.
 const REACH: f64 = 1.959_963_984_540_054;
@@ -135,7 +135,7 @@ pub fn spectrometer(
         }));
         Ok([response, offset, radiance, emissivity, surroundings])
     };
-    let shares: Vec<[f64; 5]> = (0..experiments).into_par_iter().map(one).collect::<Result<_>>()?;
+    let shares: Vec<[f64; 5]> = parallel::try_map(experiments, one)?;
     let [response, offset, radiance, emissivity, surroundings] =
         [0, 1, 2, 3, 4].map(|i| Coverage::of(shares.iter().map(move |share| share[i])));
     Ok(SpectrometerCoverage { response, offset, radiance, emissivity, surroundings })
@@ -190,7 +190,7 @@ pub fn filter_wheel(
         }));
         Ok([response, radiance])
     };
-    let shares: Vec<[f64; 2]> = (0..experiments).into_par_iter().map(one).collect::<Result<_>>()?;
+    let shares: Vec<[f64; 2]> = parallel::try_map(experiments, one)?;
     let [response, radiance] = [0, 1].map(|i| Coverage::of(shares.iter().map(move |share| share[i])));
     Ok(FilterWheelCoverage { response, radiance })
 }

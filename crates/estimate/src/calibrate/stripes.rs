@@ -44,8 +44,8 @@ use self::scan::{Band, striped};
 use self::segments::Segments;
 use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
+use hadar::parallel;
 use hadar::words::significant;
-use rayon::prelude::*;
 
 /// Fewest lines, and pixels of a line.
 const FEWEST: [usize; 2] = [8, 16];
@@ -83,8 +83,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         return Err(Error::malformed(found, "give a cube as it was measured"));
     }
     let bands = shape.bands();
-    let mut looked: Vec<Band> =
-        (0..bands).into_par_iter().map(|band| striped(&segments, band, sought.gain_deviation)).collect();
+    let mut looked: Vec<Band> = parallel::map(bands, |band| striped(&segments, band, sought.gain_deviation));
     if looked.iter().all(|band| band.usable == 0) {
         return Err(Error::malformed(
             "no line has samples that are numbers",
@@ -104,15 +103,15 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
     let shared = !sought.in_all_bands && bands >= TELLING;
     if shared {
         for _ in 0..LOOKS {
-            let more: Vec<Vec<usize>> =
-                (0..bands).into_par_iter().map(|band| overlooked(&looked, band)).collect();
+            let more: Vec<Vec<usize>> = parallel::map(bands, |band| overlooked(&looked, band));
             if more.iter().all(Vec::is_empty) {
                 break;
             }
-            looked.par_iter_mut().zip(&more).for_each(|(band, more)| band.again(more));
+            parallel::fill(&mut looked, 1, || (), |(), at, band| Ok(band[0].again(&more[at])))?;
         }
     }
-    let told: Vec<Told> = (0..bands).into_par_iter().filter_map(|band| told(&looked, band, shared)).collect();
+    let told: Vec<Told> =
+        parallel::map(bands, |band| told(&looked, band, shared)).into_iter().flatten().collect();
     for (band, (seen, told)) in looked.iter().zip(&told).enumerate() {
         if told.at_first_sight as f64 > MOST * seen.usable as f64
             || seen.without_reference as f64 > MOST * seen.usable as f64

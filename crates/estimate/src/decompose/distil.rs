@@ -28,7 +28,7 @@ use super::pixel::NO_MATERIAL;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::cube::{Cube, Rows, Sample};
 use hadar::error::{Error, Result};
-use rayon::prelude::*;
+use hadar::parallel;
 
 /// Most scatterings; what comes later changes nothing unless everything is a mirror.
 const SCATTERINGS: usize = 64;
@@ -201,7 +201,7 @@ pub(super) fn over_rows<T: Send>(
             let samples: Vec<f64> = cube.read(row..row + 1, buffer)?.iter().map(|s| (*s).into()).collect();
             Ok(of_row(row, &samples))
         };
-        (0..cube.shape().rows()).into_par_iter().map_init(Vec::new, one).collect()
+        parallel::try_map_with(cube.shape().rows(), Vec::new, one)
     }
     match cube {
         Cube::F32(rows) => all(rows.as_ref(), of_row),

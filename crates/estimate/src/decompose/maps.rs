@@ -11,7 +11,7 @@ use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use hadar::cube::{CubeRef, Rows, Sample};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
-use rayon::prelude::*;
+use hadar::parallel;
 use std::ops::Range;
 
 /// Rows whose mean the bounds are laid out for.
@@ -140,7 +140,7 @@ type Row<P> = (P, Spared, KeptRow);
 
 impl<S: Sample> ByRows<'_, S> {
     /// The maps of what `pixel` makes of every pixel ([`Self::rows`]), some rows at a time.
-    pub(super) fn in_blocks<R>(
+    pub(super) fn in_blocks<R: Send>(
         &self,
         (height, take): Blocks<'_>,
         room: impl Fn() -> R + Sync,
@@ -160,7 +160,7 @@ impl<S: Sample> ByRows<'_, S> {
     /// What `pixel` makes of the samples of every pixel of some rows, with room of its own for each thread. It is given the pixel before in the
     /// row where that has the same samples: dead, dark and saturated regions do. Of a row that is done, only what `keep` makes of
     /// it is kept.
-    fn rows<R, P: Send>(
+    fn rows<R: Send, P: Send>(
         &self,
         rows: Range<usize>,
         room: &(impl Fn() -> R + Sync),
@@ -189,7 +189,8 @@ impl<S: Sample> ByRows<'_, S> {
             (self.done)(1);
             Ok((keep(pixels), spared, kept))
         };
-        rows.into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
+        let start = rows.start;
+        parallel::try_map_with(rows.len(), || (room(), Vec::new()), |own, i| of_row(own, start + i))
     }
 }
 

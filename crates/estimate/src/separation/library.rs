@@ -28,6 +28,7 @@ use crate::decompose::{Maps, Options, Setting, decompose};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result, check};
 use hadar::fisher::emissivity::{EmissivityPrior, Smoothness};
+use hadar::parallel;
 use rayon::prelude::*;
 
 /// Pixels that emissivities are fitted to, and those that counts of groups are judged by.
@@ -367,17 +368,14 @@ impl Maker<'_> {
             let error: Vec<f64> = found.sigma.iter().map(|sigma| sigma / mean).collect();
             Some((pixel, lit, ratio(&found.emissivity), error))
         };
-        let found: Vec<_> = (0..self.sample.pixels()).into_par_iter().filter_map(one).collect();
+        let found: Vec<_> = parallel::map(self.sample.pixels(), one).into_iter().flatten().collect();
         let width = self.radiometry.used.len();
         // The median over the pixels: a few next to equilibrium would have all the say.
-        let scale: Vec<f64> = (0..width)
-            .into_par_iter()
-            .map(|w| {
-                let mut errors: Vec<f64> = found.iter().map(|one| one.3[w]).collect();
-                errors.sort_by(f64::total_cmp);
-                errors.get(errors.len() / 2).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE)
-            })
-            .collect();
+        let scale: Vec<f64> = parallel::map(width, |w| {
+            let mut errors: Vec<f64> = found.iter().map(|one| one.3[w]).collect();
+            errors.sort_by(f64::total_cmp);
+            errors.get(errors.len() / 2).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE)
+        });
         Profiles {
             pixels: found.iter().map(|one| one.0).collect(),
             lit: found.iter().map(|one| one.1).collect(),
@@ -411,11 +409,10 @@ impl Maker<'_> {
             });
             from.collect()
         };
-        let curves = members.par_iter().map(of_group).collect::<Result<Vec<_>>>()?.concat();
+        let curves = parallel::try_map(members.len(), |i| of_group(&members[i]))?.concat();
         // What each costs every pixel.
         let compared = self.sample.some(&every(&profiles.pixels, COMPARED));
-        let losses: Vec<Vec<f64>> =
-            curves.par_iter().map(|e| self.losses(&compared, e)).collect::<Result<_>>()?;
+        let losses: Vec<Vec<f64>> = parallel::try_map(curves.len(), |i| self.losses(&compared, &curves[i]))?;
         Ok(Starts { curves, losses })
     }
 
@@ -472,11 +469,11 @@ impl Maker<'_> {
             let prior = curves.iter().map(|e| self.probability(e)).collect();
             let found = states(&pixels.decomposed(self.setting, &library, prior)?, self.radiometry);
             let now: Vec<Option<usize>> = found.iter().map(|state| state.as_ref().map(|s| s.group)).collect();
-            let each = found.par_iter().enumerate().map(|(i, state)| {
-                let own = state.as_ref().map(|own| self.loss(pixels, i, Some(own), &curves[own.group]));
+            let each = parallel::map(found.len(), |i| {
+                let own = found[i].as_ref().map(|own| self.loss(pixels, i, Some(own), &curves[own.group]));
                 own.unwrap_or_else(|| self.explained())
             });
-            let loss: f64 = each.collect::<Vec<f64>>().iter().sum();
+            let loss: f64 = each.iter().sum();
             let worse = best.as_ref().is_some_and(|best| loss > best.0 + curves.len() as f64);
             if worse {
                 reach *= 0.2;

@@ -3,8 +3,8 @@
 use crate::decompose::{Maps, Options, Setting, decompose};
 use hadar::cube::{Cube, MemoryCube, Rows, Sample as Stored, Shape};
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::random::generator;
-use rayon::prelude::*;
 
 /// Stream of random numbers of the choice.
 const STREAM: u64 = 1 << 32;
@@ -52,8 +52,7 @@ impl Sample {
             }
             Ok(counts)
         };
-        let rows: Vec<Vec<f64>> =
-            (0..shape.rows()).into_par_iter().map_init(Vec::new, of_row).collect::<Result<_>>()?;
+        let rows: Vec<Vec<f64>> = parallel::try_map_with(shape.rows(), Vec::new, of_row)?;
         Ok(Self { bands, counts: rows.concat() })
     }
 

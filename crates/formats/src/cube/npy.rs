@@ -2,6 +2,8 @@
 //!
 //! Source: NumPy, `numpy.lib.format` (versions 1.0, 2.0, 3.0).
 
+mod header;
+
 use super::READ_CUBE;
 use super::axes::Axes;
 use super::found::{Found, Opened};
@@ -9,7 +11,7 @@ use super::raw::Raw;
 use super::stored::{Stored, decode_next};
 use hadar::cube::{Sample, Shape};
 use hadar::error::{Error, Result};
-use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
+use header::Header;
 use std::fs::File;
 use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
@@ -19,9 +21,6 @@ pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
 /// Longest header that is looked at, bytes; as NumPy has it.
 const MAX_HEADER: usize = 10_000;
-
-/// Deepest nesting of a header that is looked at: a type made of types made of types.
-const MAX_DEPTH: usize = 8;
 
 /// What the header of an array says.
 #[derive(Debug)]
@@ -58,15 +57,13 @@ impl Array {
     /// Reads the header of an array of `len` bytes in all.
     pub(super) fn read(file: &mut impl Read, len: u64, axes: Option<Axes>) -> Result<Self> {
         let (header, start) = header(file, len)?;
-        let (stored, order) = sample_type(&header.dtype())?;
-        let sides: Vec<usize> =
-            header.shape().iter().map(|side| usize::try_from(*side).unwrap_or(usize::MAX)).collect();
+        let (stored, little_endian) = sample_type(&header.descr)?;
+        let sides = header.sides;
         let said = axes.unwrap_or_default();
         let shape = said.shape(&sides)?;
         check_len(len.saturating_sub(start), Raw::bytes(shape, stored))?;
         // The first index runs fastest in Fortran order; the third of two is that of the only band, wherever it stands.
-        let order_of_axes = if header.order() == Order::Fortran { said.reversed() } else { said };
-        let little_endian = order == Endianness::Little;
+        let order_of_axes = if header.fortran_order { said.reversed() } else { said };
         Ok(Self { shape, sides, order: order_of_axes, stored, little_endian, start })
     }
 }
@@ -74,21 +71,21 @@ impl Array {
 /// The numbers of a list, if an array of `len` bytes in all is one of `count` numbers.
 pub(super) fn list(file: &mut impl Read, len: u64, count: usize) -> Option<Vec<f64>> {
     let (header, start) = header(file, len).ok()?;
-    let (stored, order) = sample_type(&header.dtype()).ok()?;
-    let sides = header.shape();
+    let (stored, little_endian) = sample_type(&header.descr).ok()?;
+    let sides = header.sides;
     let bytes = (count as u64).checked_mul(stored.size() as u64)?;
-    let is_list = sides.contains(&(count as u64)) && sides.iter().filter(|side| **side != 1).count() <= 1;
+    let is_list = sides.contains(&count) && sides.iter().filter(|side| **side != 1).count() <= 1;
     if !is_list || len.checked_sub(start) != Some(bytes) {
         return None;
     }
     let mut numbers = vec![0.0_f64; count];
     let exact = |bytes: &mut [u8]| file.read_exact(bytes).map_err(|error| truncated(error.to_string()));
-    decode_next(exact, stored, order == Endianness::Little, &mut numbers).ok()?;
+    decode_next(exact, stored, little_endian, &mut numbers).ok()?;
     Some(numbers)
 }
 
 /// The header, and how many bytes it takes.
-fn header(file: &mut impl Read, len: u64) -> Result<(NpyHeader, u64)> {
+fn header(file: &mut impl Read, len: u64) -> Result<(Header, u64)> {
     let cut = || truncated("the file ends within its header".to_owned());
     let mut bytes = Vec::with_capacity(256);
     // The first 12 bytes tell how many there are.
@@ -124,54 +121,38 @@ fn header(file: &mut impl Read, len: u64) -> Result<(NpyHeader, u64)> {
     }
     fill(&mut bytes, start.max(12))?;
     let text = &bytes[before as usize..];
-    // The parser tries every bracket as several things, each with all that is in it: its time doubles with every level.
-    // Dimensions of more than 19 digits together would not fit its u64.
-    let brackets = text.iter().filter(|byte| b"([{".contains(byte)).count();
-    let digits = text.iter().filter(|byte| byte.is_ascii_digit()).count();
-    if brackets > 64 || depth(text) > MAX_DEPTH || digits > 19 {
-        return Err(strange(text));
-    }
-    let header = NpyHeader::from_reader(bytes.as_slice()).map_err(|_| strange(text))?;
+    let header = std::str::from_utf8(text).ok().and_then(header::parse).ok_or_else(|| strange(text))?;
     Ok((header, start))
 }
 
-/// Most brackets that are open at one place.
-fn depth(text: &[u8]) -> usize {
-    let (mut open, mut most) = (0_usize, 0);
-    for byte in text {
-        match byte {
-            b'(' | b'[' | b'{' => open += 1,
-            b')' | b']' | b'}' => open = open.saturating_sub(1),
-            _ => {}
-        }
-        most = most.max(open);
+/// What samples are, and whether their lowest byte comes first.
+fn sample_type(descr: &str) -> Result<(Stored, bool)> {
+    let name = descr.trim_start_matches(['<', '>', '|']);
+    let (kind, size) = name.split_at_checked(1).unwrap_or_default();
+    let size = size.parse().unwrap_or(0);
+    let stored = match kind {
+        "f" => Stored::float(size),
+        "u" => Stored::whole(false, size),
+        "i" => Stored::whole(true, size),
+        _ => None,
+    };
+    // Only of single bytes there is no order.
+    let stored = stored.filter(|_| match descr.len() - name.len() {
+        1 => size == 1 || !descr.starts_with('|'),
+        _ => false,
+    });
+    if let Some(stored) = stored {
+        return Ok((stored, descr.starts_with('<')));
     }
-    most
-}
-
-/// What samples are, and the order of their bytes.
-fn sample_type(dtype: &DType) -> Result<(Stored, Endianness)> {
-    if let DType::Plain(plain) = dtype {
-        let stored = match plain.type_char() {
-            TypeChar::Float => Stored::float(plain.size_field()),
-            TypeChar::Uint => Stored::whole(false, plain.size_field()),
-            TypeChar::Int => Stored::whole(true, plain.size_field()),
-            _ => None,
-        };
-        if let Some(stored) = stored {
-            return Ok((stored, plain.endianness()));
-        }
-        if plain.type_char() == TypeChar::Bool {
-            let instead =
-                "write what was counted, or np.save(path, a.astype(np.uint8)) if 0 and 1 are counts";
-            return Err(Error::malformed("the samples are truth values", instead));
-        }
-        if plain.type_char() == TypeChar::Complex {
-            let instead = "write one of its parts, as np.save(path, np.abs(a).astype(np.float32))";
-            return Err(Error::malformed("the samples are complex numbers", instead));
-        }
+    if name == "b1" {
+        let instead = "write what was counted, or np.save(path, a.astype(np.uint8)) if 0 and 1 are counts";
+        return Err(Error::malformed("the samples are truth values", instead));
     }
-    let name: String = dtype.descr().chars().take(80).collect();
+    if kind == "c" {
+        let instead = "write one of its parts, as np.save(path, np.abs(a).astype(np.float32))";
+        return Err(Error::malformed("the samples are complex numbers", instead));
+    }
+    let name: String = descr.chars().take(80).collect();
     Err(Error::malformed(
         format!("the samples are of type {name}, not floating-point or whole numbers"),
         "write them with np.save(path, a.astype(np.float32))",
@@ -296,7 +277,8 @@ pub(super) fn array<V: bytemuck::Pod>(
     dimensions: &[usize],
     values: &[V],
 ) -> std::io::Result<()> {
-    let order = if size_of::<V>() == 1 { "|" } else { Endianness::of_machine().to_str() };
+    let order =
+        if size_of::<V>() == 1 { "|" } else { if cfg!(target_endian = "little") { "<" } else { ">" } };
     let dimensions = match dimensions {
         // To NumPy (10) is a number, no shape.
         [one] => format!("{one},"),

@@ -5,6 +5,7 @@
 
 use super::side::{Figure, Side, plain};
 use hadar::error::{Error, Result};
+use hadar::order;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -202,7 +203,7 @@ fn figures(before: &Side, after: &Side) -> (Vec<Moved>, Vec<Curve>) {
         }
     }
     let size = |one: &Moved| one.relative_change.map_or(-1.0, f64::abs);
-    moved.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    order::descending(&mut moved, size);
     (moved, curves.into_values().filter(|curve| curve.moved > 0).collect())
 }
 

@@ -13,6 +13,7 @@ use crate::plot::{
 use crate::table::{Table, number, optional};
 use crate::text::significant;
 use crate::words::identify::captions;
+use hadar::order;
 use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
 use hadar_study::{Matrix, PairResult, SampleSpectra, Study, TargetVerdict};
@@ -163,7 +164,7 @@ pub(super) fn distances(study: &Study, pairs: &[PairResult]) -> Plot {
         false => per_photon(pair),
     };
     let mut ranked: Vec<&PairResult> = pairs.iter().collect();
-    ranked.sort_by(|a, b| value(a).total_cmp(&value(b)));
+    order::ascending(&mut ranked, |pair| value(pair));
     let unit = if with_camera { "statistical_distance" } else { "distance_per_sqrt_photon" };
     let mut table = Table::new(["alternative", unit, "told_apart"]);
     let required = study.required_distance();

@@ -7,6 +7,7 @@ use super::colour::{FINE_GRID, GREY, GRID, INK};
 use super::scene::{Anchor, Rect, Scene};
 use super::text::{self, LEADING};
 use super::ticks::Ticks;
+use hadar::order;
 
 /// Width of every figure in logical pixels.
 pub(super) const WIDTH: f64 = 800.0;
@@ -253,7 +254,7 @@ impl Horizontal {
             .filter(|(at, _)| (-1e-9..=1.0 + 1e-9).contains(at))
             .map(|(at, label)| (frame.at(at, 1.0).0, label))
             .collect();
-        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut places, |a| a.0);
         let mut free_from = frame.left - 30.0;
         for (x, label) in places {
             scene.line((x, frame.top - 4.5), (x, frame.top), 0.7, INK);
@@ -289,6 +290,6 @@ fn fit(ticks: &Ticks, width: f64) -> bool {
         .map(|(at, label)| (at * width, 0.5 * text::width(label, TICK)))
         .map(|(x, half)| (x - half, x + half))
         .collect();
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut ends, |a| a.0);
     ends.iter().zip(ends.iter().skip(1)).all(|(a, b)| a.1 + 10.0 <= b.0)
 }

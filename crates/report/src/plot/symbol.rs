@@ -2,6 +2,7 @@
 
 use super::colour::{Colour, WHITE};
 use super::scene::{Mark, Point, Rect, Scene};
+use hadar::order;
 
 /// Width of the line of an open symbol, and of the white rim around symbols.
 const LINE: f64 = 1.3;
@@ -48,7 +49,7 @@ impl Shape {
         let (half, back) = (0.866 * reach, 0.5 * reach);
         let sideways = |tip: f64, base: f64| {
             let mut ends = [(tip, 0.0), (base, half)];
-            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            order::ascending(&mut ends, |a| a.0);
             let along = ends.map(|(x, _)| x).to_vec();
             let (upper, lower) = (ends.map(|(_, h)| y - h).to_vec(), ends.map(|(_, h)| y + h).to_vec());
             Mark::Area { x: along, upper, lower, colour }

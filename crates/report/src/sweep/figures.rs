@@ -6,6 +6,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, HeatMap, LineFigure, Series, Style};
 use crate::table::Table;
 use crate::words::sweep::interpolated;
+use hadar::order;
 use hadar_study::sweep::{Cell, Input};
 
 /// Most pictures.
@@ -56,7 +57,7 @@ pub(super) fn plots(swept: &Swept) -> Vec<Plot> {
 fn positions(input: &Input) -> Vec<(usize, f64)> {
     let mut found: Vec<(usize, f64)> =
         input.cells.iter().enumerate().filter_map(|(i, cell)| Some((i, cell.number()?))).collect();
-    found.sort_by(|a, b| a.1.total_cmp(&b.1));
+    order::ascending(&mut found, |a| a.1);
     found
 }
 

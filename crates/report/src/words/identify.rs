@@ -14,6 +14,7 @@ use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::words::{Say, classes, probability as words};
+use hadar::order;
 use hadar_study::{Answers, Check, Identification, Study};
 use std::fmt::Write as _;
 
@@ -135,7 +136,7 @@ fn number_of_photons(count: Option<f64>) -> String {
 fn prediction(result: &Identification) -> String {
     let Some(all) = &result.identifiability.prediction_heuristic else { return String::new() };
     let mut sorted: Vec<_> = all.iter().collect();
-    sorted.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    order::descending(&mut sorted, |b| b.probability);
     let shown: Vec<String> = sorted
         .iter()
         .take(SHOWN)

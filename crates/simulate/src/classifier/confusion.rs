@@ -5,6 +5,7 @@ use crate::draws::Draws;
 use crate::sequential::Interval;
 use crate::spectra::{LabelledSpectra, check_laws, draw_one};
 use hadar::error::{Error, Result};
+use hadar::parallel;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -63,25 +64,24 @@ impl Confusion {
         classifiers.iter().try_for_each(|classifier| check(*classifier, bands, classes))?;
         let chunks: Vec<Range<u64>> =
             range.clone().step_by(CHUNK).map(|first| first..(first + CHUNK as u64).min(range.end)).collect();
-        let parts: Vec<Vec<Self>> = chunks
-            .into_par_iter()
-            .map_init(
-                || classifiers.iter().map(|classifier| classifier.judge()).collect::<Vec<_>>(),
-                |judges, chunk| {
-                    let mut parts = vec![Self::empty(classes); classifiers.len()];
-                    let (mut counts, mut scores) = (vec![0.0; bands], vec![0.0; classes]);
-                    for i in chunk {
-                        for class in 0..classes {
-                            draw_one(draws, class, i, seed, &mut counts);
-                            for (part, judge) in parts.iter_mut().zip(judges.iter_mut()) {
-                                part.judge(judge.as_mut(), &counts, class, &mut scores);
-                            }
+        let parts: Vec<Vec<Self>> = parallel::map_with(
+            chunks.len(),
+            || classifiers.iter().map(|classifier| classifier.judge()).collect::<Vec<_>>(),
+            |judges, i| {
+                let chunk = chunks[i].clone();
+                let mut parts = vec![Self::empty(classes); classifiers.len()];
+                let (mut counts, mut scores) = (vec![0.0; bands], vec![0.0; classes]);
+                for i in chunk {
+                    for class in 0..classes {
+                        draw_one(draws, class, i, seed, &mut counts);
+                        for (part, judge) in parts.iter_mut().zip(judges.iter_mut()) {
+                            part.judge(judge.as_mut(), &counts, class, &mut scores);
                         }
                     }
-                    parts
-                },
-            )
-            .collect();
+                }
+                parts
+            },
+        );
         Ok((0..classifiers.len()).map(|i| Self::sum(classes, parts.iter().map(|part| &part[i]))).collect())
     }
 

@@ -3,7 +3,7 @@
 use crate::classifier::{Classifier, Judge, share};
 use crate::draws::{Draws, STREAMS, generator};
 use crate::sequential::{BLOCK, Interval, Plan};
-use rayon::prelude::*;
+use hadar::parallel;
 
 /// Counts from one truth, and how they are judged.
 pub(super) struct Test<'a> {
@@ -77,15 +77,15 @@ pub(super) fn run<const TRUTHS: usize>(
     let (mut done, mut half_width) = (0, f64::INFINITY);
     while let Some(total) = plan.next_total(done, half_width) {
         for (test, sum) in tests.iter().zip(&mut sums) {
-            let blocks: Vec<Trials> = (done / BLOCK..total.div_ceil(BLOCK))
-                .into_par_iter()
-                .map_init(
-                    || test.rule.judge(),
-                    |judge, block| {
-                        test.block(judge.as_mut(), plan.seed(), block, BLOCK.min(total - block * BLOCK))
-                    },
-                )
-                .collect();
+            let first = done / BLOCK;
+            let blocks: Vec<Trials> = parallel::map_with(
+                total.div_ceil(BLOCK).saturating_sub(first) as usize,
+                || test.rule.judge(),
+                |judge, i| {
+                    let block = first + i as u64;
+                    test.block(judge.as_mut(), plan.seed(), block, BLOCK.min(total - block * BLOCK))
+                },
+            );
             blocks.iter().for_each(|block| sum.add(block));
         }
         done = total;

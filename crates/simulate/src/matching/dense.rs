@@ -7,7 +7,7 @@ use super::block::Block;
 use super::layout::{Layout, View};
 use super::search::{Match, Search, StereoPair, check_window};
 use hadar::error::Result;
-use rayon::prelude::*;
+use hadar::parallel;
 use std::ops::Range;
 
 /// Rows of a block; windows higher than a quarter of it have longer ones.
@@ -62,26 +62,25 @@ pub fn disparity_map(pair: &StereoPair, block: &Block, search: Search) -> Result
     let columns = window.half_columns()..shape.columns() - window.half_columns();
     let height = ROWS.max(4 * window.rows());
     let starts: Vec<usize> = rows.clone().step_by(height).collect();
-    let blocks: Vec<Vec<Match>> = starts
-        .into_par_iter()
-        .map_init(
-            || block.strip(search),
-            |strip, start| {
-                let mut matches = Vec::with_capacity(height * columns.len());
-                for row in start..(start + height).min(rows.end) {
-                    if row == start {
-                        strip.start(left, right, row, columns.clone());
-                    } else {
-                        strip.advance(left, right, row);
-                    }
-                    for (at, column) in columns.clone().enumerate() {
-                        let within = search.within(column, shape.columns(), window.half_columns());
-                        matches.push(block.peak(strip.scores(at), within, search));
-                    }
+    let blocks: Vec<Vec<Match>> = parallel::map_with(
+        starts.len(),
+        || block.strip(search),
+        |strip, i| {
+            let start = starts[i];
+            let mut matches = Vec::with_capacity(height * columns.len());
+            for row in start..(start + height).min(rows.end) {
+                if row == start {
+                    strip.start(left, right, row, columns.clone());
+                } else {
+                    strip.advance(left, right, row);
                 }
-                matches
-            },
-        )
-        .collect();
+                for (at, column) in columns.clone().enumerate() {
+                    let within = search.within(column, shape.columns(), window.half_columns());
+                    matches.push(block.peak(strip.scores(at), within, search));
+                }
+            }
+            matches
+        },
+    );
     Ok(DisparityMap { rows, columns, matches: blocks.into_iter().flatten().collect() })
 }

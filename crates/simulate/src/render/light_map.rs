@@ -10,6 +10,7 @@ use super::rig::{Camera, Rig};
 use super::scene::{GROUND, Scene};
 use super::vector::{UP, Vector, along};
 use hadar::error::{Error, Result};
+use hadar::parallel;
 use rayon::prelude::*;
 
 /// Nodes from one corner of a cell to the next.
@@ -86,17 +87,14 @@ impl LightMap {
         });
         let coarse = nodes.clone();
         let [down, across] = [rows, columns].map(|n| (n - 1).div_ceil(CELL));
-        let rough: Vec<bool> = (0..down * across)
-            .into_par_iter()
-            .map_init(Room::default, |room, cell| {
-                let [row, column] = [cell / across * CELL + CELL / 2, cell % across * CELL + CELL / 2];
-                let [row, column] = [row.min(rows - 1), column.min(columns - 1)];
-                let (mut exact, mut guess) = (vec![[0.0; 3]; surfaces], vec![[0.0; 3]; surfaces]);
-                map.exact(scene, row, column, room, &mut exact);
-                map.between(&coarse, row, column, &mut guess);
-                exact.iter().flatten().zip(guess.iter().flatten()).any(|(a, b)| (a - b).abs() > ALIKE)
-            })
-            .collect();
+        let rough: Vec<bool> = parallel::map_with(down * across, Room::default, |room, cell| {
+            let [row, column] = [cell / across * CELL + CELL / 2, cell % across * CELL + CELL / 2];
+            let [row, column] = [row.min(rows - 1), column.min(columns - 1)];
+            let (mut exact, mut guess) = (vec![[0.0; 3]; surfaces], vec![[0.0; 3]; surfaces]);
+            map.exact(scene, row, column, room, &mut exact);
+            map.between(&coarse, row, column, &mut guess);
+            exact.iter().flatten().zip(guess.iter().flatten()).any(|(a, b)| (a - b).abs() > ALIKE)
+        });
         let in_rough = |row: usize, column: usize| {
             // A node on an edge is of two cells.
             let cells = |i: usize, last: usize| [i.saturating_sub(1) / CELL, (i / CELL).min(last - 1)];

@@ -13,7 +13,7 @@
 use super::factor::{Cone, Factor, Polygon};
 use super::scene::{GROUND, SKY, SURFACES, Scene};
 use super::vector::{Vector, dot, subtract};
-use rayon::prelude::*;
+use hadar::parallel;
 
 /// Factors of each surface.
 pub(super) type Shares = [f64; SURFACES];
@@ -188,18 +188,16 @@ pub(super) fn mean_shares(scene: &Scene, patches_per_side: usize) -> Vec<Shares>
         }
     };
     for (index, solid) in scene.solids.iter().enumerate() {
-        let shared: Vec<Option<(f64, Shares)>> = solid
-            .shape
-            .patches(patches_per_side)
-            .into_par_iter()
-            .map_init(Room::default, |room, patch| {
+        let patches = solid.shape.patches(patches_per_side);
+        let shared: Vec<Option<(f64, Shares)>> =
+            parallel::map_with(patches.len(), Room::default, |room, i| {
+                let patch = &patches[i];
                 let seen = || {
                     let factors = factors(scene, patch.point, patch.normal, Some(index), room);
                     (patch.area_m2, shares(&factors, patch.normal))
                 };
                 (!scene.buried(patch.point, patch.normal)).then(seen)
-            })
-            .collect();
+            });
         shared.into_iter().flatten().for_each(|(area, shares)| add(solid.surface, area, shares));
     }
     add(GROUND, 1.0, shares(&Factors::default(), super::vector::UP));

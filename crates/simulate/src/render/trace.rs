@@ -14,8 +14,8 @@ use super::vector::{UP, Vector, along, dot, scaled, subtract};
 use super::view::{Centre, MixedRow, View};
 use hadar::cube::Shape;
 use hadar::error::{Error, Result, check};
+use hadar::parallel;
 use hadar::spectrum::Bands;
-use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -209,17 +209,15 @@ struct Tracer<'a> {
 
 impl Tracer<'_> {
     fn view(&self, shape: Shape, tell: &(dyn Fn() + Sync)) -> View {
-        let drawn: Vec<(MixedRow, Vec<Centre>)> = (0..shape.rows())
-            .into_par_iter()
-            .map_init(
-                || (Vec::new(), Room::default()),
-                |(rays, room), row| {
-                    let drawn = self.row(row, rays, room);
-                    tell();
-                    drawn
-                },
-            )
-            .collect();
+        let drawn: Vec<(MixedRow, Vec<Centre>)> = parallel::map_with(
+            shape.rows(),
+            || (Vec::new(), Room::default()),
+            |(rays, room), row| {
+                let drawn = self.row(row, rays, room);
+                tell();
+                drawn
+            },
+        );
         let pixels = shape.rows() * shape.columns();
         let sources = self.basis.sources;
         let mut view = View {

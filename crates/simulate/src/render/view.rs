@@ -99,7 +99,7 @@ impl View {
             .par_chunks_mut(self.shape.row_len())
             .zip(&self.rows)
             .for_each(|(out, row)| self.fill(part, factor, row, out));
-        if samples.par_iter().all(|sample| sample.is_finite()) {
+        if samples.iter().all(|sample| sample.is_finite()) {
             return MemoryCube::new(self.shape, samples);
         }
         Err(Error::malformed(

@@ -9,6 +9,7 @@ use hadar::calibration::filter_wheel::{FilterWheel, Reading};
 use hadar::cube::{Cube, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
+use hadar::order;
 use hadar::planck;
 use hadar::spectrum::{FilterCurve, interpolated};
 use hadar_estimate::calibrate::response::{FilterRadiance, Response};
@@ -199,16 +200,7 @@ impl ResponseStudy {
         let shape = self.cubes[0].shape();
         let size = [shape.rows(), shape.columns()];
         let middle = centre(size, scenario.response.centre_half);
-        let sigma = scenario.noise / (middle.len() as f64).sqrt();
-        let (mut readings, mut counts) = (Vec::new(), Vec::new());
-        for (blackbody, cube) in cubes.iter().enumerate() {
-            for filter in 0..filters {
-                let sum: f64 = middle.iter().map(|pixel| cube[pixel * filters + filter]).sum();
-                counts.push(sum / middle.len() as f64);
-                let temperature_k = specs[blackbody].temperature_k;
-                readings.push(Reading { blackbody, temperature_k, filter, sigma });
-            }
-        }
+        let (readings, counts) = self.readings(&cubes, &middle);
         let scale = self.scale(&readings, &counts).map_err(at(source, "blackbody"))?;
         let wheel = self.wheel(scale)?;
         let prior = CurvePrior::smooth(&self.centres_cm1, &self.typical, scenario.response.known)
@@ -222,17 +214,8 @@ impl ResponseStudy {
         // Of readings that are all fitted nothing is left to be tested.
         let chi_square_reduced = (found.freedom > TESTED).then(|| found.chi_square_readings / found.freedom);
         let mut warnings = Vec::new();
-        let limit = MISFIT.max(1.0 + 5.0 * (2.0 / found.freedom.max(TESTED)).sqrt());
-        let misfit = chi_square_reduced.filter(|chi| *chi > limit);
-        if let Some(chi_square) = misfit {
-            let worst = found.worst.filter(|worst| worst.explains > EXPLAINS * found.chi_square);
-            let worst = worst.map(|worst| WorstBlackbody {
-                blackbody: worst.blackbody,
-                temperature_k: specs[worst.blackbody].temperature_k,
-                off_k: worst.shift_k,
-            });
-            warnings.push(Warning::ResponseDoesNotFit { chi_square, worst });
-        }
+        let misfit = chi_square_reduced.filter(|chi| *chi > most_by_chance(found.freedom.max(TESTED)));
+        warnings.extend(misfit.map(|chi_square| self.does_not_fit(&found, chi_square)));
         warnings.extend(uncertainty_not_stated(specs));
         let values = self.centres_cm1.len();
         let row = |j: usize| ResponseRow {
@@ -250,7 +233,7 @@ impl ResponseStudy {
             .transpose()
             .map_err(at(source, "blackbody"))?;
         if let Some(eta) = &eta
-            && eta.chi_square_reduced > MISFIT.max(1.0 + 5.0 * (2.0 / eta.freedom.max(1) as f64).sqrt())
+            && eta.chi_square_reduced > most_by_chance(eta.freedom.max(1) as f64)
         {
             warnings.push(Warning::VignetteDiffers { chi_square: eta.chi_square_reduced });
         }
@@ -296,6 +279,32 @@ impl ResponseStudy {
             stats,
             warnings,
         })
+    }
+
+    /// Every filter's reading of every blackbody, the mean about the centre in counts.
+    fn readings(&self, cubes: &[Vec<f64>], middle: &[usize]) -> (Vec<Reading>, Vec<f64>) {
+        let filters = self.names.len();
+        let sigma = self.scenario.noise / (middle.len() as f64).sqrt();
+        let (mut readings, mut counts) = (Vec::new(), Vec::new());
+        for (blackbody, (cube, spec)) in cubes.iter().zip(&self.scenario.blackbodies).enumerate() {
+            for filter in 0..filters {
+                let sum: f64 = middle.iter().map(|pixel| cube[pixel * filters + filter]).sum();
+                counts.push(sum / middle.len() as f64);
+                readings.push(Reading { blackbody, temperature_k: spec.temperature_k, filter, sigma });
+            }
+        }
+        (readings, counts)
+    }
+
+    /// Readings off the response beyond chance, with the blackbody that explains most of it.
+    fn does_not_fit(&self, found: &Response, chi_square: f64) -> Warning {
+        let worst = found.worst.filter(|worst| worst.explains > EXPLAINS * found.chi_square);
+        let worst = worst.map(|worst| WorstBlackbody {
+            blackbody: worst.blackbody,
+            temperature_k: self.scenario.blackbodies[worst.blackbody].temperature_k,
+            off_k: worst.shift_k,
+        });
+        Warning::ResponseDoesNotFit { chi_square, worst }
     }
 
     /// g by which the typical curve is the nearest to the readings, an offset for each filter.
@@ -386,6 +395,11 @@ impl ResponseStudy {
     }
 }
 
+/// χ² per degree of freedom that readings which fit may have.
+fn most_by_chance(freedom: f64) -> f64 {
+    MISFIT.max(1.0 + 5.0 * (2.0 / freedom).sqrt())
+}
+
 fn check_filters(cube: &Cube, filters: usize) -> Result<()> {
     if cube.shape().bands() == filters {
         return Ok(());
@@ -429,7 +443,7 @@ fn typical(path: &Path, centres_cm1: &[f64]) -> Result<Vec<f64>> {
         return Err(error.in_file(path));
     };
     let mut rows = rows.clone();
-    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut rows, |a| a.0);
     let (xs, ys): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
     let (Some(low), Some(high)) = (xs.first(), xs.last()) else {
         return Err(Error::malformed("the table has no rows", "write one for every wavenumber").in_file(path));

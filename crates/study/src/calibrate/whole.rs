@@ -3,6 +3,7 @@
 use crate::memory;
 use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::error::{Error, Result};
+use hadar::parallel;
 use hadar_scenario::Source;
 use hadar_scenario::calibrate::blackbodies::CubeFile;
 use rayon::prelude::*;
@@ -47,7 +48,7 @@ fn rows<S: Sample, T: Send>(
     of: impl Fn(&[S], &mut [T]) + Sync,
 ) -> Result<()> {
     let shape = cube.shape();
-    out.par_chunks_mut(per_row).enumerate().try_for_each_init(Vec::new, |buffer, (row, out)| {
+    parallel::fill(out, per_row, Vec::new, |buffer, row, out| {
         let samples = cube.read(row..row + 1, buffer)?;
         if !missing
             && !samples.iter().fold(true, |all, sample| all & (*sample).into().is_finite())

@@ -6,8 +6,9 @@ use crate::{Study, Surface};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::identifiability::mixture::{MixtureDistance, Mixtures};
+use hadar::order;
+use hadar::parallel;
 use hadar_scenario::DistanceKind;
-use rayon::prelude::*;
 
 /// To what share of a distance that of mixtures is proved.
 const TOLERANCE: f64 = 1e-3;
@@ -42,7 +43,8 @@ impl Study {
         let jobs: Vec<(&Vec<usize>, &Vec<usize>)> =
             sides[0].iter().flat_map(|a| sides[1].iter().map(move |b| (a, b))).collect();
         let scene = self.library_scene();
-        let found = jobs.par_iter().map(|(a, b)| {
+        let found = parallel::try_map(jobs.len(), |i| {
+            let (a, b) = jobs[i];
             let spectra = |members: &Members, which: &[usize]| -> Vec<Vec<f64>> {
                 which.iter().map(|i| members.surfaces[*i].emissivity.clone()).collect()
             };
@@ -58,7 +60,7 @@ impl Study {
             // What is beyond the worst pair of members is not asked for.
             mixtures.nearest(TOLERANCE, distance)
         });
-        let found: Vec<MixtureDistance> = found.collect::<Result<_>>().map_err(at)?;
+        let found: Vec<MixtureDistance> = found.map_err(at)?;
         let lower = found.iter().map(|found| found.lower).fold(f64::INFINITY, f64::min);
         let nearest = found.iter().zip(&jobs).min_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
         let shares = |members: &Members, which: &[usize], shares: &[f64]| {
@@ -126,6 +128,6 @@ fn parts(members: &Members, shares: &[f64]) -> Vec<(String, f64)> {
         .filter(|(_, share)| **share > WORTH_NAMING)
         .map(|(surface, share)| (surface.name.clone(), *share))
         .collect();
-    parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+    order::descending(&mut parts, |b| b.1);
     parts
 }

@@ -12,10 +12,10 @@ use super::DecomposeStudy;
 use super::kept::Block;
 use hadar::cube::{Cube, Rows, Sample};
 use hadar::error::Result;
+use hadar::parallel;
 use hadar_estimate::decompose::{Light, Maps, Residue, Setting, Sky, distil};
 use hadar_scenario::MaterialRef;
 use hadar_scenario::decompose::LightSource;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -210,10 +210,11 @@ fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>, rows: Range<us
         used.iter().filter_map(of).sum::<f64>() as f32
     };
     let shape = cube.shape();
-    let rows = rows.into_par_iter().map_init(Vec::new, |buffer, row| {
+    let of_row = |buffer: &mut Vec<S>, i: usize| {
+        let row = rows.start + i;
         Ok(cube.read(row..row + 1, buffer)?.chunks(shape.bands()).map(sum).collect::<Vec<f32>>())
-    });
-    Ok(rows.collect::<Result<Vec<_>>>()?.concat())
+    };
+    Ok(parallel::try_map_with(rows.len(), Vec::new, of_row)?.concat())
 }
 
 #[cfg(test)]

@@ -12,9 +12,9 @@ use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
+use hadar::parallel;
 use hadar::scene::{State, Surroundings};
 use hadar_estimate::decompose::{Light, Maps, Method, flag};
-use rayon::prelude::*;
 
 /// Pixels whose limit is computed.
 const LIMITS: usize = 240;
@@ -223,7 +223,7 @@ fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<V
         Ok(detection::probability(nearest))
     };
     let solver = || NearestSolver::new(&study.bands, &surroundings, unknowns.clone(), range);
-    chosen.par_iter().map_init(solver, limit).collect()
+    parallel::try_map_with(chosen.len(), solver, |solver, i| limit(solver, &chosen[i]))
 }
 
 /// The spectra of the surroundings.

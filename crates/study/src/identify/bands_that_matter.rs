@@ -8,8 +8,8 @@ use hadar::identifiability::selection::{
     FilterSelection, Quality, Scores, best_bands, best_filters, shares_between,
 };
 use hadar::identifiability::{Status, local::LocalSolver};
+use hadar::parallel;
 use hadar::scene::State;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// A band, or a filter made of neighbouring bands.
@@ -86,21 +86,17 @@ impl Study {
     pub fn bands_that_matter(&self, bands: Option<usize>, filters: Option<usize>) -> Result<BandsThatMatter> {
         let counting = self.counting();
         let unknowns = self.decisive_unknowns();
-        let scores: Vec<Scores> = self
-            .alternatives
-            .par_iter()
-            .map(|alternative| {
-                Scores::of(
-                    &self.bands,
-                    &self.surroundings,
-                    &unknowns,
-                    &self.target.emissivity,
-                    &alternative.emissivity,
-                    &self.state,
-                    counting.as_ref(),
-                )
-            })
-            .collect::<Result<_>>()?;
+        let scores: Vec<Scores> = parallel::try_map(self.alternatives.len(), |i| {
+            Scores::of(
+                &self.bands,
+                &self.surroundings,
+                &unknowns,
+                &self.target.emissivity,
+                &self.alternatives[i].emissivity,
+                &self.state,
+                counting.as_ref(),
+            )
+        })?;
         let (useful, blind): (Vec<usize>, Vec<usize>) =
             (0..scores.len()).partition(|&i| self.is_told_by_all_bands(&self.alternatives[i]));
         self.book_local(&unknowns, scores.len());
@@ -111,7 +107,7 @@ impl Study {
             if reachable.is_empty() { (useful, Vec::new()) } else { (reachable, out_of_reach) };
         let told: Vec<(&Surface, &Scores)> =
             counted.iter().map(|&i| (&self.alternatives[i], &scores[i])).collect();
-        let information: Vec<_> = told.par_iter().map(|(_, scores)| scores.information()).collect();
+        let information: Vec<_> = parallel::map(told.len(), |i| told[i].1.information());
         let hardest = (0..told.len())
             .min_by(|&a, &b| information[a].distance.total_cmp(&information[b].distance))
             .ok_or_else(|| {

@@ -4,8 +4,8 @@ use crate::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
+use hadar::parallel;
 use hadar::scene::{EnvironmentObject, Surroundings};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Share of the distance that another filter must add to be worth it.
@@ -78,13 +78,10 @@ impl Study {
             NearestSolver::new(&bands, &surroundings, self.unknowns.clone(), self.range)
                 .proving(self.tolerance())
         };
-        let found: Vec<f64> = alternatives
-            .par_iter()
-            .map_init(solver, |solver, other| {
-                let nearest = solver.with_counting(&own, &kept(&other.emissivity), &self.state, &counting)?;
-                Ok(nearest.distance)
-            })
-            .collect::<Result<_>>()?;
+        let found = parallel::try_map_with(alternatives.len(), solver, |solver, i| {
+            let other = kept(&alternatives[i].emissivity);
+            Ok(solver.with_counting(&own, &other, &self.state, &counting)?.distance)
+        })?;
         let least = found.into_iter().zip(alternatives).min_by(|a, b| a.0.total_cmp(&b.0));
         Ok(least.map(|(statistical_distance, surface)| Reached {
             statistical_distance,

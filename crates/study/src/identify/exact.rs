@@ -18,12 +18,13 @@ use hadar::identifiability::detection;
 use hadar::identifiability::lattice::{LatticeDetection, LatticeDetector, LatticeMesh};
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::StateRange;
+use hadar::order;
+use hadar::parallel;
 use hadar::policy;
 use hadar::statistics::Statistics;
 use hadar_simulate::decision::{Balanced, DecisionScene};
 use hadar_simulate::draws::{GENERATOR, LARGEST_MEAN};
 use hadar_simulate::sequential::Plan;
-use rayon::prelude::*;
 
 /// Most photons for which the lattice of counts is laid.
 const LATTICE_PHOTONS: f64 = 1e5;
@@ -145,10 +146,11 @@ impl Study {
             demand::spared(Thing::NearestSearches, Reason::NotAsked, 1);
             return Ok(vec![(f64::NAN, only)]);
         }
-        let mut ranked = demand::gathered(self.alternatives.par_iter().map(|alternative| {
-            demand::ledger_of(|| Ok((self.nearest(alternative, f64::INFINITY)?.distance, alternative)))
-        }))?;
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut ranked = parallel::booked(self.alternatives.len(), |i| {
+            let alternative = &self.alternatives[i];
+            Ok((self.nearest(alternative, f64::INFINITY)?.distance, alternative))
+        })?;
+        order::ascending(&mut ranked, |(distance, _)| *distance);
         Ok(ranked)
     }
 

@@ -9,8 +9,8 @@ use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::{Progress, expected_minimum};
+use hadar::parallel;
 use hadar_scenario::DistanceKind;
-use rayon::prelude::*;
 
 /// Expected least distance against the size of the library.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -144,28 +144,26 @@ impl Study {
         let (own, state, photons) = (&self.target.emissivity, &self.state, f64::INFINITY);
         let local = || LocalSolver::new(&self.bands, &self.surroundings, self.decisive_unknowns());
         let nearest = || self.nearest_solver();
-        let all = self.alternatives.par_iter();
+        let count = self.alternatives.len();
         let found: Result<Vec<f64>> = match kind {
-            DistanceKind::Nearest => all
-                .map_init(nearest, |solver, other| {
-                    let other = &other.emissivity;
-                    match counting {
-                        Some(counting) => solver.with_counting(own, other, state, counting),
-                        None => solver.per_photon(own, other, state, photons),
-                    }
-                    .map(|nearest| nearest.distance)
-                })
-                .collect(),
-            DistanceKind::Local | DistanceKind::LocalUnknownGain => all
-                .map_init(local, |solver, other| {
-                    let other = &other.emissivity;
+            DistanceKind::Nearest => parallel::try_map_with(count, nearest, |solver, i| {
+                let other = &self.alternatives[i].emissivity;
+                match counting {
+                    Some(counting) => solver.with_counting(own, other, state, counting),
+                    None => solver.per_photon(own, other, state, photons),
+                }
+                .map(|nearest| nearest.distance)
+            }),
+            DistanceKind::Local | DistanceKind::LocalUnknownGain => {
+                parallel::try_map_with(count, local, |solver, i| {
+                    let other = &self.alternatives[i].emissivity;
                     match counting {
                         Some(counting) => solver.with_counting(own, other, state, counting),
                         None => solver.per_photon(own, other, state, photons),
                     }
                     .map(|local| local.distance)
                 })
-                .collect(),
+            }
         };
         let mut distances = found?;
         distances.sort_by(f64::total_cmp);

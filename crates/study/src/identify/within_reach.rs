@@ -4,10 +4,9 @@
 //! A choice for the alternative that fares worst would else be made for one that stays hopeless whatever is chosen.
 
 use crate::Study;
-use hadar::demand;
 use hadar::error::Result;
 use hadar::fisher::Counting;
-use rayon::prelude::*;
+use hadar::parallel;
 
 impl Study {
     /// Indices of the alternatives that the camera's photons tell as required in all bands with shot noise alone, by
@@ -18,11 +17,9 @@ impl Study {
         };
         let shot = Counting { counts_per_radiance, var_added: Vec::new() };
         let kind = self.scenario.requirement.by;
-        let distances = demand::gathered(
-            self.alternatives
-                .par_iter()
-                .map(|surface| demand::ledger_of(|| self.statistical_distance(kind, surface, &shot))),
-        )?;
+        let distances = parallel::booked(self.alternatives.len(), |i| {
+            self.statistical_distance(kind, &self.alternatives[i], &shot)
+        })?;
         Ok((0..distances.len()).partition(|&i| distances[i] >= self.required))
     }
 

@@ -4,9 +4,9 @@ use super::results::{BoundMaps, ObjectBounds, Signal, SignalBounds};
 use super::signals::SignalMap;
 use super::subject::Truth;
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::ranging::depth::StereoGeometry;
 use hadar_scenario::range::{Demand, DepthRequirement};
-use rayon::prelude::*;
 
 /// What the bounds of a study rest on.
 pub(super) struct Ground<'a> {
@@ -34,7 +34,7 @@ impl Ground<'_> {
     /// whose centre has one.
     pub(super) fn windows(&self, map: &SignalMap, half: [usize; 2]) -> Vec<(usize, usize)> {
         let [half_rows, half_columns] = half;
-        let mapped = self.truth.depth_m.par_iter().any(|depth_m| depth_m.is_finite());
+        let mapped = self.truth.depth_m.iter().any(|depth_m| depth_m.is_finite());
         let has_depth = |row: usize, column: usize| {
             !mapped || self.truth.depth_m.get(row * self.columns + column).is_some_and(|z| z.is_finite())
         };
@@ -52,9 +52,13 @@ impl Ground<'_> {
                 })
         };
         let centres = |row: usize| {
-            map.columns.clone().map(move |column| (row, column)).filter(|&(y, x)| whole(y, x)).collect()
+            map.columns
+                .clone()
+                .map(move |column| (row, column))
+                .filter(|&(y, x)| whole(y, x))
+                .collect::<Vec<_>>()
         };
-        map.rows.clone().into_par_iter().map(centres).collect::<Vec<Vec<_>>>().concat()
+        parallel::map(map.rows.len(), |i| centres(map.rows.start + i)).concat()
     }
 
     /// Disparity variance of every window, pixel²; NaN where the right view has no such window.
@@ -92,14 +96,14 @@ impl Ground<'_> {
     ) -> Result<Vec<ObjectBounds>> {
         let name_of =
             |&(row, column): &(usize, usize)| self.truth.object.get(row * self.columns + column).copied();
-        let all = || Some(self.object("all windows", windows, maps, variances, &|_| true));
-        let named = |(i, name): (usize, &String)| {
+        let of = |i: usize| {
+            let Some(i) = i.checked_sub(1) else {
+                return Some(self.object("all windows", windows, maps, variances, &|_| true));
+            };
             let own = |window: &(usize, usize)| name_of(window) == u8::try_from(i).ok();
-            windows.iter().any(own).then(|| self.object(name, windows, maps, variances, &own))
+            windows.iter().any(own).then(|| self.object(&self.truth.names[i], windows, maps, variances, &own))
         };
-        let (all, named): (_, Vec<_>) =
-            rayon::join(all, || self.truth.names.par_iter().enumerate().map(named).collect());
-        all.into_iter().chain(named.into_iter().flatten()).collect()
+        parallel::map(1 + self.truth.names.len(), of).into_iter().flatten().collect()
     }
 
     fn object(
@@ -120,21 +124,15 @@ impl Ground<'_> {
             self.truth.depth_m.get(row * self.columns + column).copied().unwrap_or(f64::NAN)
         };
         let depths: Vec<f64> = chosen.iter().map(|&i| depth(i)).filter(|z| z.is_finite()).collect();
-        let signals = maps
-            .par_iter()
-            .zip(variances)
-            .map(|(map, var)| {
-                let bounds: Vec<Bound> = chosen
-                    .iter()
-                    .filter(|&&i| !var[i].is_nan())
-                    .filter_map(|&i| {
-                        let place = map.at(windows[i].0, windows[i].1)?;
-                        Some(Bound { place, depth_m: depth(i), var_px2: var[i] })
-                    })
-                    .collect();
-                self.signal(map, &bounds)
-            })
-            .collect::<Result<_>>()?;
+        let signals = parallel::try_map(maps.len().min(variances.len()), |at| {
+            let (map, var) = (&maps[at], &variances[at]);
+            let bound = |&i: &usize| {
+                let place = map.at(windows[i].0, windows[i].1)?;
+                Some(Bound { place, depth_m: depth(i), var_px2: var[i] })
+            };
+            let bounds: Vec<Bound> = chosen.iter().filter(|&&i| !var[i].is_nan()).filter_map(bound).collect();
+            self.signal(map, &bounds)
+        })?;
         let depth_m = (!depths.is_empty()).then(|| [0.0, 0.5, 1.0].map(|part| quantile(&depths, part)));
         Ok(ObjectBounds { name: name.to_owned(), windows: chosen.len(), depth_m, signals })
     }
@@ -213,7 +211,7 @@ impl Ground<'_> {
             rows.clone().flat_map(|row| columns.clone().map(move |column| row * self.columns + column));
         let depth_m = centres.map(|at| self.truth.depth_m.get(at).copied().unwrap_or(f64::NAN)).collect();
         let disparity_error_px: Vec<(Signal, Vec<f64>)> =
-            maps.par_iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
+            parallel::map(maps.len().min(variances.len()), |i| (maps[i].signal, spread(&variances[i])));
         BoundMaps { rows, columns, disparity_error_px, depth_m, ..BoundMaps::default() }
     }
 }

@@ -4,13 +4,13 @@ use super::results::Signal;
 use super::subject::{Measured, Rendered, nothing_to_see};
 use hadar::cube::{Cube, Rows as _, Shape};
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::ranging::depth::WindowInformation;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::Joined;
-use hadar::ranging::reconstruction::{BesideEmission, EmissionImage};
+use hadar::ranging::reconstruction::EmissionImage;
 use hadar::spectrum::Bands;
 use hadar_simulate::render::{Part, View};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// J, photons and Σσ² of every window by one signal.
@@ -94,31 +94,27 @@ pub(super) fn of_scene(
     let total = view.cube(Part::Total, factor)?;
     let (shape, var_added) = (total.shape(), subject.var_per_band(bands.len()));
     let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();
-    let blocks = total
-        .samples()
-        .par_chunks(ROWS * shape.row_len())
-        .zip(view.temperature_k.par_chunks(ROWS * shape.columns()));
-    let blocks = blocks.enumerate().map_init(
-        Default::default,
-        |parts: &mut [Vec<f64>; 2], (i, (counts, temperature_k))| {
-            let rows = counts.len() / shape.row_len();
-            for (part, of) in parts.iter_mut().zip([Part::Emission, Part::Scattered]) {
-                view.rows_into(of, factor, i * ROWS..i * ROWS + rows, part);
-            }
-            let [emission, scattered] = parts;
-            let image = EmissionImage {
-                shape: Shape::new(rows, shape.columns(), shape.bands())?,
-                counts,
-                emission,
-                scattered,
-                temperature_k,
-                wavenumbers_cm1: &centres,
-                var_added: &var_added,
-            };
-            image.beside_emission(request.derivative)
-        },
-    );
-    let mut blocks = blocks.collect::<Result<Vec<BesideEmission>>>()?.into_iter();
+    let counts: Vec<_> = total.samples().chunks(ROWS * shape.row_len()).collect();
+    let temperatures_k: Vec<_> = view.temperature_k.chunks(ROWS * shape.columns()).collect();
+    let blocks = parallel::try_map_with(counts.len(), Default::default, |parts: &mut [Vec<f64>; 2], i| {
+        let (counts, temperature_k) = (counts[i], temperatures_k[i]);
+        let rows = counts.len() / shape.row_len();
+        for (part, of) in parts.iter_mut().zip([Part::Emission, Part::Scattered]) {
+            view.rows_into(of, factor, i * ROWS..i * ROWS + rows, part);
+        }
+        let [emission, scattered] = parts;
+        let image = EmissionImage {
+            shape: Shape::new(rows, shape.columns(), shape.bands())?,
+            counts,
+            emission,
+            scattered,
+            temperature_k,
+            wavenumbers_cm1: &centres,
+            var_added: &var_added,
+        };
+        image.beside_emission(request.derivative)
+    })?;
+    let mut blocks = blocks.into_iter();
     let Some(mut beside) = blocks.next() else { return Err(nothing_to_see()) };
     blocks.for_each(|below| beside.append(&below));
     let total = Cube::from(total);

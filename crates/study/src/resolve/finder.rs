@@ -55,6 +55,23 @@ impl<'a> Finder<'a> {
         }
     }
 
+    /// Materials of the surroundings, of those that have one.
+    pub(super) fn environment(&mut self) -> Result<Vec<Option<Cow<'a, Material>>>> {
+        let found = self.scenario.environment.iter().enumerate().map(|(k, object)| {
+            let material = object.material.as_ref()?;
+            Some(self.find(&format!("environment[{k}].material"), material, object.extrapolate))
+        });
+        found.map(Option::transpose).collect()
+    }
+
+    /// Temperature and material of what is behind the target, where it is stated; without a material it is a blackbody.
+    pub(super) fn behind(&mut self) -> Result<Option<(f64, Option<Cow<'a, Material>>)>> {
+        let Some(behind) = &self.scenario.background else { return Ok(None) };
+        let found = behind.material.as_ref();
+        let found = found.map(|material| self.find("background.material", material, behind.extrapolate));
+        Ok(Some((behind.temperature_k, found.transpose()?)))
+    }
+
     /// What a key names: a class with all its members, or a material.
     pub(super) fn group(
         &mut self,

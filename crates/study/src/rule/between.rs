@@ -12,8 +12,8 @@ use super::search::{Searched, TOLERANCE, search};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::minimum::golden_section;
+use hadar::parallel;
 use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, LeastKnown, Stretch, lower_bound_along};
-use rayon::prelude::*;
 
 /// Tolerance of worst cases of which only the scene is wanted: what is proved is proved of stretches.
 const LOOSE: f64 = 0.5;
@@ -107,7 +107,7 @@ impl TellApart {
                 }
                 looked_at += pieces.len() as u64;
                 let bounds: Vec<Option<(f64, u64)>> =
-                    pieces.par_iter().map(|piece| piece.bounded(&known, boxes)).collect::<Result<_>>()?;
+                    parallel::try_map(pieces.len(), |i| pieces[i].bounded(&known, boxes))?;
                 for (piece, bound) in pieces.iter().zip(bounds) {
                     let Some((bound, boxes)) = bound else { return Ok((best, None)) };
                     spent += boxes;

@@ -28,10 +28,10 @@ use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::Camera;
 use hadar::lattice_points::GoldenLattice;
+use hadar::parallel;
 use hadar::policy::envelope::{EnvelopeScene, Ranges};
 use hadar::scene::State;
 use hadar_scenario::Envelope;
-use rayon::prelude::*;
 
 /// Relative difference of counts that is rounding.
 const SAME: f64 = 1e-12;
@@ -167,8 +167,7 @@ impl Sighted {
             }
             Ok(best)
         };
-        let found: Vec<Option<Estimate>> =
-            (0..self.study.alternatives.len()).into_par_iter().map(estimate).collect::<Result<_>>()?;
+        let found: Vec<Option<Estimate>> = parallel::try_map(self.study.alternatives.len(), estimate)?;
         let searched = (places.len() * found.len()) as u64;
         Ok((found.into_iter().flatten().collect(), searched))
     }

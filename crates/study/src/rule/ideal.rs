@@ -24,6 +24,7 @@ use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::{Camera, FASTEST_F_NUMBER};
 use hadar::lattice_points::GoldenLattice;
+use hadar::parallel;
 use hadar::planck;
 use hadar::policy::Motion;
 use hadar::policy::envelope::Ranges;
@@ -31,7 +32,6 @@ use hadar::scene::State;
 use hadar::spectrum::Bands;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rayon::prelude::*;
 
 /// Random shifts of the lattice, and scenes of all of them together.
 const SHIFTS: usize = 16;
@@ -77,7 +77,8 @@ impl TellApart {
         let each = (SCENES / (SHIFTS * pairs.len().max(1))).max(4);
         let jobs: Vec<(usize, usize)> =
             (0..SHIFTS).flat_map(|shift| (0..pairs.len()).map(move |pair| (shift, pair))).collect();
-        let drawn = jobs.into_par_iter().map(|(shift, pair)| {
+        let drawn = parallel::try_map(jobs.len(), |i| {
+            let (shift, pair) = jobs[i];
             let (target, other) = pairs[pair];
             let (study, bands, ranges) = &scenes[target];
             let places = (0..each).map(|index| lattices[shift].point(index * pairs.len() + pair));
@@ -92,8 +93,8 @@ impl TellApart {
                 drawn.push(Drawn { shift, told: found.distance >= self.required, within_error, state });
             }
             Ok(drawn)
-        });
-        let drawn: Vec<Drawn> = drawn.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        })?;
+        let drawn: Vec<Drawn> = drawn.into_iter().flatten().collect();
         demand::computed(Thing::NearestSearches, drawn.len() as u64);
         let (fraction, standard_error) = share(&drawn, |scene| !scene.told);
         let (within, error_within) = share(&drawn, |scene| scene.within_error);

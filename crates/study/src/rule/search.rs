@@ -16,6 +16,7 @@ use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, Readout};
+use hadar::order;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
@@ -285,7 +286,7 @@ impl TellApart {
             pairs
                 .extend(estimates.into_iter().filter(|pair| counts(target, &alternatives[pair.alternative])));
         }
-        pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        order::ascending(&mut pairs, |a| a.distance);
         let count = pairs.len();
         let mut found: Vec<Searched> = Vec::with_capacity(count);
         let mut best = f64::INFINITY;

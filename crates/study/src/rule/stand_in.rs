@@ -23,13 +23,13 @@ use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
+use hadar::parallel;
 use hadar::policy::envelope::{EnvelopeScene, Ranges};
 use hadar::policy::stand_in::{Effort, Farthest, farthest};
 use hadar::root;
 use hadar::scene::State;
 use hadar_scenario::rule::{Demand, StandInSpec};
 use hadar_scenario::{Date, Envelope, MaterialRef, Scenario, Units};
-use rayon::prelude::*;
 
 /// Tolerances of the temperature are looked for up to here, K.
 const WIDEST_K: f64 = 40.0;
@@ -164,21 +164,19 @@ impl RuleStudy {
         let mut rows = Vec::with_capacity(jobs.len());
         let all = jobs.len();
         for part in jobs.chunks(rayon::current_num_threads().max(1)) {
-            let done: Vec<StandIn> = part
-                .par_iter()
-                .map(|(camera, ends, index, stand_in, tolerance)| {
-                    let before = ends.iter().map(|study| {
-                        let stand_in = &study.alternatives[*index];
-                        Before::new(study, stand_in, apart, person_k, temperature_k)
-                    });
-                    let before = undominated(before.collect::<Result<Vec<_>>>()?);
-                    // Between two ends of a plain sight nothing is counted more than at one of them.
-                    let z = |study: &Study| study.scenario.target.distance_m;
-                    let provable = plain(&apart.scenario) || ends.iter().all(|study| z(study) == z(&ends[0]));
-                    let names = [camera.as_str(), &ends[0].target.name, &stand_in.name];
-                    row(&before, names.map(str::to_owned), *tolerance, provable)
-                })
-                .collect::<Result<_>>()?;
+            let done: Vec<StandIn> = parallel::try_map(part.len(), |i| {
+                let (camera, ends, index, stand_in, tolerance) = &part[i];
+                let before = ends.iter().map(|study| {
+                    let stand_in = &study.alternatives[*index];
+                    Before::new(study, stand_in, apart, person_k, temperature_k)
+                });
+                let before = undominated(before.collect::<Result<Vec<_>>>()?);
+                // Between two ends of a plain sight nothing is counted more than at one of them.
+                let z = |study: &Study| study.scenario.target.distance_m;
+                let provable = plain(&apart.scenario) || ends.iter().all(|study| z(study) == z(&ends[0]));
+                let names = [camera.as_str(), &ends[0].target.name, &stand_in.name];
+                row(&before, names.map(str::to_owned), *tolerance, provable)
+            })?;
             rows.extend(done);
             progress(rows.len(), all);
         }

@@ -23,9 +23,10 @@ use hadar::identifiability::detection;
 use hadar::instrument::figures::{self, Kind, Part};
 use hadar::instrument::{Camera, presets};
 use hadar::lattice_points::GoldenLattice;
+use hadar::order;
+use hadar::parallel;
 use hadar_scenario::CameraSpec;
 use hadar_scenario::rule::Verdict;
-use rayon::prelude::*;
 
 /// Draws of figures alone, which a lattice spreads evenly, and with errors of emissivities, which are random.
 const DRAWS: usize = 512;
@@ -231,7 +232,7 @@ impl<'a> Uncertain<'a> {
         for line in budget.iter_mut().filter(|_| var > 0.0) {
             line.share = line.contribution * line.contribution / var;
         }
-        budget.sort_by(|a, b| b.share.total_cmp(&a.share));
+        order::descending(&mut budget, |b| b.share);
         let (k, first_order) = (self.coverage_factor, var.sqrt());
         let draws = if draw { Some(self.drawn(emissivities.is_some(), of)?) } else { None };
         let [mut low, mut high] = [margin - k * first_order, margin + k * first_order];
@@ -251,7 +252,7 @@ impl<'a> Uncertain<'a> {
             let errors = if random { Errors::Stream(index as u64) } else { Errors::None };
             of(&camera, errors).map(Some)
         };
-        let drawn: Vec<Option<f64>> = (0..count).into_par_iter().map(draw).collect::<Result<_>>()?;
+        let drawn: Vec<Option<f64>> = parallel::try_map(count, draw)?;
         let mut margins: Vec<f64> = drawn.into_iter().flatten().collect();
         margins.sort_by(f64::total_cmp);
         let count = margins.len();

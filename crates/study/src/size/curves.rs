@@ -6,10 +6,10 @@ use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::identifiability::local::LocalSolver;
 use hadar::instrument::Camera;
+use hadar::parallel;
 use hadar::policy;
 use hadar::scene::State;
 use hadar_scenario::DistanceKind;
-use rayon::prelude::*;
 
 /// Points of a curve over photons.
 const CURVE_POINTS: usize = 81;
@@ -206,20 +206,14 @@ impl Study {
             LocalSolver::new(&self.bands, &self.surroundings, unknowns)
         };
         let rows: Result<Vec<Vec<f64>>> = match kind {
-            DistanceKind::Nearest => temperatures_k
-                .par_iter()
-                .map_init(solver, |solver, &temperature_k| {
-                    let found = |state| Ok(solver.per_photon(own, other, &state, f64::INFINITY)?.distance);
-                    states(temperature_k).map(found).collect()
-                })
-                .collect(),
-            _ => temperatures_k
-                .par_iter()
-                .map_init(tangent, |solver, &temperature_k| {
-                    let found = |state| Ok(solver.per_photon(own, other, &state, f64::INFINITY)?.distance);
-                    states(temperature_k).map(found).collect()
-                })
-                .collect(),
+            DistanceKind::Nearest => parallel::try_map_with(temperatures_k.len(), solver, |solver, i| {
+                let found = |state| Ok(solver.per_photon(own, other, &state, f64::INFINITY)?.distance);
+                states(temperatures_k[i]).map(found).collect()
+            }),
+            _ => parallel::try_map_with(temperatures_k.len(), tangent, |solver, i| {
+                let found = |state| Ok(solver.per_photon(own, other, &state, f64::INFINITY)?.distance);
+                states(temperatures_k[i]).map(found).collect()
+            }),
         };
         rows.map(|rows| rows.concat())
     }

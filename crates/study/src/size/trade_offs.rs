@@ -2,12 +2,11 @@
 
 use crate::Study;
 use crate::size::{Reach, Sizing};
-use hadar::demand;
 use hadar::error::Result;
+use hadar::parallel;
 use hadar::policy::caps::Circumstances;
 use hadar::policy::trade_off::{self, PAIRS, POINTS, TradeOff};
 use hadar::policy::{Motion, Quantity, Trial};
-use rayon::prelude::*;
 
 impl Study {
     /// The trade-off curves of the pairs in [`trade_off::PAIRS`], against the limiting alternative of `result`; none
@@ -18,9 +17,8 @@ impl Study {
     /// # Errors
     /// As [`Study::size`].
     pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
-        let pairs = self.traded_off().into_par_iter();
-        let curves =
-            demand::gathered(pairs.map(|pair| demand::ledger_of(|| self.trade_off(result, pair, POINTS))))?;
+        let pairs = self.traded_off();
+        let curves = parallel::booked(pairs.len(), |i| self.trade_off(result, pairs[i], POINTS))?;
         Ok(curves.into_iter().flatten().collect())
     }
 

@@ -7,11 +7,11 @@ use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::detection;
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::{NearestSolver, StateRange};
+use crate::parallel;
 use crate::root::crossing;
 use crate::scene::Surroundings;
 use crate::spectrum::Bands;
 use crate::sum::Compensated;
-use rayon::prelude::*;
 
 /// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰.
 pub(super) const LOG_PHOTONS: f64 = 69.0;
@@ -98,20 +98,16 @@ impl Average<'_> {
         self.found.clear();
         for nodes in self.nodes.chunks(TOGETHER) {
             let nodes_found: Result<Vec<f64>> = match self.distances {
-                Distances::Local => nodes
-                    .par_iter()
-                    .map_init(
-                        || LocalSolver::new(bands, surroundings, unknowns.clone()),
-                        |solver, node| Ok(solver.with_counting(own, other, &node.state, &counting)?.distance),
-                    )
-                    .collect(),
-                Distances::Nearest(range) => nodes
-                    .par_iter()
-                    .map_init(
-                        || NearestSolver::new(bands, surroundings, unknowns.clone(), range),
-                        |solver, node| Ok(solver.with_counting(own, other, &node.state, &counting)?.distance),
-                    )
-                    .collect(),
+                Distances::Local => parallel::try_map_with(
+                    nodes.len(),
+                    || LocalSolver::new(bands, surroundings, unknowns.clone()),
+                    |solver, i| Ok(solver.with_counting(own, other, &nodes[i].state, &counting)?.distance),
+                ),
+                Distances::Nearest(range) => parallel::try_map_with(
+                    nodes.len(),
+                    || NearestSolver::new(bands, surroundings, unknowns.clone(), range),
+                    |solver, i| Ok(solver.with_counting(own, other, &nodes[i].state, &counting)?.distance),
+                ),
             };
             self.found.extend(nodes_found?);
             let left = self.nodes.len() - self.found.len();

@@ -9,8 +9,8 @@
 use super::counts::Axis;
 use super::detector::MAX_BANDS;
 use super::surface::{Likelihood, Surfaces};
+use crate::parallel;
 use crate::sum::Compensated;
-use rayon::prelude::*;
 
 /// Boxes that are spread over the threads.
 const BOXES: usize = 64;
@@ -43,15 +43,12 @@ impl Division<'_> {
             shares: vec![Compensated::default(); self.surfaces.members.len()],
             undecided: Compensated::default(),
         };
-        let parts: Vec<Tally> = self
-            .first_boxes()
-            .par_iter()
-            .map(|cells| {
-                let mut tally = empty.clone();
-                self.divide(*cells, &all, &mut tally);
-                tally
-            })
-            .collect();
+        let boxes = self.first_boxes();
+        let parts: Vec<Tally> = parallel::map(boxes.len(), |i| {
+            let mut tally = empty.clone();
+            self.divide(boxes[i], &all, &mut tally);
+            tally
+        });
         let add = |values: &mut dyn Iterator<Item = Compensated>| {
             let mut sum = Compensated::default();
             values.for_each(|value| sum.add(value.value()));

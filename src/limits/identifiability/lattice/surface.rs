@@ -13,9 +13,9 @@ use super::super::space::{StateSpace, set, value};
 use super::detector::{LatticeDetector, LatticeMesh, MAX_BANDS};
 use crate::error::{Error, Result};
 use crate::fisher::Nuisance;
+use crate::parallel;
 use crate::scene::{Jacobian, Parameter, State};
 use crate::statistics::Statistics;
-use rayon::prelude::*;
 
 /// More states than this are not held.
 const MAX_STATES: usize = 20_000_000;
@@ -113,20 +113,16 @@ impl Surfaces {
             }
         }
         let states = meshed(detector, state, mesh, members.len())?;
-        let likelihoods: Vec<Vec<Likelihood>> = members
-            .par_iter()
-            .enumerate()
-            .map(|(surface, same)| {
-                let emissivity = same.first().map_or(&[][..], |&i| &library[i]);
-                let mut jacobian = Jacobian::new(detector.bands, detector.surroundings);
-                let likelihood = |(state, penalty): &(State, f64)| {
-                    jacobian.evaluate(emissivity, emissivity, state, &[], false);
-                    let means: Vec<f64> = jacobian.signal().iter().map(|signal| counts * signal).collect();
-                    Likelihood::new(&detector.statistics, surface as u32, &means, own, *penalty)
-                };
-                states.iter().map(likelihood).collect()
-            })
-            .collect();
+        let likelihoods: Vec<Vec<Likelihood>> = parallel::map(members.len(), |surface| {
+            let emissivity = members[surface].first().map_or(&[][..], |&i| &library[i]);
+            let mut jacobian = Jacobian::new(detector.bands, detector.surroundings);
+            let likelihood = |(state, penalty): &(State, f64)| {
+                jacobian.evaluate(emissivity, emissivity, state, &[], false);
+                let means: Vec<f64> = jacobian.signal().iter().map(|signal| counts * signal).collect();
+                Likelihood::new(&detector.statistics, surface as u32, &means, own, *penalty)
+            };
+            states.iter().map(likelihood).collect()
+        });
         Ok(Self { likelihoods: likelihoods.concat(), members })
     }
 

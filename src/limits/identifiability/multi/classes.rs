@@ -20,8 +20,9 @@ use super::{LibraryScene, Progress};
 use crate::demand::{self, Skipping, Thing};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
+use crate::identifiability::nearest::NearestSolver;
+use crate::parallel;
 use crate::sum;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Statistical distance beyond which an error is nothing to an average.
@@ -83,14 +84,12 @@ impl Classes<'_> {
             .collect::<Result<Vec<Row<'_>>>>()?;
         let all: Vec<(usize, usize)> =
             (0..rows.len()).flat_map(|a| (0..width).map(move |b| (a, b))).collect();
-        let own_states = all.par_iter().map_init(
-            || self.scene.solver(),
-            |solver, &(a, b)| {
-                let (own, other) = (self.targets[a], self.alternatives[b]);
-                solver.own_state_distance(own, other, self.scene.state, &rows[a].counting)
-            },
-        );
-        let own_states = own_states.collect::<Result<Vec<f64>>>()?;
+        let own_state = |solver: &mut NearestSolver<'_>, i: usize| {
+            let (a, b) = all[i];
+            let (own, other) = (self.targets[a], self.alternatives[b]);
+            solver.own_state_distance(own, other, self.scene.state, &rows[a].counting)
+        };
+        let own_states = parallel::try_map_with(all.len(), || self.scene.solver(), own_state)?;
         demand::computed(Thing::OwnStateDistances, all.len() as u64);
         let in_full = |a: usize, b: usize| -> Result<MemberPair> {
             let (own, other) = (self.targets[a], self.alternatives[b]);
@@ -148,7 +147,7 @@ impl Classes<'_> {
             }
             in_full(a, b)
         };
-        let found = demand::gathered(open.par_iter().map(|i| demand::ledger_of(|| known(*i))))?;
+        let found = parallel::booked(open.len(), |i| known(open[i]))?;
         for (i, pair) in open.into_iter().zip(found) {
             pairs[i] = Some(pair);
         }

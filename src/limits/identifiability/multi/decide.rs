@@ -23,9 +23,10 @@ use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::{Nearer, NearestDistance, NearestSolver};
+use crate::order;
+use crate::parallel;
 use crate::scene::{EnvironmentObject, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Pairs after which it is told how many are decided.
@@ -146,10 +147,7 @@ impl LibraryScene<'_> {
             Ok(nearer.is_none())
         };
         let answers =
-            demand::gathered(pairs.par_iter().map_init(
-                || question.solvers(),
-                |solvers, &pair| demand::ledger_of(|| is_told(solvers, pair)),
-            ))?;
+            parallel::booked_with(pairs.len(), || question.solvers(), |own, i| is_told(own, pairs[i]))?;
         let mut apart = vec![true; count * count];
         for (&(a, b), told) in pairs.iter().zip(answers) {
             (apart[a * count + b], apart[b * count + a]) = (told, told);
@@ -190,7 +188,7 @@ impl LibraryScene<'_> {
             demand::computed(Thing::OwnStateDistances, 1);
             ranked.push((distance, other));
         }
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut ranked, |a| a.0);
         // These stand in the ranking already.
         let mut things = question.things().to_vec();
         things.retain(|thing| *thing != Thing::OwnStateDistances);

@@ -7,9 +7,9 @@
 use crate::error::Result;
 use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
+use crate::parallel;
 use crate::scene::{State, Surroundings};
 use crate::spectrum::Bands;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Is told how many targets of how many are done.
@@ -109,7 +109,7 @@ impl<'a> LibraryScene<'a> {
             progress(done.fetch_add(1, Ordering::Relaxed) + 1, count);
             row
         };
-        let rows: Result<Vec<_>> = (0..count).into_par_iter().map_init(|| self.solver(), row).collect();
+        let rows: Result<Vec<_>> = parallel::try_map_with(count, || self.solver(), row);
         let mut matrix = NearestMatrix::default();
         for [distance, lower, relative_error] in rows?.into_iter().flatten() {
             matrix.distance.push(distance);

@@ -20,6 +20,7 @@ use self::table::{Emission, Thinned, step_at};
 use self::whitened::Whitened;
 use super::residual::{Comparison, Target};
 use crate::fisher::Nuisance;
+use crate::order;
 use crate::scene::{Parameter, State};
 use crate::units::SECOND_RADIATION_CM_K;
 
@@ -53,7 +54,7 @@ impl Comparison<'_> {
         }
         let table = table.get_or_insert_with(|| EmissionTable::new(self.target.bands()));
         let mut minima = self.minima(table, target, &own);
-        minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        order::ascending(&mut minima, |a| a.cost);
         minima.truncate(REFINED);
         let cheapest = minima.first().map_or(f64::INFINITY, |start| start.cost);
         let worth = (WORTH_REFINING * cheapest).max((cheapest.sqrt() + reach).powi(2));

@@ -6,6 +6,7 @@
 
 use super::integrals::Integrals;
 use super::line::{Line, Mode};
+use crate::order;
 
 /// Most counts of one band.
 const TABLE: usize = 4_000_000;
@@ -21,7 +22,7 @@ type Law = Vec<(f64, f64)>;
 pub(super) fn enumerate(line: &Line) -> Option<Integrals> {
     let mut modes = merged(&line.modes)?;
     // Widest last; a cheap look before tables are made.
-    modes.sort_by(|a, b| width(a).total_cmp(&width(b)));
+    order::ascending(&mut modes, width);
     let widths: Vec<f64> = modes.iter().map(width).collect();
     let (widest, others) = widths.split_last()?;
     if *widest > TABLE as f64 || others.iter().product::<f64>() > COMBINATIONS as f64 {
@@ -70,7 +71,7 @@ fn merged(modes: &[Mode]) -> Option<Vec<Mode>> {
     let mut sorted = modes.to_vec();
     sorted.iter().all(|mode| mode.counted().is_some()).then_some(())?;
     let step = |mode: &Mode| mode.counted().map_or(0.0, |(step, _)| step);
-    sorted.sort_by(|a, b| step(a).total_cmp(&step(b)));
+    order::ascending(&mut sorted, step);
     let mut merged: Vec<Mode> = Vec::new();
     for mode in sorted {
         if let (Some(Mode::Poisson { mean, step }), Mode::Poisson { mean: more, step: next }) =

@@ -11,6 +11,7 @@
 //! `bracket/tilted.rs`).
 
 use super::super::bracket::tilted::{Moments, Tilted, geometric};
+use crate::order;
 
 /// One band that scatters.
 #[derive(Debug, Clone, Copy)]
@@ -178,7 +179,7 @@ impl Line {
             .iter()
             .filter_map(|mode| mode.counted().map(|(step, _)| (step.abs(), mode.mean_modulus())))
             .collect();
-        steps.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut steps, |a| a.0);
         let largest = steps.last().map_or(0.0, |last| last.0);
         if steps.is_empty() {
             return (0.0, 0.0);

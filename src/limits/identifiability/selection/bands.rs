@@ -13,6 +13,7 @@
 
 use super::certificate::{Bounded, Certificate, Opponent, bound, worst};
 use super::pair::{Fit, Pair, residual};
+use crate::order;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use std::ops::Range;
@@ -255,7 +256,7 @@ impl<'a> Enumeration<'a> {
         opponent.weigh(pairs, &found.certificate);
         let values = opponent.values.clone();
         let mut order: Vec<usize> = (0..values.len()).collect();
-        order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
+        order::descending(&mut order, |b| values[*b]);
         let mut sums = vec![0.0];
         sums.extend(order.iter().scan(0.0, |sum, w| {
             *sum += values[*w];

@@ -12,8 +12,9 @@ use super::scene::EnvelopeScene;
 use crate::error::Result;
 use crate::identifiability::nearest::NearestSolver;
 use crate::lattice_points::GoldenLattice;
+use crate::order;
+use crate::parallel;
 use crate::scene::State;
-use rayon::prelude::*;
 
 /// Share of a range by which points of the lattice reach beyond it on either side.
 const BEYOND: f64 = 0.1;
@@ -90,17 +91,13 @@ pub(super) fn attain(
     let places = places(&free, points);
     let solver = scene.solver();
     let trial = || Trial { scene, ranges, solver: solver.clone(), evaluations: 0 };
-    let mut tried: Vec<Tried> =
-        places.par_iter().map_init(trial, |trial, place| trial.at(place)).collect::<Result<_>>()?;
-    tried.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let mut tried: Vec<Tried> = parallel::try_map_with(places.len(), trial, |trial, i| trial.at(&places[i]))?;
+    order::ascending(&mut tried, |a| a.distance);
     let starts = apart(tried);
-    let refined: Vec<(Tried, u64)> = starts
-        .into_par_iter()
-        .map(|start| {
-            let mut trial = trial();
-            Ok((refine(&mut trial, start, &free, joint)?, trial.evaluations))
-        })
-        .collect::<Result<_>>()?;
+    let refined: Vec<(Tried, u64)> = parallel::try_map(starts.len(), |i| {
+        let mut trial = trial();
+        Ok((refine(&mut trial, starts[i].clone(), &free, joint)?, trial.evaluations))
+    })?;
     let evaluations = places.len() as u64 + refined.iter().map(|(_, count)| count).sum::<u64>();
     let best = refined.into_iter().map(|(tried, _)| tried).min_by(|a, b| a.distance.total_cmp(&b.distance));
     let best = match best {

@@ -5,7 +5,7 @@
 //! ([`SKEWED`]). What the alternative may be is the same in every part.
 
 use super::model::{Model, Region, Source, Span};
-use rayon::prelude::*;
+use crate::parallel;
 
 /// Largest half width of a temperature of the scene, as a share of its middle.
 pub(super) const WIDEST: f64 = 0.08;
@@ -42,7 +42,7 @@ pub(super) fn partition(model: &Model<'_>, whole: Region, attained: f64) -> Vec<
     while !frontier.is_empty() {
         let many = kept.len() + frontier.len() > MANY;
         let verdicts: Vec<Verdict> =
-            frontier.into_par_iter().map(|region| assess(model, region, attained, many)).collect();
+            parallel::map(frontier.len(), |i| assess(model, frontier[i].clone(), attained, many));
         frontier = Vec::new();
         for verdict in verdicts {
             match verdict {

@@ -16,6 +16,7 @@ use super::partition::partition;
 use super::ranges::Ranges;
 use crate::best_first::BestFirst;
 use crate::error::Result;
+use crate::parallel;
 use rayon::prelude::*;
 
 /// A descent is tried in every one of the first so many batches, and in every so many later.
@@ -68,8 +69,7 @@ pub(super) fn prove(
     let threshold = share * attained.distance;
     let parts = partition(model, whole.clone(), attained.distance);
     let distance = attained.distance;
-    let cells: Vec<Cell> =
-        parts.into_par_iter().map(|part| Cell::new(model, &part, best, distance)).collect();
+    let cells: Vec<Cell> = parallel::map(parts.len(), |i| Cell::new(model, &parts[i], best, distance));
     let mut search = Search { model, cells, queue: BestFirst::new(effort.boxes), threshold };
     // What cells leave out is not below the distance attained.
     search.queue.leave(distance);
@@ -141,8 +141,10 @@ impl Search<'_, '_> {
         wanted.sort_unstable();
         wanted.dedup();
         let (cells, model) = (&self.cells, self.model);
-        let made: Vec<[Node; 2]> =
-            wanted.par_iter().map(|&(cell, s, node)| cells[cell as usize].halve(model, s, node)).collect();
+        let made: Vec<[Node; 2]> = parallel::map(wanted.len(), |i| {
+            let (cell, s, node) = wanted[i];
+            cells[cell as usize].halve(model, s, node)
+        });
         for ((cell, s, node), halves) in wanted.into_iter().zip(made) {
             let nodes = &mut self.cells[cell as usize].sources[s];
             nodes[node as usize].halves = Some(nodes.len() as u32);

@@ -10,6 +10,7 @@
 //! Source: Rasmussen and Williams, 'Gaussian Processes for Machine Learning' (2006), section 4.2.
 
 use crate::error::{Error, Result, check};
+use crate::order;
 use crate::spectrum::Bands;
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -57,7 +58,7 @@ impl SmoothModes {
         });
         let eigen = SymmetricEigen::new(correlation);
         let mut order: Vec<usize> = (0..centres.len()).collect();
-        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        order::descending(&mut order, |b| eigen.eigenvalues[*b]);
         let mode = |&k: &usize| {
             let size = emissivity.sigma * eigen.eigenvalues[k].max(0.0).sqrt();
             let vector: Vec<f64> = eigen.eigenvectors.column(k).iter().copied().collect();

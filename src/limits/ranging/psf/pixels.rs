@@ -5,8 +5,8 @@
 
 use super::{PointSpread, Shape, total_photons};
 use crate::error::{Error, Result, check};
+use crate::parallel;
 use libm::erfc;
-use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Widest pixels before an Airy disk, λF.
@@ -68,20 +68,17 @@ fn bound(bands: &[(PointSpread, f64)], total: f64, pitch_m: f64) -> Result<Pixel
         // The worst place is a cusp of relative width (σ/p)².
         false => 2 * (4.0 * widest * widest).clamp(4.0, 2048.0) as usize,
     };
-    let of_bands: Vec<Vec<f64>> = bands
-        .par_iter()
-        .zip(&widths)
-        .map(|((spread, photons), width)| {
-            let mut information = match spread.shape {
-                Shape::Gaussian => gaussian(*width, phases, if airy { phases } else { 1 }),
-                Shape::Airy => airy_information(*width, phases)?,
-            };
-            // Per square metre, times the share of the band.
-            let scale = photons / total / spread.scale_m / spread.scale_m;
-            information.iter_mut().for_each(|j| *j *= scale);
-            Ok(information)
-        })
-        .collect::<Result<_>>()?;
+    let of_bands: Vec<Vec<f64>> = parallel::try_map(bands.len().min(widths.len()), |i| {
+        let ((spread, photons), width) = (&bands[i], &widths[i]);
+        let mut information = match spread.shape {
+            Shape::Gaussian => gaussian(*width, phases, if airy { phases } else { 1 }),
+            Shape::Airy => airy_information(*width, phases)?,
+        };
+        // Per square metre, times the share of the band.
+        let scale = photons / total / spread.scale_m / spread.scale_m;
+        information.iter_mut().for_each(|j| *j *= scale);
+        Ok(information)
+    })?;
     let mut variances = vec![0.0; of_bands.first().map_or(0, Vec::len)];
     for information in &of_bands {
         variances.iter_mut().zip(information).for_each(|(sum, j)| *sum += j);
@@ -184,32 +181,29 @@ pub(super) fn lattice(
     let quadrant = Quadrant::new(n, size, h)?;
     // Mirrored places are equal.
     let half = phases / 2;
-    let places: Vec<Vec<[f64; 2]>> = (0..=half)
-        .into_par_iter()
-        .map(|ky| {
-            let mut found = vec![[0.0; 2]; half + 1];
-            let (mut column, mut edge) = (vec![0.0; n], vec![0.0; n + 1]);
-            for j0 in starts(n, parts, ky * step) {
-                quadrant.join_rows(j0, parts, &mut column, &mut edge);
-                let y = (j0 as f64 + 0.5 * parts as f64) * size;
-                for (kx, sums) in found.iter_mut().enumerate() {
-                    for i0 in starts(n, parts, kx * step) {
-                        let x = (i0 as f64 + 0.5 * parts as f64) * size;
-                        let distance = x.hypot(y);
-                        if distance > radius {
-                            continue;
-                        }
-                        let share: f64 = (i0..i0 + parts as isize).map(|i| column[folded(i)]).sum();
-                        let ends = [i0, i0 + parts as isize].map(isize::unsigned_abs);
-                        let change = edge[ends[0]] - edge[ends[1]];
-                        let information = if share > 0.0 { change * (change / share) } else { 0.0 };
-                        sums[usize::from(distance > 0.5 * radius)] += information;
+    let places: Vec<Vec<[f64; 2]>> = parallel::map(half + 1, |ky| {
+        let mut found = vec![[0.0; 2]; half + 1];
+        let (mut column, mut edge) = (vec![0.0; n], vec![0.0; n + 1]);
+        for j0 in starts(n, parts, ky * step) {
+            quadrant.join_rows(j0, parts, &mut column, &mut edge);
+            let y = (j0 as f64 + 0.5 * parts as f64) * size;
+            for (kx, sums) in found.iter_mut().enumerate() {
+                for i0 in starts(n, parts, kx * step) {
+                    let x = (i0 as f64 + 0.5 * parts as f64) * size;
+                    let distance = x.hypot(y);
+                    if distance > radius {
+                        continue;
                     }
+                    let share: f64 = (i0..i0 + parts as isize).map(|i| column[folded(i)]).sum();
+                    let ends = [i0, i0 + parts as isize].map(isize::unsigned_abs);
+                    let change = edge[ends[0]] - edge[ends[1]];
+                    let information = if share > 0.0 { change * (change / share) } else { 0.0 };
+                    sums[usize::from(distance > 0.5 * radius)] += information;
                 }
             }
-            found
-        })
-        .collect();
+        }
+        found
+    });
     let mirrored = |k: usize| k.min(phases - k);
     Ok((0..phases)
         .flat_map(|ky| (0..phases).map(move |kx| (mirrored(ky), mirrored(kx))))
@@ -259,7 +253,7 @@ impl Quadrant {
             let edges: Vec<f64> = (0..=n).map(|i| line(i as f64 * size)).collect();
             (areas, edges)
         };
-        let rows: Vec<(Vec<f64>, Vec<f64>)> = (0..n).into_par_iter().map(row).collect();
+        let rows: Vec<(Vec<f64>, Vec<f64>)> = parallel::map(n, row);
         let (areas, edges): (Vec<_>, Vec<_>) = rows.into_iter().unzip();
         Ok(Self { n, areas: areas.concat(), edges: edges.concat() })
     }

@@ -17,6 +17,7 @@
 use crate::cube::Shape;
 use crate::error::{Error, Result};
 use crate::fisher::Projector;
+use crate::parallel;
 use crate::planck;
 use crate::ranging::derivative::{Derivative, Differentiator};
 use crate::ranging::information::InformationMap;
@@ -225,20 +226,16 @@ impl BesideEmission {
     pub fn windows(&self, values: &[f64], map: &InformationMap, half: [usize; 2]) -> Vec<f64> {
         let [half_rows, half_columns] = half;
         let row = |row: usize| values.get(row * self.columns..(row + 1) * self.columns).unwrap_or_default();
-        let sums: Vec<Vec<f64>> = map
-            .rows
-            .clone()
-            .into_par_iter()
-            .map(|centre| {
-                let mut columns = vec![0.0; self.columns];
-                for y in centre.saturating_sub(half_rows)..=centre + half_rows {
-                    columns.iter_mut().zip(row(y)).for_each(|(sum, value)| *sum += value);
-                }
-                let from = |x: usize| (x - self.margin).saturating_sub(half_columns);
-                let window = |x: usize| columns.get(from(x)..=x - self.margin + half_columns);
-                map.columns.clone().map(|x| window(x).unwrap_or_default().iter().sum()).collect()
-            })
-            .collect();
+        let sums: Vec<Vec<f64>> = parallel::map(map.rows.len(), |i| {
+            let centre = map.rows.start + i;
+            let mut columns = vec![0.0; self.columns];
+            for y in centre.saturating_sub(half_rows)..=centre + half_rows {
+                columns.iter_mut().zip(row(y)).for_each(|(sum, value)| *sum += value);
+            }
+            let from = |x: usize| (x - self.margin).saturating_sub(half_columns);
+            let window = |x: usize| columns.get(from(x)..=x - self.margin + half_columns);
+            map.columns.clone().map(|x| window(x).unwrap_or_default().iter().sum()).collect()
+        });
         sums.concat()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Band, Bands, Shape, edges, transmittance};
 use crate::error::{Error, Result, check};
+use crate::order;
 use crate::spectrum::FilterCurve;
 use crate::spectrum::rows::distinct;
 
@@ -54,7 +55,7 @@ impl Bands {
             check::positive("band width", width, "cm^-1")?;
             check::finite("upper edge of a band", center + 0.5 * width, "cm^-1")?;
         }
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order::ascending(&mut rows, |a| a.0);
         distinct(rows.iter().map(|row| row.0), "the bands")?;
         if rows.is_empty() {
             return Err(Error::malformed("there are no bands", "give at least one"));
@@ -127,7 +128,7 @@ impl Bands {
     /// # Errors
     /// No filters.
     pub fn from_filters(mut filters: Vec<FilterCurve>) -> Result<Self> {
-        filters.sort_by(|a, b| a.support().0.total_cmp(&b.support().0));
+        order::ascending(&mut filters, |a| a.support().0);
         let shaped = filters.into_iter().map(|filter| {
             let (low, high) = filter.support();
             let band = Band {

@@ -16,6 +16,10 @@ const FOLDERS: [&str; 9] = [
     "crates/cli/src",
 ];
 const LEDGER: &str = "src/base/demand/ledger.rs";
+/// Where two structs of a camera have their fields: stated, and in the camera behind `=>` and in `@Camera`.
+const FIGURES: &str = "src/instrument/figures/list.rs";
+const STATED: &str = "What is stated of a camera; what is not is none";
+const CAMERA: &str = "A spectral thermal camera";
 
 /// Lines `key`, part of an answer, meaning, with tabs between.
 pub(crate) fn keys() -> String {
@@ -23,7 +27,12 @@ pub(crate) fn keys() -> String {
     let mut rows = BTreeSet::new();
     for folder in FOLDERS {
         for path in sources(&root.join(folder)) {
-            of_source(&fs::read_to_string(&path).unwrap(), path.ends_with(LEDGER), &mut rows);
+            let text = fs::read_to_string(&path).unwrap();
+            if path.ends_with(FIGURES) {
+                of_figures(&text, &mut rows);
+            } else {
+                of_source(&text, path.ends_with(LEDGER), &mut rows);
+            }
         }
     }
     rows.into_iter().map(|[key, of, meaning]| format!("{key}\t{of}\t{meaning}\n")).collect()
@@ -71,6 +80,29 @@ fn of_source(text: &str, ledger: bool, rows: &mut BTreeSet<[String; 3]>) {
         }
         doc.clear();
         attributes.clear();
+    }
+}
+
+fn of_figures(text: &str, rows: &mut BTreeSet<[String; 3]>) {
+    let (mut doc, mut attributes, mut name, mut of) = (String::new(), String::new(), "", STATED);
+    for line in text.lines().map(str::trim) {
+        if let Some(more) = line.strip_prefix("///") {
+            doc = format!("{doc} {}", more.trim());
+        } else if line.starts_with("#[") {
+            attributes.push_str(line);
+        } else {
+            if ["@Camera {", "}"].contains(&line) {
+                of = if line == "}" { STATED } else { CAMERA };
+            }
+            let (is_kept, its) = (line.starts_with("=>"), field(line));
+            name = its.unwrap_or(name);
+            if (is_kept || its.is_some()) && !doc.is_empty() && !attributes.contains("serde(skip)") {
+                let of = if is_kept { CAMERA } else { of };
+                rows.insert([name.to_owned(), of.to_owned(), plain(&doc)]);
+            }
+            doc.clear();
+            attributes.clear();
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
+use hadar::order;
 
 /// Bins of the mean of each band, at most.
 pub(super) const BINS: usize = 24;
@@ -67,7 +68,7 @@ impl Start {
             ));
         }
         sums.retain(|[bright, sum]| bright.is_finite() && sum.is_finite());
-        sums.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        order::ascending(&mut sums, |a| a[0]);
         let per_level = sums.len().div_ceil(LEVELS).max(1);
         let even = sums.chunks(per_level).map(|level| {
             let mut differences: Vec<f64> = level.iter().map(|pair| pair[1]).collect();
@@ -76,7 +77,7 @@ impl Start {
         let even = even.collect();
         let (mut range, mut levels) = (Vec::new(), Vec::new());
         for mut seen in seen {
-            seen.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            order::ascending(&mut seen, |a| a[0]);
             let end = |pair: Option<&[f64; 2]>| pair.map_or(0.0, |pair| pair[0]);
             range.push([end(seen.first()), end(seen.last())]);
             levels.push(std::array::from_fn(|level| {

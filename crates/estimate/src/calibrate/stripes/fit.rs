@@ -1,5 +1,7 @@
 //! A straight line through the deviations of segments over their levels, robust, with a prior of its slope.
 
+use hadar::order;
+
 /// Where a bisquare weight is 0, in deviations.
 const REJECTED: f64 = 4.685;
 const ROUNDS: usize = 12;
@@ -53,7 +55,7 @@ pub(super) fn fitted(levels: &[f64], off: &[f64], least: f64, prior: f64) -> Opt
     if points.len() < 6 {
         return None;
     }
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order::ascending(&mut points, |a| a.0);
     let half = points.len() / 2;
     let mut slopes: Vec<f64> = points
         .iter()

@@ -3,7 +3,7 @@
 use super::found::Axis;
 use hadar::cube::{Rows, Sample};
 use hadar::error::Result;
-use rayon::prelude::*;
+use hadar::parallel;
 
 /// Pixels of a segment, about, and how many segments there are.
 const PIXELS: usize = 16;
@@ -40,54 +40,51 @@ impl Segments {
             Axis::Rows => rows,
             Axis::Columns => count,
         };
-        let sums: Vec<(Vec<f64>, Vec<[f64; 2]>)> = (0..parts)
-            .into_par_iter()
-            .map(|part| {
-                let across = match axis {
-                    Axis::Rows => count,
-                    Axis::Columns => columns,
-                };
-                let (mut sum, mut there) = (vec![0.0; across * bands], vec![0_u32; across * bands]);
-                let mut ends = vec![NONE; across * bands];
-                let mut buffer = Vec::new();
-                let range = match axis {
-                    Axis::Rows => part..part + 1,
-                    Axis::Columns => first(part)..first(part + 1),
-                };
-                for row in range.clone() {
-                    let samples = cube.read(row..row + 1, &mut buffer)?;
-                    let mut place = 0;
-                    for (column, pixel) in samples.chunks_exact(bands).enumerate() {
-                        match axis {
-                            Axis::Rows => {
-                                if place + 1 < count && column >= first(place + 1) {
-                                    place += 1;
-                                }
+        let sums: Vec<(Vec<f64>, Vec<[f64; 2]>)> = parallel::try_map(parts, |part| {
+            let across = match axis {
+                Axis::Rows => count,
+                Axis::Columns => columns,
+            };
+            let (mut sum, mut there) = (vec![0.0; across * bands], vec![0_u32; across * bands]);
+            let mut ends = vec![NONE; across * bands];
+            let mut buffer = Vec::new();
+            let range = match axis {
+                Axis::Rows => part..part + 1,
+                Axis::Columns => first(part)..first(part + 1),
+            };
+            for row in range.clone() {
+                let samples = cube.read(row..row + 1, &mut buffer)?;
+                let mut place = 0;
+                for (column, pixel) in samples.chunks_exact(bands).enumerate() {
+                    match axis {
+                        Axis::Rows => {
+                            if place + 1 < count && column >= first(place + 1) {
+                                place += 1;
                             }
-                            Axis::Columns => place = column,
                         }
-                        let own = place * bands..(place + 1) * bands;
-                        let each = sum[own.clone()].iter_mut().zip(&mut there[own.clone()]).zip(pixel);
-                        for (((sum, there), sample), ends) in each.zip(&mut ends[own]) {
-                            let value: f64 = (*sample).into();
-                            if value.is_finite() {
-                                *sum += value;
-                                *there += 1;
-                                *ends = [ends[0].min(value), ends[1].max(value)];
-                            }
+                        Axis::Columns => place = column,
+                    }
+                    let own = place * bands..(place + 1) * bands;
+                    let each = sum[own.clone()].iter_mut().zip(&mut there[own.clone()]).zip(pixel);
+                    for (((sum, there), sample), ends) in each.zip(&mut ends[own]) {
+                        let value: f64 = (*sample).into();
+                        if value.is_finite() {
+                            *sum += value;
+                            *there += 1;
+                            *ends = [ends[0].min(value), ends[1].max(value)];
                         }
                     }
                 }
-                for (place, (sum, there)) in sum.iter_mut().zip(&there).enumerate() {
-                    let full = match axis {
-                        Axis::Rows => first(place / bands + 1) - first(place / bands),
-                        Axis::Columns => range.len(),
-                    };
-                    *sum = if 2 * *there as usize >= full { *sum / f64::from(*there) } else { f64::NAN };
-                }
-                Ok((sum, ends))
-            })
-            .collect::<Result<_>>()?;
+            }
+            for (place, (sum, there)) in sum.iter_mut().zip(&there).enumerate() {
+                let full = match axis {
+                    Axis::Rows => first(place / bands + 1) - first(place / bands),
+                    Axis::Columns => range.len(),
+                };
+                *sum = if 2 * *there as usize >= full { *sum / f64::from(*there) } else { f64::NAN };
+            }
+            Ok((sum, ends))
+        })?;
         let mut ends = vec![NONE; lines * bands];
         for (part, (_, own)) in sums.iter().enumerate() {
             for (place, own) in own.iter().enumerate() {

@@ -20,7 +20,7 @@
 //! Source: Potts, Proc. Camb. Phil. Soc. 48, 106 (1952); Yedidia, Freeman and Weiss, IEEE Trans. Inf. Theory 51, 2282 (2005).
 
 use super::kept::{Candidate, FOUR, Kept, beside};
-use rayon::prelude::*;
+use hadar::parallel;
 
 /// Change of a message, as a share of it, below which nothing of note changes.
 const SETTLED: f32 = 1e-4;
@@ -43,25 +43,22 @@ impl Beliefs {
         let mut heard: Vec<Heard> = vec![[1.0; 4]; kept.len()];
         let (mut sweeps, mut settled) = (0, false);
         while !settled && sweeps < MOST_SWEEPS {
-            let rows: Vec<(Vec<Heard>, f32)> = (0..pixels.div_ceil(columns.max(1)))
-                .into_par_iter()
-                .map(|row| {
-                    let (mut next, mut change) = (Vec::new(), 0.0f32);
-                    for i in row * columns..((row + 1) * columns).min(pixels) {
-                        let old = heard.get(kept.places(i)).unwrap_or_default();
-                        let start = next.len();
-                        next.extend(old.iter().map(|_| [1.0f32; 4]));
-                        // What is certain listens to nobody.
-                        if old.len() > 1 {
-                            listen(kept, &heard, i, columns, (weight, step_k), &mut next[start..]);
-                        }
-                        for (new, old) in next[start..].iter().flatten().zip(old.iter().flatten()) {
-                            change = change.max((new / old - 1.0).abs());
-                        }
+            let rows: Vec<(Vec<Heard>, f32)> = parallel::map(pixels.div_ceil(columns.max(1)), |row| {
+                let (mut next, mut change) = (Vec::new(), 0.0f32);
+                for i in row * columns..((row + 1) * columns).min(pixels) {
+                    let old = heard.get(kept.places(i)).unwrap_or_default();
+                    let start = next.len();
+                    next.extend(old.iter().map(|_| [1.0f32; 4]));
+                    // What is certain listens to nobody.
+                    if old.len() > 1 {
+                        listen(kept, &heard, i, columns, (weight, step_k), &mut next[start..]);
                     }
-                    (next, change)
-                })
-                .collect();
+                    for (new, old) in next[start..].iter().flatten().zip(old.iter().flatten()) {
+                        change = change.max((new / old - 1.0).abs());
+                    }
+                }
+                (next, change)
+            });
             let change = rows.iter().map(|(_, change)| *change).fold(0.0, f32::max);
             heard = rows.into_iter().flat_map(|(row, _)| row).collect();
             sweeps += 1;

@@ -4,6 +4,7 @@ use crate::text::columns::{Columns, right};
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use crate::text::numbers::{listed, some};
 use crate::words::Say;
+use hadar::order;
 use hadar::words::{length, share, significant};
 use hadar_scenario::air_ranging::AirStereo;
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
@@ -105,7 +106,7 @@ fn bands(result: &AirRanging) -> String {
         return String::new();
     }
     let mut order: Vec<&AirBand> = result.bands.iter().collect();
-    order.sort_by(|a, b| b.information_per_m2.total_cmp(&a.information_per_m2));
+    order::descending(&mut order, |b| b.information_per_m2);
     let mut table = Columns::new([
         right("cm^-1", 9),
         right("share of it", 13),

@@ -2,6 +2,7 @@
 
 use super::columns::{Columns, left, right};
 use super::numbers::{numbers, photons, shortened, significant};
+use hadar::order;
 use hadar_scenario::DistanceKind;
 use hadar_study::{NearestProof, PairResult, Study};
 use std::fmt::Write as _;
@@ -40,7 +41,7 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
     }
     let mut table = Columns::new(columns);
     let mut sorted: Vec<&PairResult> = pairs.iter().collect();
-    sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
+    order::ascending(&mut sorted, |pair| decisive(pair));
     for pair in sorted {
         let nearest = &pair.nearest_state;
         let distances = [pair.distance_nearest, pair.distance_local, pair.distance_local_unknown_gain];

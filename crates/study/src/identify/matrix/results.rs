@@ -2,6 +2,7 @@
 
 use hadar::demand::Work;
 use hadar::identifiability::multi::Passes;
+use hadar::order;
 use hadar_scenario::Scenario;
 
 /// Distances row by row of the target; `None` on the diagonal.
@@ -75,7 +76,7 @@ impl Matrix {
     #[must_use]
     pub fn hardest_first(&self) -> Vec<&TargetVerdict> {
         let mut targets: Vec<&TargetVerdict> = self.targets.iter().collect();
-        targets.sort_by(|a, b| a.decisive_minimum().total_cmp(&b.decisive_minimum()));
+        order::ascending(&mut targets, |a| a.decisive_minimum());
         targets
     }
 }

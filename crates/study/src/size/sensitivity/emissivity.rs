@@ -15,12 +15,11 @@ use super::scatter::ScatterOf;
 use crate::identify::quantile;
 use crate::size::Solvers;
 use crate::{Study, Surface};
-use hadar::demand;
 use hadar::error::Result;
 use hadar::instrument::Camera;
+use hadar::parallel;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use rayon::prelude::*;
 
 /// Pairs that are drawn.
 const DRAWS: usize = 64;
@@ -73,10 +72,9 @@ impl Study {
             random.set_stream(stream as u64);
             let shaken = [0, 1].map(|which| scatters[which].applied(pair[which], &mut random));
             let pair = [shaken[0].as_slice(), shaken[1].as_slice()];
-            demand::ledger_of(|| Ok(solvers.reached(self, pair, &counting, None)?.0))
+            Ok(solvers.reached(self, pair, &counting, None)?.0)
         };
-        let draws = (0..DRAWS).into_par_iter().map_init(|| Solvers::new(self, &self.bands), draw);
-        let mut distances = demand::gathered(draws)?;
+        let mut distances = parallel::booked_with(DRAWS, || Solvers::new(self, &self.bands), draw)?;
         distances.sort_by(f64::total_cmp);
         let met = distances.iter().filter(|distance| **distance >= self.required).count();
         let sigma_linear = nearest

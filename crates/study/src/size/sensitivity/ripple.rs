@@ -1,6 +1,7 @@
 //! Errors of an emissivity that are correlated along the wavenumber: δ_{k+1} = ρ δ_k + s √(1 − ρ²) z, ρ = exp(−Δν/ℓ), with
 //! deviation s, correlation length ℓ (cm⁻¹) and independent standard normal z.
 
+use hadar::order;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -15,7 +16,7 @@ impl Ripple {
     /// Of deviation `sigma` and that correlation length.
     pub(crate) fn new(nodes_cm1: &[f64], sigma: f64, correlation_cm1: f64) -> Self {
         let mut order: Vec<usize> = (0..nodes_cm1.len()).collect();
-        order.sort_by(|a, b| nodes_cm1[*a].total_cmp(&nodes_cm1[*b]));
+        order::ascending(&mut order, |a| nodes_cm1[*a]);
         let mut before = f64::NEG_INFINITY;
         let chain = order.into_iter().map(|node| {
             let correlation = ((before - nodes_cm1[node]) / correlation_cm1).exp();

@@ -3,6 +3,7 @@
 //! Temperatures grow by [`RATIO`] from the coldest there is, the same for every pair, so that what one search
 //! has computed serves the next ones; around the temperatures of a scene there are more of them.
 
+use crate::order;
 use crate::planck;
 use crate::simd::{Aligned, LANES};
 use crate::spectrum::Bands;
@@ -114,7 +115,7 @@ impl EmissionTable {
             .filter(|emission| (low_k..=high_k).contains(&emission.temperature_k))
             .chain(&self.around)
             .collect();
-        all.sort_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
+        order::ascending(&mut all, |a| a.temperature_k);
         all.dedup_by(|a, b| a.temperature_k == b.temperature_k);
         (&self.thinned, all)
     }
