@@ -16,7 +16,7 @@ use crate::accuracy::{Chart, Measured, ROUNDED};
 use hadar::words::{quantity, significant};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{self, Axis, LineFigure, Marker, Series, Style};
-use hadar_report::table::{Table, number, optional};
+use hadar_report::table::{self, Table, number, optional};
 
 /// Errors are drawn down to this: exact to the last bit.
 const FLOOR: f64 = 0.25 * ROUNDED;
@@ -142,14 +142,10 @@ pub fn verdict(chart: &Chart) -> String {
 /// A row for each default: what the README shows.
 #[must_use]
 pub fn markdown(charts: &[Chart]) -> String {
-    let mut page = String::from(
-        "| computation | default | time of one | true error | on the front | fastest other as good |\n|---|---|---|---|---|---|\n",
-    );
-    for chart in charts {
+    let row = |chart: &Chart| {
         let defaults: Vec<&Measured> = chart.defaults().collect();
         // In the middle of the settings, where there are several.
-        let Some(shown) = defaults.get(defaults.len() / 2) else { continue };
-        let on = if shown.on_front { "yes" } else { "no" };
+        let shown = defaults.get(defaults.len() / 2)?;
         let other_as_good = |other: &&Measured| {
             other.question == shown.question
                 && other.method != shown.method
@@ -161,15 +157,18 @@ pub fn markdown(charts: &[Chart]) -> String {
             |rival| format!("{}: {}", rival.method, quantity(rival.seconds, "s")),
         );
         let of = if shown.question.is_empty() { String::new() } else { format!(", {}", shown.question) };
-        page.push_str(&format!(
-            "| {}{of} | {} | {} | {} | {on} | {rival} |\n",
-            chart.title,
-            shown.method,
+        Some([
+            format!("{}{of}", chart.title),
+            shown.method.clone().into_owned(),
             quantity(shown.seconds, "s"),
             error_of(shown.error),
-        ));
-    }
-    page
+            if shown.on_front { "yes" } else { "no" }.to_owned(),
+            rival,
+        ])
+    };
+    let head =
+        ["computation", "default", "time of one", "true error", "on the front", "fastest other as good"];
+    table::markdown(&head, charts.iter().filter_map(row))
 }
 
 fn error_of(error: f64) -> String {

@@ -1,13 +1,12 @@
 //! A study of ranging by air as files: errors over distances and what each band tells, as tables and plots, with the answer as text.
 
 mod figures;
-mod text;
 
+pub use crate::words::air_ranging::text;
 pub use figures::{bias, error_over_distance, information, stereo};
-pub use text::text;
 
 use crate::bundle::Bundle;
-use crate::table::{Table, number, optional};
+use crate::table::{Table, number, optional, yes_no};
 use hadar::error::Result;
 use hadar_study::air_ranging::{AirPoint, AirRanging};
 use std::path::Path;
@@ -36,78 +35,44 @@ pub fn bundle(result: &AirRanging, out: &Path) -> Result<Bundle> {
 /// Bounds, a row for every distance.
 #[must_use]
 pub fn distances(curve: &[AirPoint]) -> Table {
-    let mut table = Table::new([
-        "distance_m",
-        "sigma_m",
-        "sigma_emissivity_known_m",
-        "sigma_lighting_known_m",
-        "sigma_others_known_m",
-        "bias_without_sky_m",
-        "without_sky_at_edge",
-        "sigma_window_m",
-        "sigma_stereo_m",
-        "counts",
-    ]);
-    for point in curve {
-        table.push(vec![
-            number(point.distance_m),
-            optional(point.sigma_m),
-            optional(point.sigma_emissivity_known_m),
-            optional(point.sigma_lighting_known_m),
-            optional(point.sigma_others_known_m),
-            optional(point.bias_without_sky_m),
-            if point.without_sky_at_edge { "yes" } else { "no" }.into(),
-            optional(point.sigma_window_m),
-            optional(point.sigma_stereo_m),
-            number(point.counts),
-        ]);
-    }
-    table
+    Table::of(
+        curve,
+        &[
+            ("distance_m", &|point| number(point.distance_m)),
+            ("sigma_m", &|point| optional(point.sigma_m)),
+            ("sigma_emissivity_known_m", &|point| optional(point.sigma_emissivity_known_m)),
+            ("sigma_lighting_known_m", &|point| optional(point.sigma_lighting_known_m)),
+            ("sigma_others_known_m", &|point| optional(point.sigma_others_known_m)),
+            ("bias_without_sky_m", &|point| optional(point.bias_without_sky_m)),
+            ("without_sky_at_edge", &|point| yes_no(point.without_sky_at_edge)),
+            ("sigma_window_m", &|point| optional(point.sigma_window_m)),
+            ("sigma_stereo_m", &|point| optional(point.sigma_stereo_m)),
+            ("counts", &|point| number(point.counts)),
+        ],
+    )
 }
 
 /// Estimates beside their bound, a row for every distance.
 #[must_use]
 pub fn estimates(result: &AirRanging) -> Table {
-    let mut table = Table::new([
-        "distance_m",
-        "bound_m",
-        "rmse_m",
-        "rmse_low_m",
-        "rmse_high_m",
-        "bias_m",
-        "bias_low_m",
-        "bias_high_m",
-        "rmse_over_bound",
-        "rmse_over_bound_low",
-        "rmse_over_bound_high",
-        "verdict",
-        "share_of_fits_at_edge",
-        "unconverged_fits",
-        "trials",
-    ]);
-    for one in &result.witness {
-        let (errors, ratio) = (&one.errors, &one.rmse_over_bound_interval);
-        let numbers = [
-            one.distance_m,
-            one.bound_m,
-            errors.rmse,
-            errors.rmse_interval.low,
-            errors.rmse_interval.high,
-            errors.bias,
-            errors.bias_interval.low,
-            errors.bias_interval.high,
-            one.rmse_over_bound,
-            ratio.low,
-            ratio.high,
-        ];
-        let mut row: Vec<String> = numbers.into_iter().map(number).collect();
-        row.extend([
-            one.verdict.text().to_owned(),
-            number(one.at_edge),
-            one.unconverged.to_string(),
-            one.trials.to_string(),
-        ]);
-        table.push(row);
-    }
-    table
+    Table::of(
+        &result.witness,
+        &[
+            ("distance_m", &|one| number(one.distance_m)),
+            ("bound_m", &|one| number(one.bound_m)),
+            ("rmse_m", &|one| number(one.errors.rmse)),
+            ("rmse_low_m", &|one| number(one.errors.rmse_interval.low)),
+            ("rmse_high_m", &|one| number(one.errors.rmse_interval.high)),
+            ("bias_m", &|one| number(one.errors.bias)),
+            ("bias_low_m", &|one| number(one.errors.bias_interval.low)),
+            ("bias_high_m", &|one| number(one.errors.bias_interval.high)),
+            ("rmse_over_bound", &|one| number(one.rmse_over_bound)),
+            ("rmse_over_bound_low", &|one| number(one.rmse_over_bound_interval.low)),
+            ("rmse_over_bound_high", &|one| number(one.rmse_over_bound_interval.high)),
+            ("verdict", &|one| one.verdict.text().to_owned()),
+            ("share_of_fits_at_edge", &|one| number(one.at_edge)),
+            ("unconverged_fits", &|one| one.unconverged.to_string()),
+            ("trials", &|one| one.trials.to_string()),
+        ],
+    )
 }

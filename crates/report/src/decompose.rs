@@ -3,20 +3,19 @@
 mod equalise;
 mod figures;
 mod segmented;
-mod shown;
-mod text;
 mod vision;
 
+pub use crate::words::decompose::text;
 pub use equalise::{Clahe, Curves, Tiles};
-pub use text::text;
 use vision::Brush;
 pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
-use crate::table::{Table, number};
+use crate::shown::Shown;
+use crate::table::{Table, number, optional};
 use hadar::error::{Error, Result};
 use hadar_formats::cube::npy_map;
-use hadar_study::decompose::{Block, Decomposed, Kept, TruthFound};
+use hadar_study::decompose::{Block, Decomposed, Kept, MaterialRow, TruthFound};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -48,13 +47,13 @@ pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bu
             }
         }
     }
-    let stride = shown::stride(result.shape);
-    let pixels = result.kept.every(stride, result.shape)?;
+    let shown = Shown::of(result.shape);
+    let pixels = result.kept.every(shown.stride, result.shape)?;
     if let Some(found) = &result.segmentation {
         bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
         bundle.add_table("categories.csv", segmented::categories(found))?;
         bundle.add_table("objects.csv", segmented::objects(found))?;
-        bundle.add_plots(&[segmented::plot(result, found, &pixels, stride)])?;
+        bundle.add_plots(&[segmented::plot(found, &pixels, shown)])?;
     }
     if let Some(of_sky) = &result.vision.distilled {
         bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
@@ -74,7 +73,7 @@ pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bu
             bundle.add_file(IMAGE, path);
         }
     }
-    bundle.add_plots(&[vision::plot(&brush, &pixels, stride), figures::maps(result, &pixels, stride)])?;
+    bundle.add_plots(&[vision::plot(&brush, &pixels, shown), figures::maps(result, &pixels, shown)])?;
     Ok(bundle)
 }
 
@@ -98,34 +97,22 @@ fn add_maps(bundle: &mut Bundle, block: &Block, size: [usize; 2]) -> Result<()> 
 /// What was found, a row for every material.
 #[must_use]
 pub fn materials(result: &Decomposed) -> Table {
-    let mut table = Table::new([
-        "material",
-        "index",
-        "hue_deg",
-        "pixels",
-        "decided",
-        "temperature_median_k",
-        "temperature_tenth_k",
-        "temperature_nine_tenths_k",
-        "temperature_sigma_median_k",
-    ]);
-    for row in &result.found {
-        let index = result.materials.iter().position(|name| *name == row.material);
-        table.push(vec![
-            row.material.clone(),
-            index.map_or_else(String::new, |index| index.to_string()),
-            index
-                .and_then(|index| result.vision.hues_deg.get(index))
-                .map_or_else(String::new, |h| number(*h)),
-            row.pixels.to_string(),
-            row.decided.to_string(),
-            number(row.temperature_median_k),
-            number(row.temperature_tenths_k[0]),
-            number(row.temperature_tenths_k[1]),
-            number(row.temperature_sigma_median_k),
-        ]);
-    }
-    table
+    let index = |row: &MaterialRow| result.materials.iter().position(|name| *name == row.material);
+    let hue = |row: &MaterialRow| result.vision.hues_deg.get(index(row)?).copied();
+    Table::of(
+        &result.found,
+        &[
+            ("material", &|row| row.material.clone()),
+            ("index", &|row| index(row).map_or_else(String::new, |index| index.to_string())),
+            ("hue_deg", &|row| optional(hue(row))),
+            ("pixels", &|row| row.pixels.to_string()),
+            ("decided", &|row| row.decided.to_string()),
+            ("temperature_median_k", &|row| number(row.temperature_median_k)),
+            ("temperature_tenth_k", &|row| number(row.temperature_tenths_k[0])),
+            ("temperature_nine_tenths_k", &|row| number(row.temperature_tenths_k[1])),
+            ("temperature_sigma_median_k", &|row| number(row.temperature_sigma_median_k)),
+        ],
+    )
 }
 
 /// Pixels of what is there (rows) by what was found (columns).

@@ -2,8 +2,8 @@
 
 mod difference;
 mod side;
-mod text;
 
+pub use crate::words::diff::text;
 pub use difference::{Changed, Curve, Difference, Moved, Warned};
 pub use side::Side;
-pub use text::text;
+pub(crate) use side::plain;

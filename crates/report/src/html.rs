@@ -8,11 +8,12 @@ mod answer;
 mod element;
 mod table;
 
-use self::element::{escape, wide};
-use crate::manifest::{Provenance, VERSION};
+use self::element::{escape, table, wide};
+use crate::manifest::{Input, Provenance, VERSION};
 use crate::table::Table;
-use crate::words::Say;
+use crate::text::footing::RESTS_ON;
 use crate::words::warnings::of_code;
+use crate::words::{Say, page as words};
 use hadar_study::Warning;
 use hadar_study::warning::{Code, by_code};
 use std::fmt::Write as _;
@@ -45,17 +46,17 @@ pub(crate) struct Page<'a> {
 /// The page as a file.
 pub(crate) fn page(page: &Page<'_>) -> String {
     let answer = answer::Answer::of(page.answer);
-    let title = escape(page.title.unwrap_or("What a thermal camera can see"));
+    let title = escape(page.title.unwrap_or(words::TITLE));
     let mut sections = vec![("answer", "Answer", lines(answer.details))];
     let pictures: String =
         page.drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
     sections.push(("pictures", "Pictures", pictures));
     let tables: String = page.tables.iter().map(|(name, rows)| table::html(name, rows)).collect();
     sections.push(("tables", "Tables", tables));
-    sections.push(("assumptions", "What this rests on", list(&answer.assumptions)));
+    sections.push(("assumptions", RESTS_ON, list(&answer.assumptions)));
     sections.push(("warnings", "Warnings", warnings(page.warnings)));
     let asked = page.asked.map_or_else(String::new, |(name, text)| {
-        let given = "All of it, with what was left to the program filled in. Given to the program again, it gives this report again.";
+        let given = words::ASKED_AGAIN;
         format!("<p><code>{name}</code>: {given}</p>\n{}", verbatim(name, &escape(text.trim_end())))
     });
     sections.push(("question", "The question", asked));
@@ -97,8 +98,9 @@ fn figure(number: usize, drawing: &Drawing<'_>) -> String {
     let svg = svg.replacen("<title>", &format!("<title id=\"{id}\">"), 1);
     let svg = svg.replacen("</title>", &format!("</title>{said}"), 1);
     format!(
-        "<figure>\n{}<figcaption>Figure {number}. Its numbers are in <code>{name}.csv</code>.</figcaption>\n</figure>\n",
-        wide(&format!("Figure {number}"), &svg)
+        "<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n",
+        wide(&format!("Figure {number}"), &svg),
+        words::figure(number, name)
     )
 }
 
@@ -130,12 +132,13 @@ fn list(items: &[String]) -> String {
 /// Every kind of warning once: what it means, what to do, and what was said of which.
 fn warnings(warnings: &[Warning]) -> String {
     let of = |(code, said): (Code, Vec<&Warning>)| {
-        let words = of_code(code);
+        let of_code = of_code(code);
         format!(
-            "<h3><code>{}</code></h3>\n<p>{} {}</p>\n{}",
+            "<h3><code>{}</code></h3>\n<p>{} <strong>{}</strong> {}</p>\n{}",
             code.name(),
-            escape(words.meaning),
-            format_args!("<strong>What to do:</strong> {}", escape(words.remedy)),
+            escape(of_code.meaning),
+            words::REMEDY,
+            escape(of_code.remedy),
             list(&said.into_iter().map(Say::say).collect::<Vec<_>>())
         )
     };
@@ -152,17 +155,13 @@ fn provenance(made: &Provenance) -> String {
     let rows = rows.map(|(name, value)| format!("<dt>{name}</dt><dd><code>{}</code></dd>\n", escape(&value)));
     let mut out = format!("<dl>\n{}</dl>\n", rows.concat());
     if !made.inputs.is_empty() {
-        let mut table = String::from(
-            "<table class=\"hashes\">\n<caption>All that was read</caption>\n\
-             <thead><tr><th scope=\"col\">input</th><th scope=\"col\">SHA-256</th></tr></thead>\n<tbody>\n",
-        );
-        for input in &made.inputs {
-            let hash = input.sha256.as_deref().unwrap_or("can be read only once");
-            let path = escape(&input.path);
-            let _ = writeln!(table, "<tr><th scope=\"row\">{path}</th><td><code>{hash}</code></td></tr>");
-        }
-        out.push_str(&wide("Inputs", &(table + "</tbody>\n</table>\n")));
+        let row = |input: &Input| {
+            let hash = input.sha256.as_deref().unwrap_or(words::READ_ONCE);
+            (escape(&input.path), format!("<td><code>{hash}</code></td>"))
+        };
+        let head = ("input", "<th scope=\"col\">SHA-256</th>");
+        let hashes = table(" class=\"hashes\"", words::INPUTS, head, made.inputs.iter().map(row));
+        out.push_str(&wide("Inputs", &hashes));
     }
-    out + "<p>The files that were written with this one are listed in <code>hadar.json</code>, with their hashes. It bears no date: the \
-           same program, command and inputs make the same bytes.</p>\n"
+    out + &format!("<p>{}</p>\n", words::WRITTEN)
 }

@@ -1,9 +1,8 @@
 //! The files of `identify`: tables and plots of a target against a library, and of all against all.
 
 mod figures;
-mod text;
 
-pub use text::{check, text};
+pub use crate::words::identify::{check, text};
 
 use crate::bundle::Bundle;
 use crate::classes;
@@ -85,23 +84,18 @@ fn square(matrix: &Matrix, rows: &Rows, unit: &str) -> Table {
 }
 
 fn targets(matrix: &Matrix) -> Table {
-    let mut table = Table::new([
-        "target",
-        "hardest_alternative",
-        "distance_minimum_per_sqrt_photon",
-        "statistical_distance_minimum_camera",
-        "identifiable",
-    ]);
-    for target in &matrix.targets {
-        table.push(vec![
-            target.material.clone(),
-            target.limiting.clone(),
-            number(target.distance_minimum),
-            optional(target.statistical_distance_minimum),
-            target.identifiable.map_or("", |yes| if yes { "yes" } else { "no" }).into(),
-        ]);
-    }
-    table
+    Table::of(
+        &matrix.targets,
+        &[
+            ("target", &|target| target.material.clone()),
+            ("hardest_alternative", &|target| target.limiting.clone()),
+            ("distance_minimum_per_sqrt_photon", &|target| number(target.distance_minimum)),
+            ("statistical_distance_minimum_camera", &|target| optional(target.statistical_distance_minimum)),
+            ("identifiable", &|target| {
+                target.identifiable.map_or("", |yes| if yes { "yes" } else { "no" }).into()
+            }),
+        ],
+    )
 }
 
 fn told_apart(apart: &Apart) -> Table {
@@ -157,51 +151,31 @@ fn best_bands(found: &BandsThatMatter, with_camera: bool) -> Table {
 }
 
 fn exact(found: &Exact) -> Table {
-    let mut table = Table::new([
-        "alternative",
-        "photons",
-        "balanced_accuracy",
-        "interval_low",
-        "interval_high",
-        "target_right",
-        "alternative_right",
-        "limit_nearest",
-        "estimate_best_fits",
-        "by_local_distance",
-        "statistical_distance_nearest",
-        "statistical_distance_local",
-        "error_lower_bound",
-        "error_upper_bound_known_states",
-        "lattice_target_right",
-        "trials",
-        "unconverged_fits",
-        "statistics",
-        "seed",
-        "generator",
-    ]);
-    for pair in &found.pairs {
-        let lattice = pair.lattice.as_ref().and_then(|lattice| lattice.probabilities.first().copied());
-        let numbers = [
-            pair.photons,
-            pair.balanced,
-            pair.balanced_interval.low,
-            pair.balanced_interval.high,
-            pair.classes[0],
-            pair.classes[1],
-            pair.limit,
-            pair.two_sided,
-            pair.local,
-            pair.statistical_distance_nearest,
-            pair.statistical_distance_local,
-            pair.error_lower,
-            pair.error_upper,
-        ];
-        let mut row = vec![pair.alternative.clone()];
-        row.extend(numbers.map(number));
-        row.push(optional(lattice));
-        row.extend([pair.trials.to_string(), pair.unconverged.to_string()]);
-        row.extend([found.statistics.into(), found.seed.to_string(), found.generator.into()]);
-        table.push(row);
-    }
-    table
+    Table::of(
+        &found.pairs,
+        &[
+            ("alternative", &|pair| pair.alternative.clone()),
+            ("photons", &|pair| number(pair.photons)),
+            ("balanced_accuracy", &|pair| number(pair.balanced)),
+            ("interval_low", &|pair| number(pair.balanced_interval.low)),
+            ("interval_high", &|pair| number(pair.balanced_interval.high)),
+            ("target_right", &|pair| number(pair.classes[0])),
+            ("alternative_right", &|pair| number(pair.classes[1])),
+            ("limit_nearest", &|pair| number(pair.limit)),
+            ("estimate_best_fits", &|pair| number(pair.two_sided)),
+            ("by_local_distance", &|pair| number(pair.local)),
+            ("statistical_distance_nearest", &|pair| number(pair.statistical_distance_nearest)),
+            ("statistical_distance_local", &|pair| number(pair.statistical_distance_local)),
+            ("error_lower_bound", &|pair| number(pair.error_lower)),
+            ("error_upper_bound_known_states", &|pair| number(pair.error_upper)),
+            ("lattice_target_right", &|pair| {
+                optional(pair.lattice.as_ref().and_then(|lattice| lattice.probabilities.first().copied()))
+            }),
+            ("trials", &|pair| pair.trials.to_string()),
+            ("unconverged_fits", &|pair| pair.unconverged.to_string()),
+            ("statistics", &|_| found.statistics.into()),
+            ("seed", &|_| found.seed.to_string()),
+            ("generator", &|_| found.generator.into()),
+        ],
+    )
 }

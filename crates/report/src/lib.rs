@@ -1,4 +1,4 @@
-//! Results made readable: a module a command, with its text, its tables, its figures and the files of `--out`.
+//! Results made readable: a module a command, with its tables, its figures and the files of `--out`; what it says is in [`words`].
 //!
 //! What they share: [`plot`] draws, [`figures`] joins a figure and its table, [`table`] writes CSV, [`parquet`](mod@parquet) the same with types, [`tables`] and [`text`]
 //! say what several commands say, [`bundle`] gathers files and makes one page of them, [`folder`] puts them in place, all or none,
@@ -9,7 +9,6 @@ pub mod bundle;
 pub mod calibrate;
 pub mod cameras;
 pub mod classes;
-pub mod companion;
 pub mod cube_format;
 pub mod decompose;
 pub mod diff;
@@ -27,10 +26,12 @@ pub mod range;
 pub mod render;
 pub mod rule;
 pub mod several;
+mod shown;
 pub mod simulate;
 pub mod size;
 pub mod sweep;
 pub mod table;
 pub mod tables;
-pub mod text;
 pub mod words;
+
+pub use words::text;

@@ -1,9 +1,8 @@
 //! A library made out of a heat cube, as files: emissivities with their errors, the map of clusters, a scenario that uses it, pictures.
 
 mod figures;
-mod text;
 
-pub use text::text;
+pub use crate::words::library::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
@@ -87,49 +86,35 @@ fn sigma(result: &LibraryFound) -> Table {
 }
 
 fn clusters(result: &LibraryFound) -> Table {
-    let mut table = Table::new([
-        "cluster",
-        "index",
-        "pixels",
-        "fitted_pixels",
-        "emissivity_mean",
-        "emissivity_mean_sigma",
-        "temperature_median_k",
-        "temperature_common_sigma_k",
-        "chi_square_reduced",
-        "bands_at_limit",
-    ]);
-    for (index, row) in result.clusters.iter().enumerate() {
-        let one = &row.cluster;
-        table.push(vec![
-            row.name.clone(),
-            index.to_string(),
-            row.pixels.to_string(),
-            one.fitted.to_string(),
-            number(row.emissivity_mean),
-            number(one.sigma_mean),
-            number(row.temperature_median_k),
-            number(one.sigma_temperature_k),
-            number(one.chi_square_reduced),
-            one.held.to_string(),
-        ]);
-    }
-    table
+    let rows: Vec<_> = result.clusters.iter().enumerate().collect();
+    Table::of(
+        &rows,
+        &[
+            ("cluster", &|(_, row)| row.name.clone()),
+            ("index", &|(index, _)| index.to_string()),
+            ("pixels", &|(_, row)| row.pixels.to_string()),
+            ("fitted_pixels", &|(_, row)| row.cluster.fitted.to_string()),
+            ("emissivity_mean", &|(_, row)| number(row.emissivity_mean)),
+            ("emissivity_mean_sigma", &|(_, row)| number(row.cluster.sigma_mean)),
+            ("temperature_median_k", &|(_, row)| number(row.temperature_median_k)),
+            ("temperature_common_sigma_k", &|(_, row)| number(row.cluster.sigma_temperature_k)),
+            ("chi_square_reduced", &|(_, row)| number(row.cluster.chi_square_reduced)),
+            ("bands_at_limit", &|(_, row)| row.cluster.held.to_string()),
+        ],
+    )
 }
 
 fn tried(result: &LibraryFound) -> Table {
-    let mut table =
-        Table::new(["clusters", "clusters_with_pixels", "loss", "loss_error", "chi_square_reduced"]);
-    for one in &result.tried {
-        table.push(vec![
-            one.count.to_string(),
-            one.left.to_string(),
-            number(one.loss),
-            number(one.error),
-            number(one.chi_square_reduced),
-        ]);
-    }
-    table
+    Table::of(
+        &result.tried,
+        &[
+            ("clusters", &|one| one.count.to_string()),
+            ("clusters_with_pixels", &|one| one.left.to_string()),
+            ("loss", &|one| number(one.loss)),
+            ("loss_error", &|one| number(one.error)),
+            ("chi_square_reduced", &|one| number(one.chi_square_reduced)),
+        ],
+    )
 }
 
 /// The scenario that takes the cube apart with the library.

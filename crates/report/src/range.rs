@@ -2,18 +2,17 @@
 
 mod figures;
 mod maps;
-mod text;
 
+pub use crate::words::range::text;
 pub use figures::{bound_maps, derivative_errors, lines, matched_maps, picture_plot, views};
 pub use maps::MapFiles;
-pub use text::text;
 
 use self::maps::add_maps;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
-use hadar_study::range::{Line, Ranging};
+use hadar_study::range::{Line, ObjectBounds, Ranging, SignalBounds};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it. `large` has the maps that the result does
@@ -43,46 +42,33 @@ pub fn bundle(result: &Ranging, out: &Path, large: Option<&MapFiles>) -> Result<
 /// Bounds, a row for every object and signal.
 #[must_use]
 pub fn bounds(result: &Ranging) -> Table {
-    let mut table = Table::new([
-        "object",
-        "signal",
-        "windows",
-        "depth_median_m",
-        "photons_per_window",
-        "gamma",
-        "information_per_px2",
-        "sigma_correspondence_px",
-        "disparity_error_px",
-        "depth_error_tenth_m",
-        "depth_error_median_m",
-        "depth_error_nine_tenths_m",
-        "relative_depth_error",
-        "share_of_windows_that_reach_it",
-        "largest_depth_m",
-    ]);
-    for object in &result.objects {
-        for found in &object.signals {
-            let error = |i: usize| optional(found.depth_error_m.map(|errors| errors[i]));
-            table.push(vec![
-                object.name.clone(),
-                found.signal.name().to_owned(),
-                found.windows.to_string(),
-                optional(object.depth_m.map(|depth| depth[1])),
-                number(found.photons),
-                number(found.gamma),
-                number(found.information_per_px2),
-                number(found.sigma_correspondence_px),
-                number(found.disparity_error_px),
-                error(0),
-                error(1),
-                error(2),
-                optional(found.relative_depth_error),
-                optional(found.share),
-                optional(found.largest_depth_m),
-            ]);
-        }
-    }
-    table
+    let rows: Vec<(&ObjectBounds, &SignalBounds)> = result
+        .objects
+        .iter()
+        .flat_map(|object| object.signals.iter().map(move |found| (object, found)))
+        .collect();
+    Table::of(
+        &rows,
+        &[
+            ("object", &|(object, _)| object.name.clone()),
+            ("signal", &|(_, found)| found.signal.name().to_owned()),
+            ("windows", &|(_, found)| found.windows.to_string()),
+            ("depth_median_m", &|(object, _)| optional(object.depth_m.map(|depth| depth[1]))),
+            ("photons_per_window", &|(_, found)| number(found.photons)),
+            ("gamma", &|(_, found)| number(found.gamma)),
+            ("information_per_px2", &|(_, found)| number(found.information_per_px2)),
+            ("sigma_correspondence_px", &|(_, found)| number(found.sigma_correspondence_px)),
+            ("disparity_error_px", &|(_, found)| number(found.disparity_error_px)),
+            ("depth_error_tenth_m", &|(_, found)| optional(found.depth_error_m.map(|errors| errors[0]))),
+            ("depth_error_median_m", &|(_, found)| optional(found.depth_error_m.map(|errors| errors[1]))),
+            ("depth_error_nine_tenths_m", &|(_, found)| {
+                optional(found.depth_error_m.map(|errors| errors[2]))
+            }),
+            ("relative_depth_error", &|(_, found)| optional(found.relative_depth_error)),
+            ("share_of_windows_that_reach_it", &|(_, found)| optional(found.share)),
+            ("largest_depth_m", &|(_, found)| optional(found.largest_depth_m)),
+        ],
+    )
 }
 
 /// The four cells of Table S4.
@@ -103,36 +89,23 @@ fn cells(result: &Ranging) -> Option<Table> {
 
 /// Bounds and witnesses along lines, a row for every window.
 pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Table {
-    let mut table = Table::new([
-        "row",
-        "column",
-        "signal",
-        "method",
-        "depth_m",
-        "bound_m",
-        "bound_without_diffraction_m",
-        "rmse_m",
-        "bias_m",
-        "outliers",
-        "trials",
-    ]);
-    for line in lines {
-        for (i, column) in line.columns.iter().enumerate() {
-            let at = |values: &[f64]| optional(values.get(i).copied());
-            table.push(vec![
-                line.row.to_string(),
-                column.to_string(),
-                line.signal.name().to_owned(),
-                line.method.unwrap_or_default().to_owned(),
-                at(&line.depth_m),
-                at(&line.bound_m),
-                at(&line.bound_without_diffraction_m),
-                at(&line.rmse_m),
-                at(&line.bias_m),
-                at(&line.outliers),
-                line.trials.to_string(),
-            ]);
-        }
-    }
-    table
+    let of_line = |line: &'a Line| line.columns.iter().enumerate().map(move |(i, column)| (line, i, column));
+    let rows: Vec<(&Line, usize, &usize)> = lines.into_iter().flat_map(of_line).collect();
+    let at = |values: &[f64], i: &usize| optional(values.get(*i).copied());
+    Table::of(
+        &rows,
+        &[
+            ("row", &|(line, ..)| line.row.to_string()),
+            ("column", &|(.., column)| column.to_string()),
+            ("signal", &|(line, ..)| line.signal.name().to_owned()),
+            ("method", &|(line, ..)| line.method.unwrap_or_default().to_owned()),
+            ("depth_m", &|(line, i, _)| at(&line.depth_m, i)),
+            ("bound_m", &|(line, i, _)| at(&line.bound_m, i)),
+            ("bound_without_diffraction_m", &|(line, i, _)| at(&line.bound_without_diffraction_m, i)),
+            ("rmse_m", &|(line, i, _)| at(&line.rmse_m, i)),
+            ("bias_m", &|(line, i, _)| at(&line.bias_m, i)),
+            ("outliers", &|(line, i, _)| at(&line.outliers, i)),
+            ("trials", &|(line, ..)| line.trials.to_string()),
+        ],
+    )
 }

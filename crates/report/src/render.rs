@@ -1,14 +1,13 @@
 //! A rendered scene as files: the cube, its truth, what lights it, the scenario that takes it apart, pictures.
 
 mod figures;
-mod text;
 
+pub use crate::words::render::text;
 pub use figures::scene;
-pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::cube_format::CubeFormat;
-use crate::table::{Table, number};
+use crate::table::{Table, optional};
 use hadar::error::Result;
 use hadar_formats::cube::{mat_file, npy_map};
 use hadar_scenario::decompose::{
@@ -188,29 +187,18 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat, out: &Pa
 }
 
 fn surfaces(result: &Rendered) -> Table {
-    let mut table = Table::new([
-        "surface",
-        "index",
-        "materials",
-        "pixels",
-        "pure_pixels",
-        "temperature_k",
-        "nearest_m",
-        "farthest_m",
-    ]);
-    for (index, row) in result.surfaces.iter().enumerate() {
-        let depth = |end: usize| row.depth_m.map_or_else(String::new, |ends| number(ends[end]));
-        let temperature = if row.pure > 0 { number(row.temperature_k) } else { String::new() };
-        table.push(vec![
-            row.name.clone(),
-            index.to_string(),
-            row.materials.join(", "),
-            row.pixels.to_string(),
-            row.pure.to_string(),
-            temperature,
-            depth(0),
-            depth(1),
-        ]);
-    }
-    table
+    let rows: Vec<_> = result.surfaces.iter().enumerate().collect();
+    Table::of(
+        &rows,
+        &[
+            ("surface", &|(_, row)| row.name.clone()),
+            ("index", &|(index, _)| index.to_string()),
+            ("materials", &|(_, row)| row.materials.join(", ")),
+            ("pixels", &|(_, row)| row.pixels.to_string()),
+            ("pure_pixels", &|(_, row)| row.pure.to_string()),
+            ("temperature_k", &|(_, row)| optional((row.pure > 0).then_some(row.temperature_k))),
+            ("nearest_m", &|(_, row)| optional(row.depth_m.map(|[near, _]| near))),
+            ("farthest_m", &|(_, row)| optional(row.depth_m.map(|[_, far]| far))),
+        ],
+    )
 }

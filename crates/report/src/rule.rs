@@ -2,30 +2,21 @@
 //!
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
-mod certificate;
-mod check;
-mod columns;
-mod measured;
 mod record;
-mod sources;
 mod stand_in;
-mod stop;
-mod text;
 
-pub use check::check;
+pub use crate::words::rule::{check, sources, stand_in, tests, text};
 pub use record::{agreement, parsed, record};
-pub use sources::{sources, tests};
-pub use stand_in::{stand_in, stand_in_bundle};
-pub use text::text;
+pub use stand_in::stand_in_bundle;
 
 use super::bundle::Bundle;
-use super::companion;
 use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
-use super::table::{Table, number, optional};
-use super::text::significant;
+use super::table::{Table, joined, number, optional, yes_no};
+use super::tables;
 use crate::words::Say;
+use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
@@ -55,7 +46,7 @@ pub struct Output<'a> {
 pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, out: &Path) -> Result<Bundle> {
     let title = certificate::title(answer);
     let mut bundle = Bundle::about(Some(&title));
-    bundle.add("certificate.md", certificate::markdown(study, answer, provenance));
+    bundle.add("certificate.md", certificate::page(study, answer, provenance));
     let data = record::text(&record::record(study, answer, provenance)?)?;
     let statement = record::statement(answer, provenance, &data);
     bundle.add(record::NAME, data);
@@ -70,7 +61,7 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
         .flat_map(|apart| &apart.companions)
         .collect();
     if !companions.is_empty() {
-        bundle.add_table("companion.csv", companion::table(companions))?;
+        bundle.add_table("companion.csv", tables::companions(companions))?;
     }
     bundle.add("inputs.csv", inputs(provenance).to_csv()?);
     bundle.add_warnings(&warnings(answer))?;
@@ -129,7 +120,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
             let of = |value: &dyn Fn(&CameraVerdict) -> String| own.map(value).unwrap_or_default();
             let mut row = vec![
                 line.camera.to_owned(),
-                if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
+                yes_no(line.verdict == Verdict::Meets),
                 codes(line.fails_by, " "),
                 line.provided.map(|proviso| proviso.say()).unwrap_or_default(),
                 of(&|camera| camera.bands.to_string()),
@@ -153,11 +144,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
                 }
                 Found::Measured(measured) => {
                     let reached = measured.cameras.get(index).and_then(|camera| camera.value);
-                    [
-                        measured::measure(measured.quantity).to_owned(),
-                        number(measured.demanded),
-                        optional(reached),
-                    ]
+                    [measure(measured.quantity).to_owned(), number(measured.demanded), optional(reached)]
                 }
             });
             let end = |of: &dyn Fn(&MarginUncertainty) -> f64| optional(line.uncertainty.map(of));
@@ -174,7 +161,6 @@ fn value(camera: &CameraVerdict, wanted: Quantity) -> Option<f64> {
 }
 
 fn worst_cases(answer: &RuleAnswer) -> Table {
-    let joined = |values: &[f64]| values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(" ");
     let mut table = Table::new([
         "clause",
         "camera",
@@ -253,7 +239,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
         let proved = own.and_then(|own| Some(own.lower_bound? / only?.requirement.distance));
         table.push(vec![
             camera.name.clone(),
-            if camera.passes { "yes" } else { "no" }.into(),
+            yes_no(camera.passes),
             fails,
             number(camera.margin),
             optional(proved),
@@ -278,24 +264,13 @@ fn margins(answer: &RuleAnswer) -> Plot {
         };
         values = values.intervals(end(0), end(1));
     }
-    let title = answer.rule.about.name.clone().or(answer.rule.scenario.title.clone());
-    let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
     let (axis, subtitle) = match only {
-        Some(only) => (
-            "margin: statistical distance over that demanded",
-            format!(
-                "Least over the envelope; demanded is d = {}. Full symbols meet the rule; a camera may have signal enough and \
-                 still fail by its image.",
-                significant(only.requirement.distance, 3)
-            ),
-        ),
-        None => (
-            "margin: what is there over what is demanded",
-            "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails."
-                .into(),
-        ),
+        Some(only) => {
+            ("margin: statistical distance over that demanded", one_clause(only.requirement.distance))
+        }
+        None => ("margin: what is there over what is demanded", ALL_CLAUSES.into()),
     };
-    let figure = NamedValues::new(title, names, Axis::log(axis))
+    let figure = NamedValues::new(certificate::title(answer), names, Axis::log(axis))
         .subtitle(subtitle)
         .series(values)
         .threshold(1.0, "demanded")

@@ -2,7 +2,9 @@
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
+use crate::text::columns::aligned;
 use crate::text::significant;
+use crate::words::several::{NOT_IN_FORCE, unanswered};
 use hadar::error::Result;
 use hadar::order;
 use hadar_study::sweep::Question;
@@ -77,7 +79,7 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
     // A rule without a camera, or on a day on which it does not hold, is met by none.
     let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
-        (Question::Rule, "verdict") if !is_in_force(answer) => "no, not in force".into(),
+        (Question::Rule, "verdict") if !is_in_force(answer) => NOT_IN_FORCE.into(),
         (Question::Rule, "verdict") if met && hang => "yes, if".into(),
         (Question::Rule, "verdict") => met.into(),
         (Question::Rule, "meet it") => {
@@ -133,22 +135,10 @@ pub fn text(question: Question, rows: &[Row]) -> String {
         }
         lines.push(line);
     }
-    let last = lines.first().map_or(0, Vec::len);
-    let whole = |line: &&Vec<String>| line.len() == last;
-    // What went wrong is as long as it is.
-    let width = |at: usize| {
-        let cells = lines.iter().filter(|line| at == 0 || whole(line)).filter_map(|line| line.get(at));
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..last).map(width).collect();
-    let mut out = String::new();
-    for line in &lines {
-        let padded = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
-        let _ = writeln!(out, "{}", padded.collect::<Vec<_>>().join("  ").trim_end());
-    }
+    let mut out = aligned(&lines, &[]);
     let failed = rows.iter().filter(|row| row.answer.is_none()).count();
     if failed > 0 {
-        let _ = writeln!(out, "\n{failed} of {} scenarios without an answer.", rows.len());
+        let _ = writeln!(out, "\n{}", unanswered(failed, rows.len()));
     }
     out
 }

@@ -1,15 +1,14 @@
 //! The files of `simulate`: scenario, tables and plots.
 
 pub mod figures;
-mod text;
 pub mod thermometry;
 
-pub use text::text;
+pub use crate::words::simulate::text;
 
 use self::figures::SimulationCurves;
-use self::text::pair;
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
+use crate::words::simulate::{pair, retrieved};
 use hadar::error::Result;
 use hadar_study::{NoiseCurves, Simulation, Study};
 use std::path::Path;
@@ -28,7 +27,7 @@ pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, o
     let plot = match result.points.as_slice() {
         [point] => figures::accuracies(result, point, &pair),
         _ => {
-            let title = format!("Telling {pair}: what each classifier retrieves");
+            let title = retrieved(&pair);
             figures::classifiers(result, &SimulationCurves { title, noise, other: None, name: "classifiers" })
         }
     };

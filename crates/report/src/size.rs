@@ -1,18 +1,17 @@
 //! The files of the main job: scenario, tables, the four plots of the limiting pair, and the trade-offs.
 
 pub mod figures;
-pub mod rows;
-mod text;
 mod trade_off;
 
-pub use text::text;
+pub use crate::words::size::{rows, text};
 
 use self::figures::{Collected, InformationMarks};
 use crate::bundle::Bundle;
+use crate::classes;
 use crate::figures::Plot;
 use crate::table::{Table, number, optional};
 use crate::tables;
-use crate::{classes, companion};
+use crate::words::size::captions;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::order;
@@ -44,7 +43,7 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
         bundle.add_table("sensitivity.csv", sensitivity(found))?;
     }
     if let Some(found) = &result.companion {
-        bundle.add_table("companion.csv", companion::table([found]))?;
+        bundle.add_table("companion.csv", tables::companions([found]))?;
     }
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&classes::pictures(&result.classes))?;
@@ -66,13 +65,8 @@ pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &
     let mut closest = vec![study.target()];
     closest.extend(ranked.iter().take(DRAWN).map(|(_, surface)| *surface));
     let target = &study.target().name;
-    let title = match (closest.as_slice(), ranked.len()) {
-        ([_, one], _) => format!("Emissivities of {target} and {}", one.name),
-        (_, all) if all > DRAWN => {
-            format!("Emissivities of {target} and the {DRAWN} nearest of its {all} alternatives")
-        }
-        _ => format!("Emissivities of {target} and its alternatives"),
-    };
+    let others: Vec<&str> = closest.iter().skip(1).map(|surface| surface.name.as_str()).collect();
+    let title = captions::emissivities(target, &others, ranked.len());
     let mut drawn = figures::emissivities(&title, nodes, &closest);
     if let Some(surface) = study.alternative(limiting) {
         drawn.push(figures::spectra(&study.spectra(surface)?, study.bands(), target, &surface.name));

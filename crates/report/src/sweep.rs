@@ -2,12 +2,14 @@
 
 mod figures;
 mod gathered;
+mod over;
 mod swept;
-mod text;
 
+pub use crate::words::sweep::text;
 pub use gathered::Gathered;
 pub use swept::Swept;
-pub use text::text;
+
+pub(crate) use over::{Undrawn, none};
 
 use crate::bundle::Bundle;
 use crate::parquet::{self, Column};

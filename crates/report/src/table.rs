@@ -1,6 +1,9 @@
-//! Tables as CSV, with the unit in every header.
+//! Tables as CSV, with the unit in every header, and as Markdown.
 
 use hadar::error::{Error, Result};
+
+/// A column: its name, and its cell in a row.
+pub type Column<'a, T, C = String> = (&'a str, &'a dyn Fn(&T) -> C);
 
 /// A table of text cells.
 #[derive(Debug, Clone, Default)]
@@ -14,6 +17,34 @@ impl Table {
     #[must_use]
     pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
         Self { header: header.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
+    /// A row for each of `rows`, from columns that each have a name and make a cell of a row.
+    #[must_use]
+    pub fn of<T>(rows: &[T], columns: &[Column<'_, T>]) -> Self {
+        let header = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let row = |row| columns.iter().map(|(_, cell)| cell(row)).collect();
+        Self { header, rows: rows.iter().map(row).collect() }
+    }
+
+    /// The same of numbers.
+    #[must_use]
+    pub fn of_numbers<T>(rows: &[T], columns: &[Column<'_, T, f64>]) -> Self {
+        let header = columns.iter().map(|(name, _)| (*name).to_owned()).collect();
+        let row = |row| columns.iter().map(|(_, of)| number(of(row))).collect();
+        Self { header, rows: rows.iter().map(row).collect() }
+    }
+
+    /// A table of whole columns of numbers; as many rows as the first one has.
+    #[must_use]
+    pub fn of_columns<S: Into<String>>(columns: impl IntoIterator<Item = (S, impl AsRef<[f64]>)>) -> Self {
+        let (header, columns): (Vec<String>, Vec<_>) =
+            columns.into_iter().map(|(name, values)| (name.into(), values)).unzip();
+        let rows = columns.first().map_or(0, |first| first.as_ref().len());
+        let cell = |values: &[f64], row: usize| number(values.get(row).copied().unwrap_or(f64::NAN));
+        let row = |row: usize| columns.iter().map(|column| cell(column.as_ref(), row)).collect();
+        let rows = (0..rows).map(row).collect();
+        Self { header, rows }
     }
 
     /// Adds a row of text cells.
@@ -56,6 +87,32 @@ impl Table {
     }
 }
 
+/// A table in Markdown: its head, and a line for each row.
+#[must_use]
+pub fn markdown<R>(head: &[&str], rows: impl IntoIterator<Item = R>) -> String
+where
+    R: IntoIterator,
+    R::Item: AsRef<str>,
+{
+    ruled_markdown("---", head, rows)
+}
+
+/// The same with another rule below the head of a column.
+#[must_use]
+pub fn ruled_markdown<R>(rule: &str, head: &[&str], rows: impl IntoIterator<Item = R>) -> String
+where
+    R: IntoIterator,
+    R::Item: AsRef<str>,
+{
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    // A stroke would end the cell.
+    let cells = |row: R| row.into_iter().map(|cell| cell.as_ref().replace('|', "\\|")).collect();
+    let rule = format!("|{}\n", format!("{rule}|").repeat(head.len()));
+    line(head.iter().map(|name| (*name).to_owned()).collect())
+        + &rule
+        + &rows.into_iter().map(|row| line(cells(row))).collect::<String>()
+}
+
 /// A number with the digits that give it back; empty where there is none.
 #[must_use]
 pub fn number(value: f64) -> String {
@@ -69,6 +126,18 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// Numbers in one cell.
+#[must_use]
+pub fn joined(values: &[f64]) -> String {
+    values.iter().map(|value| number(*value)).collect::<Vec<_>>().join(" ")
+}
+
+/// Yes or no.
+#[must_use]
+pub fn yes_no(yes: bool) -> String {
+    if yes { "yes" } else { "no" }.to_owned()
+}
+
 /// An optional number; empty where there is none.
 #[must_use]
 pub fn optional(value: Option<f64>) -> String {
@@ -78,6 +147,12 @@ pub fn optional(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stroke_ends_no_cell() {
+        let expected = "| a | b |\n|---|---|\n| 1 | x \\| y |\n";
+        assert_eq!(markdown(&["a", "b"], [["1", "x | y"]]), expected);
+    }
 
     #[test]
     fn numbers_survive_and_text_is_quoted() {

@@ -1,15 +1,31 @@
-//! What the program says: every sentence of an answer, each in one place.
+//! What the program says: every sentence, each in one place, those of a command in its file or folder.
+//!
+//! A command has its sentences as [`Say`], its text, and what stands below its pictures (`captions`); [`text`] has what several commands
+//! say, [`warnings`] a file for each topic.
 
-mod air_ranging;
-mod classes;
-mod companion;
+pub(crate) mod air_ranging;
+pub(crate) mod calibrate;
+pub(crate) mod cameras;
+pub(crate) mod classes;
+pub(crate) mod companion;
 mod conditions;
+pub(crate) mod decompose;
 mod demand;
+pub(crate) mod diff;
+pub(crate) mod identify;
+pub(crate) mod library;
+pub(crate) mod page;
+pub(crate) mod pictures;
 pub mod probability;
-mod range;
+pub(crate) mod range;
+pub(crate) mod render;
 pub(crate) mod rule;
+pub(crate) mod several;
 pub(crate) mod shortfall;
+pub(crate) mod simulate;
 pub mod size;
+pub(crate) mod sweep;
+pub mod text;
 pub mod warnings;
 
 use hadar_study::spoken::Phrase;

@@ -57,7 +57,7 @@ pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
             let asked = if a.name == b.name { 1 } else { 2 };
             let both = SideBySide::of(Sheet::of(a)?, Sheet::of(b)?)?;
             let shown = [&both.a, &both.b].iter().take(asked).filter(|sheet| sheet.worked.is_some()).count();
-            let json = both.json(&cameras::comparison_sentence(&both))?;
+            let json = cameras::comparison_json(&both)?;
             global.answer_with(json, &cameras::comparison(&both), &work(shown, known))?;
         }
     }

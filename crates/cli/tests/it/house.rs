@@ -1,7 +1,8 @@
-//! The study is silent: it answers in numbers and codes, and what it has to say is said by the report.
+//! The study is silent: it answers in numbers and codes, and what it has to say is said by the report, in its words.
 //!
-//! Read is the text of its files without tests and comments. No type has a `Display`, and a literal of several words stands only where an error
-//! is made: in the statement of one of [`ERRORS`], or in a variable of [`PARTS`], which is handed to one.
+//! Read is the text of files without tests and comments. In the study no type has a `Display`, and a literal of several words stands only where an
+//! error is made: in the statement of one of [`ERRORS`], or in a variable of [`PARTS`], which is handed to one. In the report,
+//! outside of `words`, such a literal is an error's too, or, in a file that draws, the name of a picture, an axis or a curve.
 
 use std::path::{Path, PathBuf};
 
@@ -48,6 +49,17 @@ const ALLOWED: [(&str, &str); 11] = [
     ("sweep/axis.rs", "write KEY=FROM..TO:COUNT"),
 ];
 
+/// What makes an error of a report, or takes the words of one, and variables that hold them.
+const ERRORS_OF_REPORT: [&str; 2] = ["told(", "another("];
+const PARTS_OF_REPORT: [&str; 1] = ["reason"];
+
+/// Other literals of the report outside of its words, each with why it is none of an answer's.
+const ALLOWED_IN_REPORT: [(&str, &str); 2] = [
+    // What an error says that could not be done, and what to write instead.
+    ("diff/side.rs", "read what is to be compared"),
+    ("rule/record.rs", "name the certificate.json of a report"),
+];
+
 /// A literal, and the statements that it stands in, the outermost first.
 struct Literal {
     line: usize,
@@ -75,15 +87,25 @@ impl Literal {
         plain.split_whitespace().filter(|word| word.chars().filter(|c| c.is_alphabetic()).count() > 1).count()
     }
 
-    fn is_of_an_error(&self) -> bool {
+    /// Whether it stands in a statement with one of `calls`, or in one that binds one of `variables`.
+    fn is_of(&self, calls: &[&str], variables: &[&str]) -> bool {
         self.within.iter().any(|statement| {
             let statement = statement.trim_start();
-            let bound = PARTS.iter().any(|part| {
-                let rest = statement.strip_prefix("let ").and_then(|rest| rest.strip_prefix(part));
+            let bound = variables.iter().any(|variable| {
+                let rest = statement.strip_prefix("let ").and_then(|rest| rest.strip_prefix(variable));
                 rest.is_some_and(|rest| rest.starts_with([' ', ':']))
             });
-            bound || ERRORS.iter().any(|error| statement.contains(error))
+            bound || calls.iter().any(|call| statement.contains(call))
         })
+    }
+
+    fn is_of_an_error(&self) -> bool {
+        self.is_of(&ERRORS, &PARTS)
+    }
+
+    /// Whether it goes on like a sentence, which no name does.
+    fn has_stops(&self) -> bool {
+        self.text.ends_with('.') || [". ", "; "].iter().any(|stop| self.text.contains(stop))
     }
 }
 
@@ -163,32 +185,55 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// The files of the study, without its tests.
+/// The files of a folder, without tests.
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.is_dir() {
+        if path.file_stem().is_some_and(|name| name == "tests") {
+            continue;
+        } else if path.is_dir() {
             files(&path, found);
-        } else if path.extension().is_some_and(|kind| kind == "rs")
-            && path.file_stem().is_some_and(|name| name != "tests")
-        {
+        } else if path.extension().is_some_and(|kind| kind == "rs") {
             found.push(path);
         }
     }
 }
 
-fn study() -> Vec<(String, String)> {
-    let folder = hadar_testing::repository().join("crates/study/src");
+/// The names and texts of the files of a package.
+fn sources(package: &str) -> Vec<(String, String)> {
+    let folder = hadar_testing::repository().join("crates").join(package).join("src");
     let mut found = Vec::new();
     files(&folder, &mut found);
     found.sort();
-    let name = |path: &PathBuf| path.strip_prefix(&folder).unwrap().to_string_lossy().into_owned();
+    let name = |path: &PathBuf| path.strip_prefix(&folder).unwrap().to_string_lossy().replace('\\', "/");
     found.iter().map(|path| (name(path), std::fs::read_to_string(path).unwrap())).collect()
+}
+
+/// That no file of a package says anything but what is `fine` or allowed.
+fn is_silent(package: &str, fine: impl Fn(&str, &str, &Literal) -> bool, allowed: &[(&str, &str)]) {
+    let mut said = Vec::new();
+    let mut unused: Vec<(&str, &str)> = allowed.to_vec();
+    for (name, text) in sources(package) {
+        for literal in literals(&text) {
+            if literal.words() < SENTENCE || literal.is_of_an_error() || fine(&name, &text, &literal) {
+                continue;
+            }
+            let is_it = |(file, start): &(&str, &str)| *file == name && literal.text.starts_with(start);
+            if allowed.iter().any(is_it) {
+                unused.retain(|one| !is_it(one));
+            } else {
+                said.push(format!("crates/{package}/src/{name}:{}: {:?}", literal.line, literal.text));
+            }
+        }
+    }
+    let words = "which belong to crates/report/src/words";
+    assert!(said.is_empty(), "{} sentences, {words}:\n{}", said.len(), said.join("\n"));
+    assert!(unused.is_empty(), "allowed, but not there: {unused:?}");
 }
 
 #[test]
 fn no_answer_has_words_of_its_own() {
-    for (name, text) in study() {
+    for (name, text) in sources("study") {
         let own: Vec<&str> = text.lines().filter(|line| line.contains("Display for")).collect();
         assert!(own.is_empty(), "crates/study/src/{name} puts answers into words: {own:?}");
     }
@@ -196,28 +241,20 @@ fn no_answer_has_words_of_its_own() {
 
 #[test]
 fn the_study_has_no_sentence_but_those_of_errors() {
-    let mut said = Vec::new();
-    let mut unused: Vec<(&str, &str)> = ALLOWED.to_vec();
-    for (name, text) in study() {
-        for literal in literals(&text) {
-            if literal.words() < SENTENCE || literal.is_of_an_error() {
-                continue;
-            }
-            let allowed = |(file, start): &(&str, &str)| *file == name && literal.text.starts_with(start);
-            if ALLOWED.iter().any(allowed) {
-                unused.retain(|one| !allowed(one));
-            } else {
-                said.push(format!("crates/study/src/{name}:{}: {:?}", literal.line, literal.text));
-            }
-        }
-    }
-    assert!(
-        said.is_empty(),
-        "{} sentences, which belong to crates/report/src/words:\n{}",
-        said.len(),
-        said.join("\n")
-    );
-    assert!(unused.is_empty(), "allowed, but not there: {unused:?}");
+    is_silent("study", |_, _, _| false, &ALLOWED);
+}
+
+/// Elements of a page are no words.
+#[test]
+fn the_report_has_its_sentences_in_its_words() {
+    let fine = |name: &str, text: &str, literal: &Literal| {
+        let draws = name.starts_with("plot/") || text.contains("::plot::");
+        name.starts_with("words/")
+            || literal.text.trim_start_matches('n').starts_with('<')
+            || (draws && !literal.has_stops())
+            || literal.is_of(&ERRORS_OF_REPORT, &PARTS_OF_REPORT)
+    };
+    is_silent("report", fine, &ALLOWED_IN_REPORT);
 }
 
 #[test]

@@ -19,7 +19,7 @@ const THEIRS: [&str; 4] = [
 
 /// What prints one remark in another place than the others.
 const PRINTED: [(&str, &str); 1] =
-    [("crates/report/src/rule/stand_in.rs", "that the rule does not hold stands above the answer")];
+    [("crates/report/src/words/rule/stand_in.rs", "that the rule does not hold stands above the answer")];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

@@ -2,7 +2,7 @@
 
 use crate::accuracy::brute_force::{BruteForceReport, SetReport};
 use hadar::words::{quantity, significant};
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 
 /// The answer in a sentence, and a line for every set.
 #[must_use]
@@ -24,30 +24,36 @@ pub fn brute_force_text(report: &BruteForceReport) -> String {
         sum(|set| set.unproved),
         sum(|set| set.missed),
     ));
-    text.push_str(
-        "| unknown | scenes | no distance at all | bounds above | distances above | by over 1 % | largest excess (scene) | proved | no bound | error too small | no error told | time (longest) | brute force | brute force above (scene) |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
-    );
-    for set in &report.sets {
-        text.push_str(&format!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} ({}) | {} | {} |\n",
-            set.unknown,
-            set.cases,
-            set.vanishing,
-            set.lower_above,
-            set.above,
-            set.far_above,
-            of_case(significant(set.worst_excess, 2), (set.above > 0).then_some(set.worst_case)),
-            set.proved,
-            set.unproved,
-            set.error_wrong,
-            set.error_untold,
-            quantity(set.mean_solver_s, "s"),
-            quantity(set.longest_solver_s, "s"),
-            quantity(set.mean_brute_force_s, "s"),
-            of_case(set.missed.to_string(), set.missed_case),
-        ));
-    }
+    let head = [
+        "unknown",
+        "scenes",
+        "no distance at all",
+        "bounds above",
+        "distances above",
+        "by over 1 %",
+        "largest excess (scene)",
+        "proved",
+        "no bound",
+        "error too small",
+        "no error told",
+        "time (longest)",
+        "brute force",
+        "brute force above (scene)",
+    ];
+    let row = |set: &SetReport| {
+        let mut cells = vec![set.unknown.clone()];
+        let counts = [set.cases, set.vanishing, set.lower_above, set.above, set.far_above];
+        cells.extend(counts.map(|count| count.to_string()));
+        let worst = (set.above > 0).then_some(set.worst_case);
+        cells.push(of_case(significant(set.worst_excess, 2), worst));
+        let counts = [set.proved, set.unproved, set.error_wrong, set.error_untold];
+        cells.extend(counts.map(|count| count.to_string()));
+        let [mean, longest] = [set.mean_solver_s, set.longest_solver_s].map(|s| quantity(s, "s"));
+        cells.extend([format!("{mean} ({longest})"), quantity(set.mean_brute_force_s, "s")]);
+        cells.push(of_case(set.missed.to_string(), set.missed_case));
+        cells
+    };
+    text.push_str(&markdown(&head, report.sets.iter().map(row)));
     for failure in report.sets.iter().flat_map(|set| &set.first_failures) {
         text.push_str(&format!("\nscene {} of seed {}: {}", failure.case, report.seed, failure.what));
     }

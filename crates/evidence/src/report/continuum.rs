@@ -4,7 +4,7 @@ use crate::accuracy::{Continuum, GOOD, MaterialStep, Recommended};
 use hadar::words::significant;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Rule, Series};
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 
 /// Error of the nearest distance over the step, pair by pair.
 #[must_use]
@@ -43,21 +43,27 @@ pub fn continuum_plot(continuum: &Continuum) -> Plot {
 #[must_use]
 pub fn continuum_text(continuum: &Continuum) -> String {
     let mut text = format!(
-        "Bands against the continuous spectrum: errors of steps of 1 cm^-1, and the widest step whose nearest distance errs by less than {GOOD}\n\n\
-         | target | alternative | photon radiance | local distance | nearest distance | recommended step |\n|---|---|---|---|---|---|\n"
+        "Bands against the continuous spectrum: errors of steps of 1 cm^-1, and the widest step whose nearest distance errs by less than {GOOD}\n\n"
     );
-    for pair in continuum.recommended.iter().filter(|pair| pair.drawn) {
+    let row = |pair: &Recommended| {
         let paper = of(continuum, pair).find(|step| (step.step_cm1 - 1.0).abs() < 1e-9);
         let errors = paper.map_or_else(Default::default, |step| {
             [step.error_radiance, step.error_local, step.error_nearest].map(|error| format!("{error:.0e}"))
         });
         let [radiance, local, nearest] = errors;
-        let step = step_in_words(pair.step_cm1);
-        text.push_str(&format!(
-            "| {} | {} | {radiance} | {local} | {nearest} | {step} |\n",
-            pair.target, pair.alternative
-        ));
-    }
+        let [target, alternative] = [&pair.target, &pair.alternative].map(String::clone);
+        [target, alternative, radiance, local, nearest, step_in_words(pair.step_cm1)]
+    };
+    let head = [
+        "target",
+        "alternative",
+        "photon radiance",
+        "local distance",
+        "nearest distance",
+        "recommended step",
+    ];
+    let drawn = continuum.recommended.iter().filter(|pair| pair.drawn);
+    text.push_str(&markdown(&head, drawn.map(row)));
     let others: Vec<&Recommended> = continuum.recommended.iter().filter(|pair| !pair.drawn).collect();
     let narrowest =
         others.iter().min_by(|a, b| a.step_cm1.unwrap_or(0.0).total_cmp(&b.step_cm1.unwrap_or(0.0)));

@@ -2,29 +2,23 @@
 
 use crate::accuracy::skipping::Skipped;
 use hadar::words::{quantity, significant};
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 
 /// A line for every question.
 #[must_use]
 pub fn skipping_text(found: &[Skipped]) -> String {
     let same = found.iter().filter(|one| one.answers_equal).count();
-    let mut text = format!(
-        "Questions answered with everything needless left out, and with all of it computed: {same} of {} answers are the same\n\n\
-         | scenario | question | left out | all computed | gain | same answer |\n|---|---|---|---|---|---|\n",
+    let text = format!(
+        "Questions answered with everything needless left out, and with all of it computed: {same} of {} answers are the same\n\n",
         found.len()
     );
-    for one in found {
-        text.push_str(&format!(
-            "| {} | {} | {} | {} | {} | {} |\n",
-            one.scenario,
-            one.question,
-            quantity(one.seconds_on, "s"),
-            quantity(one.seconds_off, "s"),
-            significant(one.gain(), 2),
-            if one.answers_equal { "yes" } else { "no" }
-        ));
-    }
-    text
+    let row = |one: &Skipped| {
+        let [on, off] = [one.seconds_on, one.seconds_off].map(|seconds| quantity(seconds, "s"));
+        let same = if one.answers_equal { "yes" } else { "no" };
+        [one.scenario.into(), one.question.into(), on, off, significant(one.gain(), 2), same.into()]
+    };
+    let head = ["scenario", "question", "left out", "all computed", "gain", "same answer"];
+    text + &markdown::<[String; 6]>(&head, found.iter().map(row))
 }
 
 /// The same as numbers.

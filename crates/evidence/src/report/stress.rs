@@ -4,7 +4,7 @@ use crate::accuracy::stress::{FamilyReport, Point, StressReport};
 use hadar::words::significant;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Series};
-use hadar_report::table::{Table, number, optional};
+use hadar_report::table::{Table, markdown, number, optional};
 
 /// Points that a picture can show apart.
 const DRAWN: usize = 600;
@@ -20,21 +20,28 @@ pub fn stress_text(report: &StressReport) -> String {
         ),
         failures => format!("{failures} of {} cases fail\n\n", report.cases),
     };
-    text.push_str(
-        "| stress | cases | comparisons | failures | worst error / estimate | median estimate / error | at least 12 digits kept |\n|---|---|---|---|---|---|---|\n",
-    );
-    for family in &report.families {
-        text.push_str(&format!(
-            "| {} | {} | {} | {} | {} | {} | {} |\n",
-            family.stresses,
-            family.cases,
-            family.comparisons,
-            family.failures,
+    let head = [
+        "stress",
+        "cases",
+        "comparisons",
+        "failures",
+        "worst error / estimate",
+        "median estimate / error",
+        "at least 12 digits kept",
+    ];
+    let row = |family: &FamilyReport| {
+        let median = family.median_overestimation;
+        [
+            family.stresses.to_string(),
+            family.cases.to_string(),
+            family.comparisons.to_string(),
+            family.failures.to_string(),
             significant(family.worst_ratio, 2),
-            family.median_overestimation.map_or_else(|| "-".into(), |factor| significant(factor, 2)),
+            median.map_or_else(|| "-".into(), |factor| significant(factor, 2)),
             hadar::words::share(with_digits(family, 12)),
-        ));
-    }
+        ]
+    };
+    text.push_str(&markdown(&head, report.families.iter().map(row)));
     for family in report.families.iter().filter(|family| family.failures > 0) {
         for failure in &family.first_failures {
             text.push_str(&format!("\ncase {} of seed {}: {}", failure.case, report.seed, failure.what));

@@ -2,6 +2,7 @@
 
 use crate::vectors::{Topic, VERSION};
 use hadar_report::bundle::Bundle;
+use hadar_report::table::markdown;
 
 /// Definitions, how to read, what a tolerance means.
 const PAGE: &str = include_str!("vectors/page.md");
@@ -22,21 +23,20 @@ pub fn vectors_bundle(topics: &[Topic]) -> Bundle {
 pub fn vectors_text(topics: &[Topic]) -> String {
     let vectors: usize = topics.iter().map(|topic| topic.vectors.len()).sum();
     let answers: usize = topics.iter().map(Topic::answers).sum();
-    let mut text = format!(
-        "Test vectors, version {VERSION}: {vectors} questions with {answers} answers\n\n| topic | questions | answers | about |\n|---|---|---|---|\n"
-    );
-    for topic in topics {
-        let Topic { name, title, vectors, .. } = topic;
-        text.push_str(&format!("| {name} | {} | {} | {title} |\n", vectors.len(), topic.answers()));
-    }
-    text
+    let row = |topic: &Topic| {
+        let [vectors, answers] = [topic.vectors.len(), topic.answers()].map(|count| count.to_string());
+        [topic.name.to_string(), vectors, answers, topic.title.to_string()]
+    };
+    let table = markdown(&["topic", "questions", "answers", "about"], topics.iter().map(row));
+    format!("Test vectors, version {VERSION}: {vectors} questions with {answers} answers\n\n{table}")
 }
 
 fn page(topics: &[Topic]) -> String {
-    let mut table = String::from("| file | vectors | about | tells of |\n|---|---|---|---|");
-    for Topic { name, title, catches, vectors, .. } in topics {
-        table
-            .push_str(&format!("\n| [{name}.json]({name}.json) | {} | {title} | {catches} |", vectors.len()));
-    }
-    PAGE.replace("{version}", &VERSION.to_string()).replace("{topics}", &table)
+    let row = |Topic { name, title, catches, vectors, .. }: &Topic| {
+        let file = format!("[{name}.json]({name}.json)");
+        [file, vectors.len().to_string(), title.to_string(), catches.to_string()]
+    };
+    let table = markdown(&["file", "vectors", "about", "tells of"], topics.iter().map(row));
+    let table = table.trim_end();
+    PAGE.replace("{version}", &VERSION.to_string()).replace("{topics}", table)
 }

@@ -11,7 +11,7 @@ use hadar_estimate::decompose::{Distilled, Maps};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range::picture_plot;
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 use std::path::Path;
 
 /// 95 % of a Gaussian is within so many deviations.
@@ -265,30 +265,40 @@ fn percent(x: f64) -> String {
 fn text(of: &Textured, rows: &[Beside]) -> String {
     let mut text = format!(
         "Over pixels of one surface. Known surroundings: {} (all that light a pixel with a hundredth or more), or the paper's two, sky and ground. \
-         Errors against the rendering with only the sky on, over its mean. Noise of a pixel in all bands: {} mK at {EXPOSURE}.\n\n\
-         | exposure | surroundings | image | over | pixels | error, rms | median | correlation | over its deviation | within 95 % |\n\
-         |---|---|---|---|---|---|---|---|---|---|\n",
+         Errors against the rendering with only the sky on, over its mean. Noise of a pixel in all bands: {} mK at {EXPOSURE}.\n\n",
         of.expected.surroundings.join(", "),
         significant(1e3 * of.netd_k(), 2)
     );
-    for row in rows {
-        let over = row.over_sigma.map_or(["-".to_owned(), "-".to_owned()], |[over, within]| {
+    let cells = |row: &Beside| {
+        let [over, within] = row.over_sigma.map_or(["-".to_owned(), "-".to_owned()], |[over, within]| {
             [significant(over, 3), percent(within)]
         });
-        text.push_str(&format!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
-            row.exposure,
-            row.surroundings,
-            row.image,
-            row.over,
-            row.pixels,
+        [
+            row.exposure.to_string(),
+            row.surroundings.to_string(),
+            row.image.to_string(),
+            row.over.to_string(),
+            row.pixels.to_string(),
             percent(row.rms),
             percent(row.median),
             significant(row.correlation, 3),
-            over[0],
-            over[1]
-        ));
-    }
+            over,
+            within,
+        ]
+    };
+    let head = [
+        "exposure",
+        "surroundings",
+        "image",
+        "over",
+        "pixels",
+        "error, rms",
+        "median",
+        "correlation",
+        "over its deviation",
+        "within 95 %",
+    ];
+    text.push_str(&markdown(&head, rows.iter().map(cells)));
     text.push_str(
         "\nWhere the material is not decided the texture is that of the most probable one, and its deviation says nothing of the others. Light of surfaces \
          that are no surroundings (tyres, wall) is in no deviation either: what it turns the fit by is more than noise on what stands before them.\n",

@@ -23,7 +23,7 @@ use hadar_report::decompose::{DARKEST, Vision, brightness, saturation};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, Painted, Picture};
 use hadar_report::range::picture_plot;
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 use hadar_study::decompose::hues_deg;
 use hadar_study::range::quantile;
 use std::path::Path;
@@ -192,22 +192,29 @@ fn text(found: &Compared) -> String {
         "Standard deviation: mean over windows of {SIDE} × {SIDE}, the whole scale being 1, of the noisy image and of the same without noise. \
          Information: S37 of windows of {SIDE} × {SIDE}, median on the ground, over that of the cube; no processing raises it. By matching: S37 as the \
          paper evaluates it, differences of the noisy image over the variance of matched pixels; of an image of noise alone it would be {}, \
-         since noise has slopes too.\n\n\
-         | image | standard deviation | without noise | information / cube's | on all surfaces, pixel^-2 | by matching, pixel^-2 |\n|---|---|---|---|---|---|\n",
+         since noise has slopes too.\n\n",
         significant(0.5 * (SIDE * SIDE) as f64, 2)
     );
     let maybe = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| significant(x, 3));
-    for row in &found.rows {
-        text.push_str(&format!(
-            "| {} | {} | {} | {} | {} | {} |\n",
-            row.name,
+    let cells = |row: &Row| {
+        [
+            row.name.to_string(),
             maybe(row.deviation),
             maybe(row.deviation_noise_free),
             significant(row.information / cube, 3),
             significant(row.information_all, 3),
-            maybe(row.by_matching)
-        ));
-    }
+            maybe(row.by_matching),
+        ]
+    };
+    let head = [
+        "image",
+        "standard deviation",
+        "without noise",
+        "information / cube's",
+        "on all surfaces, pixel^-2",
+        "by matching, pixel^-2",
+    ];
+    text.push_str(&markdown(&head, found.rows.iter().map(cells)));
     text.push_str(
         "\nThe cube tells the most. What is computed from it, decomposition included, tells at most as much: temperature and lighting together are \
          all that a decomposition keeps once the material is known, and each of them is less.\n",

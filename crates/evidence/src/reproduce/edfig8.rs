@@ -12,7 +12,7 @@ use hadar_estimate::segmentation::{Agreement, Rule};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::plot::Pictures;
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 
 const SCENES: [(&str, &str); 4] = [
     ("street", include_str!("scenes/edfig8_street.toml")),
@@ -111,15 +111,21 @@ fn iou(agreement: &Agreement) -> String {
 }
 
 fn overview(scenes: &[Scene]) -> String {
-    let mut out = String::from(
-        "| scene | right material | found, regions | found, Algorithm 4 | there, regions | there, Algorithm 4 | brightness | brightness, of its own |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
-    for scene in scenes {
-        let cells = scene.agreements.each_ref().map(iou).join(" | ");
-        out.push_str(&format!("| {} | {} | {cells} |\n", scene.name, share(scene.right_material)));
-    }
-    out
+    let head = [
+        "scene",
+        "right material",
+        "found, regions",
+        "found, Algorithm 4",
+        "there, regions",
+        "there, Algorithm 4",
+        "brightness",
+        "brightness, of its own",
+    ];
+    let row = |scene: &Scene| {
+        let start = [scene.name.to_string(), share(scene.right_material)];
+        start.into_iter().chain(scene.agreements.each_ref().map(iou))
+    };
+    markdown(&head, scenes.iter().map(row))
 }
 
 fn lines(scenes: &[Scene]) -> Vec<Line> {

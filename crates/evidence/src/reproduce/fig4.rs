@@ -15,7 +15,7 @@ use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range;
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 use hadar_scenario::RangeScenario;
 use hadar_scenario::examples::{STREET, STREET_AT_ONE_TEMPERATURE};
 use hadar_simulate::draws::{Draws, generator};
@@ -100,10 +100,7 @@ fn dependence() -> Result<(Table, String)> {
         .replace("lines = [330]", "lines = [80]");
     let mut table =
         Table::new(["changed", "thermal_image_m", "heat_cube_m", "scattered_as_measured_m", "gain"]);
-    let mut text = String::from(
-        "What the gain depends on (bounds on the road, median; pixels of 48 um, one thing changed at a time):\n\n\
-         | changed | thermal image | scattered, as if measured | gain |\n|---|---|---|---|\n",
-    );
+    let mut rows = Vec::new();
     for (what, from, to) in [
         ("nothing", "", ""),
         ("car and person at 21 degC", "\"37 degC\"", "\"21 degC\""),
@@ -124,14 +121,11 @@ fn dependence() -> Result<(Table, String)> {
         let mut row = vec![what.to_owned()];
         row.extend([thermal, error(Signal::HeatCube), alone, thermal / alone].map(number));
         table.push(row);
-        text.push_str(&format!(
-            "| {what} | {} | {} | {} |\n",
-            length(thermal),
-            length(alone),
-            significant(thermal / alone, 2)
-        ));
+        rows.push([what.to_owned(), length(thermal), length(alone), significant(thermal / alone, 2)]);
     }
-    Ok((table, text))
+    let head = ["changed", "thermal image", "scattered, as if measured", "gain"];
+    let text = "What the gain depends on (bounds on the road, median; pixels of 48 um, one thing changed at a time):\n\n";
+    Ok((table, text.to_owned() + &markdown(&head, rows)))
 }
 
 fn of(result: &Ranging, object: &str, signal: Signal) -> Option<SignalBounds> {

@@ -21,7 +21,7 @@ use hadar_report::decompose::{Clahe, brightness};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Picture, Series};
 use hadar_report::range::picture_plot;
-use hadar_report::table::{Table, number};
+use hadar_report::table::{Table, markdown, number};
 use hadar_simulate::matching::block::Block;
 use hadar_simulate::matching::dense::disparity_map;
 use hadar_simulate::matching::{Search, StereoPair};
@@ -348,34 +348,38 @@ fn text(rows: &[Row], noise: &str) -> String {
     let mut text = format!(
         "Error of the disparity, and of the depth, over pixels that both cameras see (`all`), and over those in the lower half of the image (`ground`). \
          Accuracy: share of them within half a pixel, and within one; density: share of the image with a match. Bound: median over the windows, by what \
-         the image tells. Noise of a pixel in all bands: {noise}.\n\n\
-         | exposure | image | region | mean (px) | RMSE (px) | median (px) | within 0.5, 1 px | density | Abs_Rel | RMSE (m) | RMSE_log | δ1 | bound (px) |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+         the image tells. Noise of a pixel in all bands: {noise}.\n\n"
     );
-    for row in rows {
-        let s = |x: f64| significant(x, 3);
-        let depth = row.depth.map_or([f64::NAN; 4], |d| [d.abs_rel, d.rmse_m, d.rmse_log, d.delta[0]]).map(s);
-        text.push_str(&format!(
-            "| {} | {} | {} | {} | {} | {} | {}, {} | {} | {} | {} | {} | {} | {} |\n",
-            row.exposure,
-            row.image,
-            row.region,
-            s(row.mean_px),
-            s(row.rmse_px),
-            s(row.median_px),
-            s(row.within[0]),
-            s(row.within[1]),
-            s(row.density),
-            depth[0],
-            depth[1],
-            depth[2],
-            depth[3],
-            row.bound_px.map_or_else(
-                || "-".to_owned(),
-                |x| if x.is_finite() { significant(x, 2) } else { "none".to_owned() }
-            )
-        ));
-    }
+    let s = |x: f64| significant(x, 3);
+    let cells = |row: &Row| {
+        let depth = row.depth.map_or([f64::NAN; 4], |d| [d.abs_rel, d.rmse_m, d.rmse_log, d.delta[0]]);
+        let bound = row.bound_px.map_or_else(
+            || "-".to_owned(),
+            |x| if x.is_finite() { significant(x, 2) } else { "none".to_owned() },
+        );
+        let mut cells = [row.exposure, row.image, row.region].map(str::to_owned).to_vec();
+        cells.extend([row.mean_px, row.rmse_px, row.median_px].map(s));
+        cells.extend([row.within.map(s).join(", "), s(row.density)]);
+        cells.extend(depth.map(s));
+        cells.push(bound);
+        cells
+    };
+    let head = [
+        "exposure",
+        "image",
+        "region",
+        "mean (px)",
+        "RMSE (px)",
+        "median (px)",
+        "within 0.5, 1 px",
+        "density",
+        "Abs_Rel",
+        "RMSE (m)",
+        "RMSE_log",
+        "δ1",
+        "bound (px)",
+    ];
+    text.push_str(&markdown(&head, rows.iter().map(cells)));
     text.push_str(
         "\nThe heat cube tells the most, but this matcher does not make that of it: correlation of all bands lets the noise of 54 in with slopes that \
          nearly all go together, which their sum, the thermal image, has without. Decomposition spreads what the cube tells of a place over temperature and \

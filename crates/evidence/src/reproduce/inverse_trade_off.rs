@@ -19,7 +19,7 @@ use hadar::statistics::Statistics;
 use hadar_estimate::decompose::{Light, Method, Options, Setting, decompose_by, inverse_error};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Series, Style};
-use hadar_report::table::Table;
+use hadar_report::table::{Table, markdown};
 use hadar_simulate::draws::{Draws, generator};
 
 const MATERIAL: &str = "quartz";
@@ -217,15 +217,20 @@ fn lines(rows: &[Row]) -> Vec<Line> {
 }
 
 fn text(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "The inverse functions S46 and S47, which the paper calls a trade-off of resolution and noise without computing it, quartz known, \
-         1e8 photons of a pixel:\n\n| band, cm^-1 | bias, K | noise, K | noise of the best pair alone, K | drawn, K rms | Cramér–Rao bound, K |\n|---|---|---|---|---|---|\n",
-    );
-    for row in rows {
-        text.push_str(&format!(
-            "| {} | {:.3} | {:.3} | {:.3} | {:.3} | {:.4} |\n",
-            row.step_cm1, row.bias_k, row.sigma_k, row.pair_sigma_k, row.drawn_k, row.bound_k
-        ));
-    }
-    text
+    let cells = |row: &Row| {
+        let kelvin = [row.bias_k, row.sigma_k, row.pair_sigma_k, row.drawn_k].map(|k| format!("{k:.3}"));
+        let bound = format!("{:.4}", row.bound_k);
+        std::iter::once(row.step_cm1.to_string()).chain(kelvin).chain([bound])
+    };
+    let head = [
+        "band, cm^-1",
+        "bias, K",
+        "noise, K",
+        "noise of the best pair alone, K",
+        "drawn, K rms",
+        "Cramér–Rao bound, K",
+    ];
+    let text = "The inverse functions S46 and S47, which the paper calls a trade-off of resolution and noise without computing it, quartz known, \
+                1e8 photons of a pixel:\n\n";
+    text.to_owned() + &markdown(&head, rows.iter().map(cells))
 }

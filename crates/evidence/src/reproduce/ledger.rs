@@ -1,6 +1,6 @@
 //! The ledger: what the paper says, what comes out here, and why they differ where they do.
 
-use hadar_report::table::Table;
+use hadar_report::table::{self, Table};
 
 /// Whether a value of the paper comes out again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -108,12 +108,6 @@ pub(crate) fn table(lines: &[Line]) -> Table {
 /// The ledger in Markdown.
 #[must_use]
 pub(crate) fn markdown(lines: &[Line]) -> String {
-    let mut text = String::from(
-        "| place | quantity | paper | ours | tolerance | verdict | why |\n|---|---|---|---|---|---|---|\n",
-    );
-    for line in lines {
-        let cells = line.cells().map(|cell| cell.replace('|', "\\|"));
-        text.push_str(&format!("| {} |\n", cells.join(" | ")));
-    }
-    text
+    let head = ["place", "quantity", "paper", "ours", "tolerance", "verdict", "why"];
+    table::markdown(&head, lines.iter().map(Line::cells))
 }

@@ -4,6 +4,7 @@ use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
+use crate::words::air_ranging::{one_reading, window, without_sky};
 use hadar::words::length;
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 
@@ -13,14 +14,6 @@ fn distance() -> Axis {
 
 fn of(curve: &[AirPoint], what: impl Fn(&AirPoint) -> Option<f64>) -> Vec<f64> {
     curve.iter().map(|point| what(point).unwrap_or(f64::NAN)).collect()
-}
-
-fn subtitle(result: &AirRanging) -> String {
-    let unknown = match result.sight.unknown.is_empty() {
-        true => "nothing unknown besides".to_owned(),
-        false => format!("unknown besides: {}", result.sight.unknown.join(", ")),
-    };
-    format!("{}, {} bands, one pixel, one reading; {unknown}.", result.camera, result.bands.len())
 }
 
 /// The least error over distances, with less unknown, and estimates beside it.
@@ -52,18 +45,15 @@ pub fn error_over_distance(result: &AirRanging) -> Plot {
             of(curve, |point| point.sigma_others_known_m),
         ),
     ];
-    let mut table = Table::new(["distance_m"].into_iter().chain(columns.iter().map(|column| column.1)));
-    for (i, x) in x.iter().enumerate() {
-        let row: Vec<f64> = std::iter::once(*x).chain(columns.iter().map(|column| column.4[i])).collect();
-        table.push_numbers(&row);
-    }
+    let of_table = columns.iter().map(|column| (column.1, &column.4));
+    let table = Table::of_columns(std::iter::once(("distance_m", &x)).chain(of_table));
     let name = &result.target;
     let mut figure = LineFigure::new(
         format!("How well the distance of {name} can be read from the air"),
         distance(),
         Axis::log("error of the distance (m)"),
     )
-    .subtitle(subtitle(result));
+    .subtitle(one_reading(result));
     for (label, _, style, colour, values) in columns {
         if values.iter().any(|value| value.is_finite()) {
             figure = figure.series(Series::line(label, x.clone(), values).style(style).colour(colour));
@@ -104,20 +94,13 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
     let (own, edge) = (inside(false), inside(true));
     let signed = of(curve, |point| point.bias_without_sky_m);
     let bound = of(curve, |point| point.sigma_m);
-    let mut table = Table::new(["distance_m", "bias_without_sky_m", "sigma_m"]);
-    for (i, x) in x.iter().enumerate() {
-        table.push_numbers(&[*x, signed[i], bound[i]]);
-    }
+    let table = Table::of_columns([("distance_m", &x), ("bias_without_sky_m", &signed), ("sigma_m", &bound)]);
     let mut figure = LineFigure::new(
         "What a model loses that leaves out the sky",
         distance(),
         Axis::log("error of the distance (m)"),
     )
-    .subtitle(format!(
-        "Distance of {} from counts without noise, by a model that takes all of its light for its own emission. Size of the error; its sign \
-         is in the table.",
-        result.target
-    ))
+    .subtitle(without_sky(&result.target))
     .series(Series::line("off, without sky", x.clone(), own).style(Style::Marked).colour(1))
     .series(Series::line("bound, with sky", x.clone(), bound).colour(0))
     .series(Series::line("the distance itself", x.clone(), x.clone()).style(Style::Dotted).colour(6));
@@ -147,30 +130,23 @@ pub fn information(result: &AirRanging) -> Plot {
         None => format!("{what}, none"),
     };
     let tau: Vec<f64> = result.bands.iter().map(|band| band.transmittance).collect();
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "information_per_m2",
-        "information_others_known_per_m2",
-        "transmittance",
-        "share_of_path",
-        "counts",
-    ]);
-    for band in &result.bands {
-        table.push_numbers(&[
-            band.center_cm1,
-            band.information_per_m2,
-            band.information_others_known_per_m2,
-            band.transmittance,
-            band.share_of_path,
-            band.counts,
-        ]);
-    }
+    let table = Table::of_numbers(
+        &result.bands,
+        &[
+            ("wavenumber_cm1", &|band| band.center_cm1),
+            ("information_per_m2", &|band| band.information_per_m2),
+            ("information_others_known_per_m2", &|band| band.information_others_known_per_m2),
+            ("transmittance", &|band| band.transmittance),
+            ("share_of_path", &|band| band.share_of_path),
+            ("counts", &|band| band.counts),
+        ],
+    );
     let figure = LineFigure::new(
         format!("What each band tells of {} m", significant(result.at.distance_m, 3)),
         wavenumber_axis(&x),
         Axis::linear("share of the information (%)"),
     )
-    .subtitle(subtitle(result))
+    .subtitle(one_reading(result))
     .series(
         Series::line(label("all else known", result.at.sigma_others_known_m), x.clone(), known)
             .style(Style::Dashed)
@@ -191,23 +167,13 @@ pub fn stereo(result: &AirRanging) -> Option<Plot> {
     let curve = &result.curve;
     let x: Vec<f64> = curve.iter().map(|point| point.distance_m).collect();
     let (air, stereo) = (of(curve, |point| point.sigma_window_m), of(curve, |point| point.sigma_stereo_m));
-    let mut table = Table::new(["distance_m", "sigma_air_m", "sigma_stereo_m"]);
-    for (i, x) in x.iter().enumerate() {
-        table.push_numbers(&[*x, air[i], stereo[i]]);
-    }
+    let table = Table::of_columns([("distance_m", &x), ("sigma_air_m", &air), ("sigma_stereo_m", &stereo)]);
     let mut figure = LineFigure::new(
         "A window by the air and by stereo",
         distance(),
         Axis::log("error of the distance (m)"),
     )
-    .subtitle(format!(
-        "Window of {} × {} pixels of {}. Stereo: baseline {} m, texture {} % from pixel to pixel.",
-        spec.window[0],
-        spec.window[1],
-        result.target,
-        significant(spec.baseline_m, 2),
-        significant(100.0 * spec.texture, 2)
-    ))
+    .subtitle(window(&spec, &result.target))
     .series(Series::line("air", x.clone(), air).colour(0))
     .series(Series::line("stereo", x, stereo).style(Style::Dashed).colour(1));
     if let Some(crossing) = result.stereo_crossing_m {

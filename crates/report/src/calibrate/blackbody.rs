@@ -1,19 +1,16 @@
 //! A spectrometer calibrated by blackbodies, as files: response and offset with their errors, the radiance of a scene, a picture.
 
+pub use crate::words::calibrate::blackbody::text;
+
 use crate::bundle::Bundle;
 use crate::cube_format::CubeFormat;
 use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, LineFigure, Panel, Series, Style};
 use crate::table::{Table, number};
-use crate::text::footing::{ASSUMPTIONS, warnings};
+use crate::words::calibrate::blackbody::in_the_middle;
 use hadar::error::Result;
-use hadar::words::{quantity, significant};
 use hadar_study::calibrate::{BlackbodyFound, ChannelRow};
-use std::fmt::Write as _;
 use std::path::Path;
-
-/// What the samples of a calibrated cube are, as a decomposition scenario has it.
-const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
 ///
@@ -47,118 +44,23 @@ pub fn bundle(result: &BlackbodyFound, format: CubeFormat, out: &Path) -> Result
     Ok(bundle)
 }
 
-/// The whole answer.
-#[must_use]
-pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
-    let worst = result.worst;
-    let [noise, temperature] = worst.sigma_common_k;
-    let milli = |kelvin: f64| if kelvin > 0.0 { quantity(kelvin, "K") } else { "0".to_owned() };
-    let mut out = format!(
-        "{} channels calibrated by {} blackbodies: radiances as at {} to {} K err by up to {} in all pixels alike, and by up to {} in \
-         each sample{}.\n\n",
-        result.channels.len(),
-        result.temperature_shifts_k.len(),
-        significant(worst.range_k[0], 4),
-        significant(worst.range_k[1], 4),
-        milli(noise.hypot(temperature)),
-        milli(worst.noise_k),
-        match &result.scene {
-            Some(scene) => format!(
-                "; those of the scene by up to {} in all pixels alike",
-                milli(scene.sigma_common_most_k)
-            ),
-            None => String::new(),
-        }
-    );
-    let _ = writeln!(
-        out,
-        "Common to all pixels (rms of the channels, as at {} K, where it is the largest)",
-        significant(worst.at_k, 4)
-    );
-    let _ = writeln!(out, "  by noise of the blackbodies' readings      {}", milli(noise));
-    let _ = writeln!(out, "  by their temperatures, in all channels     {}\n", milli(temperature));
-    let _ = writeln!(out, "Blackbodies                stated to        found off by");
-    for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
-        let found = match result.chi_square_reduced {
-            Some(_) if spec.error_k() > 0.0 => format!("{:.1} +- {:.1} mK", 1e3 * shift, 1e3 * sigma),
-            _ => "-".to_owned(),
-        };
-        let _ = writeln!(
-            out,
-            "  {:>10}             {:>10}        {found}",
-            format!("{:.2} K", spec.temperature_k),
-            spec.uncertainty_k.map_or_else(|| "not stated".to_owned(), milli)
-        );
-    }
-    match result.chi_square_reduced {
-        Some(chi) => {
-            let _ = writeln!(out, "  about straight lines: chi2/nu {}", significant(chi, 3));
-        }
-        None => out.push_str(
-            "  two blackbodies fit any line: nothing tells whether response or temperatures are right\n",
-        ),
-    }
-    if let Some(scene) = &result.scene {
-        let file = format.file("radiance");
-        let mean = |values: &[f64]| {
-            let square: f64 = values.iter().map(|x| x * x).sum();
-            (square / values.len().max(1) as f64).sqrt()
-        };
-        let _ = writeln!(
-            out,
-            "\nScene: {file} ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
-             by band in sigma.csv, by sample in {}; for a decomposition\n  [cube]\n  data = \"{file}\"\n  unit = \
-             \"{RADIANCE}\"\n  noise = \"sigma.csv\"\n  (a number as noise leaves out what all pixels have in common, up to {}: only sigma.csv carries it)",
-            significant(mean(&scene.sigma_noise), 2),
-            significant(mean(&scene.sigma_common_most), 2),
-            format.file("sigma_common"),
-            milli(scene.sigma_common_most_k),
-        );
-    }
-    let _ = writeln!(
-        out,
-        "\n{ASSUMPTIONS}\n  C = R B(T) + xi in every channel, R and xi {}; blackbodies of emissivity 1 that fill the view; noise of {} (unit of the cubes) \
-         in every sample.\n",
-        match &result.scene {
-            Some(scene) if scene.sigma_pixel.is_some() =>
-                "of each pixel its own (errors of its own calibration in sigma_pixel.npy)",
-            _ => "the same in all pixels",
-        },
-        significant(result.scenario.noise, 3)
-    );
-    out + &warnings(&result.warnings)
-}
-
 fn response(result: &BlackbodyFound) -> Table {
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "response",
-        "response_sigma",
-        "response_sigma_by_noise",
-        "response_sigma_by_temperatures",
-        "offset",
-        "offset_sigma",
-        "covariance",
-        "sigma_middle_by_noise_k",
-        "sigma_middle_by_temperatures_k",
-        "noise_middle_k",
-    ]);
-    for row in &result.channels {
-        table.push_numbers(&[
-            row.wavenumber_cm1,
-            row.response,
-            row.response_error.sigma(),
-            row.response_error.var_noise.sqrt(),
-            row.response_error.var_temperature.sqrt(),
-            row.offset,
-            row.offset_error.sigma(),
-            row.covariance,
-            row.sigma_middle_k[0],
-            row.sigma_middle_k[1],
-            row.noise_middle_k,
-        ]);
-    }
-    table
+    Table::of_numbers(
+        &result.channels,
+        &[
+            ("wavenumber_cm1", &|row| row.wavenumber_cm1),
+            ("response", &|row| row.response),
+            ("response_sigma", &|row| row.response_error.sigma()),
+            ("response_sigma_by_noise", &|row| row.response_error.var_noise.sqrt()),
+            ("response_sigma_by_temperatures", &|row| row.response_error.var_temperature.sqrt()),
+            ("offset", &|row| row.offset),
+            ("offset_sigma", &|row| row.offset_error.sigma()),
+            ("covariance", &|row| row.covariance),
+            ("sigma_middle_by_noise_k", &|row| row.sigma_middle_k[0]),
+            ("sigma_middle_by_temperatures_k", &|row| row.sigma_middle_k[1]),
+            ("noise_middle_k", &|row| row.noise_middle_k),
+        ],
+    )
 }
 
 fn temperatures(result: &BlackbodyFound) -> Table {
@@ -176,26 +78,21 @@ fn figure(result: &BlackbodyFound) -> Plot {
     let (noise, temperature) =
         (of(&|row| 1e3 * row.sigma_middle_k[0]), of(&|row| 1e3 * row.sigma_middle_k[1]));
     let own = of(&|row| 1e3 * row.noise_middle_k);
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "response_over_peak",
-        "common_by_noise_mk",
-        "common_by_temperatures_mk",
-        "noise_of_a_sample_mk",
+    let response = of(&|row| row.response / peak);
+    let table = Table::of_columns([
+        ("wavenumber_cm1", &x),
+        ("response_over_peak", &response),
+        ("common_by_noise_mk", &noise),
+        ("common_by_temperatures_mk", &temperature),
+        ("noise_of_a_sample_mk", &own),
     ]);
-    for (c, row) in result.channels.iter().enumerate() {
-        table.push_numbers(&[x[c], row.response / peak, noise[c], temperature[c], own[c]]);
-    }
     let figure = LineFigure::new(
         "Response by blackbodies, and the errors it leaves",
         wavenumber_axis(&x),
         Axis::linear("response (peak: 1)"),
     )
-    .subtitle(format!(
-        "Errors of a radiance as temperature, at {} K in the middle of the blackbodies.",
-        significant(result.middle_k, 4)
-    ))
-    .series(Series::line("response", x.clone(), of(&|row| row.response / peak)).colour(0))
+    .subtitle(in_the_middle(result))
+    .series(Series::line("response", x.clone(), response).colour(0))
     .lower(
         Panel::new(Axis::log("error (mK)"))
             .series(Series::line("common to all pixels, by noise", x.clone(), noise).colour(1))

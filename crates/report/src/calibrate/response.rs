@@ -1,15 +1,16 @@
 //! The response of a camera behind a filter wheel, as files: values with their covariance, η, radiances of a scene, pictures.
 
+pub use crate::words::calibrate::response::text;
+
 use crate::bundle::Bundle;
 use crate::figures::{Plot, wavenumber_axis};
-use crate::plot::{Axis, Band, LineFigure, Picture, Pictures, Series, Style};
+use crate::plot::{Axis, Band, LineFigure, Pictures, Series, Style};
+use crate::shown::Shown;
 use crate::table::{Table, number, optional};
-use crate::text::footing::{ASSUMPTIONS, warnings};
+use crate::words::calibrate::response::SHADED;
 use hadar::error::Result;
-use hadar::words::{quantity, significant};
 use hadar_formats::cube::{npy_map, write_npy_to};
 use hadar_study::calibrate::{ResponseFound, ResponseRow};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
@@ -45,113 +46,18 @@ pub fn bundle(result: &ResponseFound, out: &Path) -> Result<Bundle> {
     Ok(bundle)
 }
 
-/// The whole answer.
-#[must_use]
-pub fn text(result: &ResponseFound) -> String {
-    let values = result.response.len();
-    let known = result.scenario.response.known;
-    let headline = match result.misfit {
-        true => {
-            "The readings do not fit a response, so that no error or interval below holds (see the warning).\n"
-        }
-        false => "",
-    };
-    let mut out = format!(
-        "{headline}Of {values} response values the readings determine {}; the rest is the {} curve and that responses are smooth.\n\n",
-        result.determined,
-        if result.scenario.response.typical.is_some() { "typical" } else { "level" }
-    );
-    let peak = result.response.iter().map(|row| row.response).fold(0.0, f64::max);
-    let relative = |of: &dyn Fn(&ResponseRow) -> f64| {
-        let square: f64 = result.response.iter().map(|row| (of(row) / peak).powi(2)).sum();
-        100.0 * (square / values.max(1) as f64).sqrt()
-    };
-    let _ = writeln!(
-        out,
-        "  determined: directions known to a tenth of the peak by the readings alone (numerical rank {})",
-        result.rank
-    );
-    let _ = writeln!(
-        out,
-        "  with smoothness: {} numbers are the readings' own; values {} of the peak (rms; beforehand {} %)",
-        significant(result.effective, 3),
-        match result.misfit {
-            true => "known to no stated share".to_owned(),
-            false => format!("known to {} %", significant(relative(&|row| row.sigma), 2)),
-        },
-        significant(relative(&|row| row.sigma_beforehand), 2)
-    );
-    let _ = match result.chi_square_reduced {
-        Some(chi) => writeln!(
-            out,
-            "  readings about the fit: chi2/nu {} (nu {})",
-            significant(chi, 3),
-            significant(result.freedom, 3)
-        ),
-        None => writeln!(
-            out,
-            "  readings about the fit: the unknowns fit any readings, so that nothing tests them"
-        ),
-    };
-    let _ = writeln!(
-        out,
-        "  unit of the response: counts (unit of the cubes) per photon s^-1 m^-2 sr^-1; its peak {}",
-        significant(peak, 3)
-    );
-    if let (Some([low, high]), Some(sigma)) = (result.eta_range, result.eta_sigma) {
-        let _ = writeln!(
-            out,
-            "  relative transmittance of the wheel: {} to {}, each pixel to {}",
-            significant(low, 3),
-            significant(high, 3),
-            significant(sigma, 2)
-        );
-    }
-    if let Some(scene) = &result.scene {
-        out.push_str("\nScene: radiance.npy, mean photon radiance over filter and response (photons s^-1 m^-2 sr^-1 per cm^-1)\n");
-        let width = result.filters.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(6);
-        let _ = writeln!(
-            out,
-            "  {:width$}  {:>18}  {:>20}",
-            "filter", "noise of a sample", "common to all pixels"
-        );
-        for (q, name) in result.filters.iter().enumerate() {
-            let [noise, common] = [scene.sigma_noise[q], scene.sigma_common[q]].map(|x| significant(x, 2));
-            let _ = writeln!(out, "  {name:width$}  {noise:>18}  {common:>20}");
-        }
-    }
-    let _ = writeln!(
-        out,
-        "\n{ASSUMPTIONS}\n  an offset for each filter that stays the same; blackbodies of emissivity 1 that fill the view; noise of {} (unit of the \
-         cubes) in every sample\n  known beforehand: scale to {} %, shape to {} % of the peak, correlated over {}\n",
-        significant(result.scenario.noise, 3),
-        significant(100.0 * known.scale, 2),
-        significant(100.0 * known.shape, 2),
-        quantity(known.correlation_cm1, "cm^-1")
-    );
-    out + &warnings(&result.warnings)
-}
-
 fn response(result: &ResponseFound) -> Table {
-    let mut table = Table::new([
-        "wavenumber_cm1",
-        "response",
-        "sigma",
-        "sigma_beforehand",
-        "sigma_readings_alone",
-        "typical",
-    ]);
-    for row in &result.response {
-        table.push(vec![
-            number(row.wavenumber_cm1),
-            number(row.response),
-            number(row.sigma),
-            number(row.sigma_beforehand),
-            optional(row.sigma_readings_alone),
-            number(row.typical),
-        ]);
-    }
-    table
+    Table::of(
+        &result.response,
+        &[
+            ("wavenumber_cm1", &|row| number(row.wavenumber_cm1)),
+            ("response", &|row| number(row.response)),
+            ("sigma", &|row| number(row.sigma)),
+            ("sigma_beforehand", &|row| number(row.sigma_beforehand)),
+            ("sigma_readings_alone", &|row| optional(row.sigma_readings_alone)),
+            ("typical", &|row| number(row.typical)),
+        ],
+    )
 }
 
 fn square(result: &ResponseFound, values: &[f64]) -> Table {
@@ -188,20 +94,23 @@ fn figure(result: &ResponseFound) -> Plot {
         result.response.iter().map(|row| pick(row) / peak).collect::<Vec<f64>>()
     };
     let (values, sigma, typical) = (of(&|row| row.response), of(&|row| row.sigma), of(&|row| row.typical));
-    let mut table = Table::new(["wavenumber_cm1", "response_over_peak", "low_95", "high_95", "typical"]);
     let edge = |sign: f64| -> Vec<f64> {
         values.iter().zip(&sigma).map(|(value, sigma)| value + sign * 1.96 * sigma).collect()
     };
     let (low, high) = (edge(-1.0), edge(1.0));
-    for j in 0..x.len() {
-        table.push_numbers(&[x[j], values[j], low[j], high[j], typical[j]]);
-    }
+    let table = Table::of_columns([
+        ("wavenumber_cm1", &x),
+        ("response_over_peak", &values),
+        ("low_95", &low),
+        ("high_95", &high),
+        ("typical", &typical),
+    ]);
     let figure = LineFigure::new(
         format!("Response: {} of {} values are determined by the readings", result.determined, x.len()),
         wavenumber_axis(&x),
         Axis::linear("response (peak: 1)"),
     )
-    .subtitle("Shaded: 95 %, of the readings together with what is known beforehand.")
+    .subtitle(SHADED)
     .band(Band::new("95 %", x.clone(), low, high).colour(1))
     .series(Series::line("known beforehand", x.clone(), typical).style(Style::Dashed).colour(6))
     .series(Series::line("estimated", x, values).style(Style::Marked).colour(1));
@@ -209,20 +118,9 @@ fn figure(result: &ResponseFound) -> Plot {
 }
 
 fn vignette(result: &ResponseFound, eta: &[f64]) -> Plot {
-    let [rows, columns] = result.size;
-    let stride = rows.max(columns).div_ceil(WIDEST);
-    let mut table = Table::new(["row", "column", "eta"]);
-    let mut shown = Vec::new();
-    for row in (0..rows).step_by(stride) {
-        for column in (0..columns).step_by(stride) {
-            let value = eta[row * columns + column];
-            table.push(vec![row.to_string(), column.to_string(), number(value)]);
-            shown.push(value);
-        }
-    }
-    let figure = Pictures::new(
-        "Relative transmittance of the filter wheel",
-        vec![Picture::new("η", Axis::linear("η (1 at the centre)"), columns.div_ceil(stride), shown)],
-    );
+    let shown = Shown::within(result.size, WIDEST);
+    let axis = Axis::linear("η (1 at the centre)");
+    let (table, pictures) = shown.layers(vec![("eta", "η", axis, shown.values(|at| eta[at]))]);
+    let figure = Pictures::new("Relative transmittance of the filter wheel", pictures);
     Plot { name: "eta".into(), figure: figure.into(), table }
 }

@@ -1,17 +1,17 @@
 //! A destriped cube as files: the cube, what was taken out with its errors, pictures before and after.
 
+pub use crate::words::calibrate::stripes::text;
+
 use crate::bundle::Bundle;
 use crate::cube_format::CubeFormat;
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
+use crate::words::calibrate::stripes::of_band;
 use hadar::error::Result;
-use hadar::words::{significant, whole};
 use hadar_estimate::calibrate::Why;
 use hadar_formats::cube::npy_map;
 use hadar_study::calibrate::{Samples, StripesFound};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Largest picture, pixels.
@@ -50,69 +50,6 @@ pub fn bundle(result: &StripesFound, format: CubeFormat, out: &Path) -> Result<B
     Ok(bundle)
 }
 
-/// The whole answer.
-#[must_use]
-pub fn text(result: &StripesFound) -> String {
-    let found = &result.destriped;
-    let name = found.axis.name();
-    let all = found.lines * found.bands;
-    let places = |lines: &[usize]| -> String {
-        let shown: Vec<String> = lines.iter().take(10).map(usize::to_string).collect();
-        shown.join(", ") + if lines.len() > 10 { ", …" } else { "" }
-    };
-    let alike = match found.left.as_slice() {
-        [] => String::new(),
-        left => format!(
-            "{} {name} ({}, counted from 0) are off in all bands alike and left as they are: in_all_bands = true takes them as stripes",
-            whole(left.len() as u64),
-            places(left)
-        ),
-    };
-    let untold = found.kept.iter().filter(|kept| !matches!(kept.why, Why::Dead | Why::Missing)).count();
-    let single = match untold {
-        0 => String::new(),
-        untold => format!(
-            "{} {name} of single bands look off and are left, as they may be the scene's (warnings below)",
-            whole(untold as u64)
-        ),
-    };
-    let also: Vec<String> = [alike, single].into_iter().filter(|text| !text.is_empty()).collect();
-    let also = also.join("; ");
-    let mut out = match result.striped {
-        0 if !also.is_empty() => format!("Nothing was corrected: {also}.\n\n"),
-        0 => {
-            format!("No stripes: none of {} {name} is off in any of {} bands.\n\n", found.lines, found.bands)
-        }
-        striped => format!(
-            "{} of {} {name} (of {} bands) are striped, off by {} % of their level (rms); corrected, an error of {} % is left, common to \
-             the pixels of a line{}.\n\n",
-            whole(striped as u64),
-            whole(all as u64),
-            found.bands,
-            significant(100.0 * result.off_relative, 2),
-            significant(100.0 * result.left_relative, 2),
-            if also.is_empty() { String::new() } else { format!("; {also}") }
-        ),
-    };
-    out += &read_as(&result.read);
-    let least = found.detectable.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = found.detectable.iter().copied().fold(0.0, f64::max);
-    let _ = writeln!(
-        out,
-        "  lines, each alone among clean ones, that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they are\n  \
-         nor are lines side by side, or at the ends of the image, that are off in all bands: nothing tells them from the scene",
-        significant(least, 2),
-        significant(most, 2)
-    );
-    let _ = writeln!(
-        out,
-        "  all lines that are not striped are bit by bit those of the cube\n\n{ASSUMPTIONS}\n  A striped line reads g x + o along its whole \
-         length, gains are 1 +- {}; the clean lines beside it say what it should read.\n",
-        significant(result.scenario.stripes.gain_deviation, 2)
-    );
-    out + &warnings(&result.warnings)
-}
-
 /// What is no clean line and was left.
 fn left(result: &StripesFound) -> Table {
     let mut table = Table::new(["line", "band", "why", "off_at_level"]);
@@ -131,31 +68,20 @@ fn left(result: &StripesFound) -> Table {
 }
 
 fn stripes(result: &StripesFound) -> Table {
-    let mut table = Table::new([
-        "line",
-        "band",
-        "gain",
-        "gain_sigma",
-        "offset",
-        "offset_sigma",
-        "level",
-        "off_at_level",
-        "off_sigma",
-    ]);
-    for stripe in &result.destriped.stripes {
-        let numbers = [
-            stripe.gain,
-            stripe.sigma_gain,
-            stripe.offset,
-            stripe.sigma_offset,
-            stripe.level,
-            stripe.off,
-            stripe.sigma,
-        ];
-        let places = [stripe.line, stripe.band].map(|place| place.to_string());
-        table.push(places.into_iter().chain(numbers.map(number)).collect());
-    }
-    table
+    Table::of(
+        &result.destriped.stripes,
+        &[
+            ("line", &|stripe| stripe.line.to_string()),
+            ("band", &|stripe| stripe.band.to_string()),
+            ("gain", &|stripe| number(stripe.gain)),
+            ("gain_sigma", &|stripe| number(stripe.sigma_gain)),
+            ("offset", &|stripe| number(stripe.offset)),
+            ("offset_sigma", &|stripe| number(stripe.sigma_offset)),
+            ("level", &|stripe| number(stripe.level)),
+            ("off_at_level", &|stripe| number(stripe.off)),
+            ("off_sigma", &|stripe| number(stripe.sigma)),
+        ],
+    )
 }
 
 /// The band of the most stripes, before, after, and what was taken out.
@@ -187,10 +113,6 @@ fn before_and_after(result: &StripesFound) -> Plot {
     for ((row, column), (before, after)) in shown.iter().zip(before.iter().zip(&after)) {
         table.push(vec![row.to_string(), column.to_string(), number(*before), number(*after)]);
     }
-    let part = match (high, wide) == (rows, columns) {
-        true => String::new(),
-        false => format!(" The middle {high} × {wide} pixels of {rows} × {columns}."),
-    };
     let figure = Pictures::new(
         "A cube and its stripes",
         vec![
@@ -199,10 +121,7 @@ fn before_and_after(result: &StripesFound) -> Plot {
             Picture::new("taken out", Axis::linear("sample"), wide, taken),
         ],
     )
-    .subtitle(format!(
-        "Band {} (counted from 0), that of the most stripes, in the unit of the cube.{part}",
-        result.shown_band
-    ))
+    .subtitle(of_band(result.shown_band, [high, wide], [rows, columns]))
     .no_value("no sample");
     Plot { name: "before_and_after".into(), figure: figure.into(), table }
 }

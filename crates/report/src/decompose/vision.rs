@@ -5,10 +5,11 @@
 //! ([`super::equalise`]), so that hues are seen in the shade too; where the lighting is unknown it is in the middle.
 
 use super::equalise::{Clahe, Curves, LIMIT};
-use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, Rgb, image_png};
-use crate::table::{Table, number};
+use crate::shown::Shown;
+use crate::table::{Table, optional};
+use crate::words::decompose::brightness_said;
 use hadar::error::Result;
 use hadar_scenario::decompose::Brightness;
 use hadar_study::decompose::{Block, Decomposed, ranked};
@@ -186,14 +187,13 @@ fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> Rgb {
     (part(5.0), part(3.0), part(1.0))
 }
 
-/// The picture beside the thermal image, the material alone and the texture alone, of the pixels that are shown: every `stride`th row and
-/// column.
+/// The picture beside the thermal image, the material alone and the texture alone, of the pixels that are shown.
 #[must_use]
-pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
+pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
     let result = brush.result;
-    let (places, wide) = places(result.shape, stride);
+    let (places, wide) = (shown.places(), shown.wide());
     let asked = &result.vision;
-    let vision = brush.vision(shown, places.iter().map(|[_, _, at]| *at));
+    let vision = brush.vision(pixels, places.iter().map(|[_, _, at]| *at));
     let take = |all: &[f32], is_shown: fn(f32) -> bool| -> Vec<f64> {
         all.iter().map(|x| if is_shown(*x) { f64::from(*x) } else { f64::NAN }).collect()
     };
@@ -209,8 +209,8 @@ pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
         .unwrap_or(0.0);
     let ramp = [PALEST, 1.0].map(|saturation| rgb(ramp_hue, saturation, 1.0));
     let unit = "(photons s⁻¹ m⁻² sr⁻¹)";
-    let thermal = take(&shown.thermal, f32::is_finite);
-    let texture = take(&shown.texture, |x| x > 0.0);
+    let thermal = take(&pixels.thermal, f32::is_finite);
+    let texture = take(&pixels.texture, |x| x > 0.0);
     let mut pictures = vec![
         Picture::painted(
             "TeX vision: hue the material, saturation the temperature, brightness the texture",
@@ -256,34 +256,22 @@ pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
     if result.decided < result.pixels {
         keys.push((plain(&None), "undecided, or not told".to_owned()));
     }
-    let mut table = Table::new([
-        "row",
-        "column",
-        "hue_deg",
-        "saturation",
-        "brightness",
-        "texture_photons_s1_m2_sr1",
-        "thermal_photons_s1_m2_sr1",
-    ]);
-    for (i, [row, column, _]) in places.iter().enumerate() {
-        let of = |values: &[f64], i: usize| values.get(i).map_or_else(String::new, |x| number(*x));
-        table.push(vec![
-            row.to_string(),
-            column.to_string(),
-            vision.hue_deg.get(i).copied().flatten().map_or_else(String::new, number),
-            of(&vision.saturation, i),
-            of(&vision.brightness, i),
-            of(&texture, i),
-            of(&thermal, i),
-        ]);
-    }
-    let said = format!(
-        "Brightness: logarithm of the texture, equalised in tiles (contrast limited to {LIMIT}); {} where the lighting is unknown. \
-         Temperatures beyond the scale have the colours of its ends. Every pixel is in tex_vision_image.png, texture.npy and thermal.npy.",
-        number(0.5 * (DARKEST + 1.0)),
+    let at = |values: &[f64], i: usize| optional(values.get(i).copied());
+    let rows: Vec<(usize, &[usize; 3])> = places.iter().enumerate().collect();
+    let table = Table::of(
+        &rows,
+        &[
+            ("row", &|(_, [row, ..])| row.to_string()),
+            ("column", &|(_, [_, column, _])| column.to_string()),
+            ("hue_deg", &|(i, _)| optional(vision.hue_deg.get(*i).copied().flatten())),
+            ("saturation", &|(i, _)| at(&vision.saturation, *i)),
+            ("brightness", &|(i, _)| at(&vision.brightness, *i)),
+            ("texture_photons_s1_m2_sr1", &|(i, _)| at(&texture, *i)),
+            ("thermal_photons_s1_m2_sr1", &|(i, _)| at(&thermal, *i)),
+        ],
     );
     let figure = Pictures::new("Material, temperature and texture of the heat cube", pictures)
-        .subtitle(said)
+        .subtitle(brightness_said(LIMIT, 0.5 * (DARKEST + 1.0)))
         .no_value("nothing is told, or no light")
         .keys(keys);
     Plot { name: "tex_vision".into(), figure: figure.into(), table }

@@ -218,7 +218,7 @@ fn decided(answer: &Map<String, Value>) -> Option<Vec<Value>> {
 }
 
 /// Text without quotes, anything else as JSON has it.
-pub(super) fn plain(value: &Value) -> String {
+pub(crate) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 

@@ -5,6 +5,21 @@ pub(super) fn wide(name: &str, content: &str) -> String {
     format!("<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{name}\">\n{content}</div>\n")
 }
 
+/// A table whose first column has the heads of the rows; other cells are as they are in HTML.
+pub(super) fn table(
+    attributes: &str,
+    caption: &str,
+    (first, others): (&str, &str),
+    rows: impl Iterator<Item = (String, String)>,
+) -> String {
+    let rows = rows.map(|(first, others)| format!("<tr><th scope=\"row\">{first}</th>{others}</tr>\n"));
+    format!(
+        "<table{attributes}>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">{first}</th>{others}</tr></thead>\n<tbody>\n\
+         {}</tbody>\n</table>\n",
+        rows.collect::<String>()
+    )
+}
+
 /// Text that can stand anywhere in the page.
 pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());

@@ -1,9 +1,9 @@
 //! A table of a page. One too wide for paper is set in several, each with the first column; of a long one the beginning.
 
-use super::element::{escape, wide};
+use super::element::{self, escape, wide};
 use crate::table::Table;
 use crate::text::significant;
-use std::fmt::Write as _;
+use crate::words::page;
 
 /// Most columns beside the first.
 const COLUMNS: usize = 6;
@@ -30,33 +30,24 @@ pub(super) fn html(name: &str, table: &Table) -> String {
     let numeric = (0..header.len()).map(|i| rows.iter().all(|row| is_number(text(row, i))));
     let classes: Vec<&str> = numeric.map(|yes| if yes { " class=\"number\"" } else { "" }).collect();
     if header.len() > WIDEST {
-        let name = escape(name);
-        return format!("<p><code>{name}</code> has {} columns, too many for a page.</p>\n", header.len());
+        return format!("<p>{}</p>\n", page::too_wide(&escape(name), header.len()));
     }
     let parts = others.len().div_ceil(COLUMNS).max(1);
     let mut out = String::new();
     for part in 0..parts {
         let columns = part * COLUMNS + 1..(part * COLUMNS + 1 + COLUMNS).min(header.len());
-        let more = if parts > 1 { format!(", part {} of {parts}", part + 1) } else { String::new() };
-        let cut = match rows.len() {
-            all if all > ROWS => format!(": the first {ROWS} of {all} rows"),
-            _ => String::new(),
+        let shown = page::shown(part + 1, parts, ROWS, rows.len());
+        let caption = format!("{} ({}){shown}", escape(&title(name)), escape(name));
+        let heads: String = columns
+            .clone()
+            .map(|i| format!("<th scope=\"col\"{}>{}</th>", classes[i], head(&header[i])))
+            .collect();
+        let cells = |row: &Vec<String>| {
+            let cell = |i: usize| format!("<td{}>{}</td>", classes[i], escape(&short(text(row, i))));
+            (escape(&short(text(row, 0))), columns.clone().map(cell).collect())
         };
-        let caption = format!("{} ({}){more}{cut}", escape(&title(name)), escape(name));
-        let heads =
-            columns.clone().map(|i| format!("<th scope=\"col\"{}>{}</th>", classes[i], head(&header[i])));
-        let mut html = format!(
-            "<table>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">{}</th>{}</tr></thead>\n<tbody>\n",
-            head(first),
-            heads.collect::<String>()
-        );
-        for row in rows.iter().take(ROWS) {
-            let cells =
-                columns.clone().map(|i| format!("<td{}>{}</td>", classes[i], escape(&short(text(row, i)))));
-            let first = escape(&short(text(row, 0)));
-            let _ = writeln!(html, "<tr><th scope=\"row\">{first}</th>{}</tr>", cells.collect::<String>());
-        }
-        out.push_str(&wide(&caption, &(html + "</tbody>\n</table>\n")));
+        let rows = rows.iter().take(ROWS).map(cells);
+        out.push_str(&wide(&caption, &element::table("", &caption, (&head(first), &heads), rows)));
     }
     out
 }

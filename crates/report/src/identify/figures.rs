@@ -12,6 +12,7 @@ use crate::plot::{
 };
 use crate::table::{Table, number, optional};
 use crate::text::significant;
+use crate::words::identify::captions;
 use hadar::order;
 use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
@@ -57,11 +58,7 @@ pub(super) fn distance_matrix(matrix: &Matrix) -> Plot {
         ("alternative", names),
         (Axis::log(unit).range(low, high.max(2.0 * low)), values),
     )
-    .subtitle(format!(
-        "By the {} distance; every target in the scenario's state.{}",
-        matrix.by,
-        if with_camera { " A pair counts as told apart only if it is both ways." } else { "" }
-    ))
+    .subtitle(captions::all_against_all(matrix.by, with_camera))
     .groups(starts);
     if with_camera {
         let required = significant(matrix.required_distance, 3);
@@ -90,7 +87,7 @@ pub(super) fn minimum_distances(matrix: &Matrix) -> Plot {
     let axis = if with_camera { "least statistical distance d" } else { "least distance (per √photon)" };
     let mut figure =
         NamedValues::new("Each material and the one hardest to tell it from", names, Axis::log(axis))
-            .subtitle(format!("By the {} distance; every target in the scenario's state.", matrix.by))
+            .subtitle(captions::all_against_all(matrix.by, false))
             .series(NamedSeries::new("", targets.iter().map(|target| value(target)).collect()));
     if with_camera {
         figure = figure.threshold(matrix.required_distance, "required").below("not identifiable");
@@ -125,11 +122,7 @@ pub(super) fn sample_spectra(spectra: &SampleSpectra, bands: &Bands, limiting: &
         _ => "What is read of each material".into(),
     };
     let mut figure = LineFigure::new(title, band_axis(bands), Axis::linear("mean counts in a band"))
-        .subtitle(format!(
-            "Above: means, all in the scenario's state. Below: the target and {limiting}, one reading of each drawn at random \
-             (seed {}), less the target's mean, and the mean that is to be seen in them.",
-            spectra.seed
-        ));
+        .subtitle(captions::readings(limiting, spectra.seed));
     for (i, (name, mean, _)) in shown.iter().enumerate() {
         let (x, y) = over_bands(bands, mean);
         figure = figure.series(Series::line(name, x, y).colour(i));
@@ -187,7 +180,7 @@ pub(super) fn distances(study: &Study, pairs: &[PairResult]) -> Plot {
     let axis = if with_camera { "statistical distance d" } else { "distance (per √photon)" };
     let mut figure =
         NamedValues::new(format!("How far {target} is from each alternative"), names, Axis::log(axis))
-            .subtitle(format!("By the {} distance, in the scenario's state.", by.name()))
+            .subtitle(captions::against_all(by.name()))
             .series(NamedSeries::new("", ranked.iter().map(|pair| value(pair)).collect()));
     if with_camera {
         figure = figure

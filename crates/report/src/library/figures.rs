@@ -1,12 +1,13 @@
 //! Pictures of a library out of a cube: emissivities with their errors, and the map of clusters.
 
 use crate::figures::{Plot, wavenumber_axis};
-use crate::plot::{Axis, Band, LineFigure, Picture, Pictures, Series};
+use crate::plot::{Axis, Band, LineFigure, Pictures, Series};
+use crate::shown::Shown;
 use crate::table::{Table, number};
+use crate::words::library as words;
+use crate::words::pictures::NOTHING_TOLD;
 use hadar_study::library::LibraryFound;
 
-/// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
-const WIDEST: usize = 320;
 /// Curves of a figure.
 const MOST: usize = 12;
 
@@ -25,14 +26,7 @@ pub(super) fn emissivities(result: &LibraryFound) -> Plot {
         wavenumber_axis(nu),
         Axis::linear("emissivity").range(0.0, 1.02),
     )
-    .subtitle(format!(
-        "Shaded: one standard deviation, with all temperatures and lightings unknown.{}",
-        if result.clusters.len() > MOST {
-            " The clusters of the most pixels; all are in library.csv."
-        } else {
-            ""
-        }
-    ));
+    .subtitle(words::one_deviation(result.clusters.len() > MOST));
     for (i, row) in shown.iter().enumerate() {
         let one = &row.cluster;
         let edge = |sign: f64| -> Vec<f64> {
@@ -50,23 +44,14 @@ pub(super) fn emissivities(result: &LibraryFound) -> Plot {
 }
 
 pub(super) fn maps(result: &LibraryFound) -> Plot {
-    let (rows, columns) = (result.shape.rows(), result.shape.columns());
-    let stride = columns.max(rows).div_ceil(WIDEST);
-    let shown: Vec<(usize, usize)> = (0..rows)
-        .step_by(stride)
-        .flat_map(|row| (0..columns).step_by(stride).map(move |column| (row, column)))
-        .collect();
-    let maps = &result.maps;
-    let take = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        shown.iter().map(|(row, column)| value(row * columns + column)).collect()
-    };
+    let (shown, maps) = (Shown::of(result.shape), &result.maps);
     let finite = |x: f32| if x.is_finite() { f64::from(x) } else { f64::NAN };
-    let layers = [
+    let (table, pictures) = shown.layers(vec![
         (
             "cluster",
             "Cluster",
             Axis::linear("number of the cluster"),
-            take(&|i| {
+            shown.values(|i| {
                 if maps.material[i] == u16::MAX { f64::NAN } else { f64::from(maps.material[i]) + 1.0 }
             }),
         ),
@@ -74,25 +59,11 @@ pub(super) fn maps(result: &LibraryFound) -> Plot {
             "temperature_k",
             "Temperature",
             Axis::linear("temperature (K)"),
-            take(&|i| finite(maps.temperature_k[i])),
+            shown.values(|i| finite(maps.temperature_k[i])),
         ),
-    ];
-    let mut table = Table::new(["row", "column"].into_iter().chain(layers.iter().map(|layer| layer.0)));
-    for (i, (row, column)) in shown.iter().enumerate() {
-        let values = layers.iter().map(|layer| number(layer.3[i]));
-        table.push([row.to_string(), column.to_string()].into_iter().chain(values).collect());
-    }
-    let wide = columns.div_ceil(stride);
-    let pictures =
-        layers.into_iter().map(|(_, title, axis, values)| Picture::new(title, axis, wide, values)).collect();
-    let every = match stride {
-        1 => String::new(),
-        stride => {
-            format!(" Every {stride}th row and column of {rows} × {columns}; all are in the NPY files.")
-        }
-    };
+    ]);
     let figure = Pictures::new("Clusters and temperatures by the library that was found", pictures)
-        .subtitle(format!("The most probable cluster of each pixel, and its temperature.{every}"))
-        .no_value("nothing is told");
+        .subtitle(words::most_probable(shown))
+        .no_value(NOTHING_TOLD);
     Plot { name: "clusters_map".into(), figure: figure.into(), table }
 }

@@ -1,15 +1,14 @@
 //! Pictures of the view and of its bounds, lines with their witnesses, errors of derivatives.
 
 use crate::figures::Plot;
-use crate::plot::{self, Axis, LineFigure, Panel, Picture, Pictures, Series, Style};
+use crate::plot::{Axis, LineFigure, Panel, Picture, Pictures, Series, Style};
 use crate::range::lines_table;
 use crate::table::{Table, number};
+use crate::words::range::captions;
 use hadar::error::Result;
 use hadar::ranging::derivative::{Derivative, Differentiator};
-use hadar_scenario::range::Demand;
 use hadar_study::range::{Line, PictureKind, Ranging, Signal, quantile};
 use std::f64::consts::PI;
-use std::fmt::Write as _;
 
 /// A picture's table holds so many of its columns at most: the maps themselves are in NPY files.
 const COLUMNS: usize = 80;
@@ -58,21 +57,12 @@ pub fn views(result: &Ranging) -> Option<Plot> {
     let pictures = pictures.into_iter().filter(|(_, picture)| {
         let flat = constant(&picture.values);
         if let Some(value) = flat {
-            let _ = write!(
-                said,
-                " {}: {} everywhere ({}).",
-                picture.title,
-                plot::number(value),
-                picture.colour.title
-            );
+            said += &captions::everywhere(&picture.title, value, &picture.colour.title);
         }
         flat.is_none() && picture.values.iter().any(|value| value.is_finite())
     });
     let pictures: Vec<_> = pictures.collect();
-    let subtitle = format!(
-        "Left camera, {} × {columns} pixels. Colours cover all but the lowest and highest percent of the values.{said}",
-        result.shape.rows()
-    );
+    let subtitle = captions::views([result.shape.rows(), columns], &said);
     let figure = |pictures| {
         Pictures::new("What the left camera sees", pictures).subtitle(subtitle.clone()).no_value("sky")
     };
@@ -128,22 +118,8 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
             (key, if with_depth { picture.boundary(beyond) } else { picture })
         })
         .collect();
-    let window = result.scenario.stereo.window;
-    let clipped = if with_depth {
-        " Colours end at the largest depth, beyond which an error is no depth at all."
-    } else {
-        ""
-    };
-    let missing = match without.as_slice() {
-        [] => String::new(),
-        names => format!(" Nothing at all is told by: {}.", names.join("; ")),
-    };
-    let subtitle = format!(
-        "Least error of windows of {} × {} pixels, at their centres in the left view. One colour scale for all.{clipped}{missing}",
-        window.rows(),
-        window.columns()
-    );
-    let meaning = format!("demanded error, {}; it is met on the darker side", demanded(demand));
+    let subtitle = captions::bounds(result.scenario.stereo.window, with_depth, &without);
+    let meaning = captions::boundary(demand);
     let figure = |pictures| {
         Pictures::new("How well depth can be measured", pictures)
             .subtitle(subtitle.clone())
@@ -151,14 +127,6 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
             .no_value("sky, not seen by both cameras, or no texture at all")
     };
     plot("bounds_map", figure, pictures, ([maps.rows.start, maps.columns.start], maps.step))
-}
-
-/// A demand in words.
-fn demanded(error: Demand) -> String {
-    match error {
-        Demand::Absolute(error_m) => format!("{} m", plot::number(error_m)),
-        Demand::Relative(share) => format!("{} % of the depth", plot::number(100.0 * share)),
-    }
 }
 
 /// Depths that block matching finds in one noisy pair.
@@ -191,9 +159,7 @@ pub fn matched_maps(result: &Ranging) -> Option<Plot> {
             .push(("depth_m_truth".to_owned(), Picture::new("True depth", axis(), columns, values.clone())));
     }
     let figure = |pictures| {
-        Pictures::new("Depth by matching", pictures)
-            .subtitle("Block matching of one noisy pair.")
-            .no_value("sky, or no match")
+        Pictures::new("Depth by matching", pictures).subtitle(captions::MATCHED).no_value("sky, or no match")
     };
     plot("matched", figure, pictures, ([0, 0], 1))
 }
@@ -269,19 +235,13 @@ fn line(row: usize, lines: Vec<&Line>, result: &Ranging) -> Plot {
     if let Some(line) = longest.filter(|_| depth) {
         let demand = result.scenario.requirement.error;
         let allowed = line.depth_m.iter().map(|depth_m| demand.at(*depth_m)).collect();
-        let label = format!("demanded: {}", demanded(demand));
+        let label = format!("demanded: {}", captions::demanded(demand));
         figure = figure.series(Series::line(label, x(line), allowed).style(Style::Dotted).colour(6));
     }
-    let mut said = "Lines: least error of an unbiased estimate.".to_owned();
     if witnessed {
-        said += " Points: root-mean-square error of matches in repeated draws of the noise; where they are guesses, the range \
-                 that is searched limits it. The views that are matched have no diffraction.";
         figure = figure.lower(bias);
     }
-    if !hopeless.is_empty() {
-        said += &format!(" More than {BEYOND} times the depth, and not drawn: {}.", hopeless.join("; "));
-    }
-    let figure = figure.subtitle(said);
+    let figure = figure.subtitle(captions::line(witnessed, BEYOND, &hopeless));
     Plot { name: format!("line_{row}").into(), figure: figure.into(), table: lines_table(lines) }
 }
 
@@ -298,9 +258,7 @@ pub fn derivative_errors() -> Result<Plot> {
         Axis::linear("spatial frequency (cycles per pixel)").range(0.0, 0.5),
         Axis::linear("slope found over true slope").range(0.0, 1.1),
     )
-    .subtitle(
-        "Lines: closed form. Points: measured on sinusoids. The information found is the square of this.",
-    );
+    .subtitle(captions::DERIVATIVES);
     let mut table = Table::new(["cycles_per_pixel", "derivative", "slope_found_over_true", "closed_form"]);
     for (colour, scheme) in Derivative::ALL.into_iter().enumerate() {
         let closed = omegas.iter().map(|omega| scheme.response(*omega)).collect::<Result<Vec<f64>>>()?;
@@ -374,14 +332,7 @@ fn plot(
         }
     }
     let mut figure = figure(pictures.into_iter().map(|(_, picture)| picture).collect());
-    if thinned > 1 {
-        let _ =
-            write!(figure.subtitle, " One in {thinned} rows and columns is shown; all are in the NPY files.");
-    }
-    if step > 1 {
-        let step = step * thinned;
-        let _ = write!(figure.subtitle, " The table beside holds one in {step} rows and columns.");
-    }
+    figure.subtitle += &captions::some_of(thinned, step);
     Some(Plot { name: name.into(), figure: figure.into(), table })
 }
 

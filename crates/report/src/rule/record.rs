@@ -10,6 +10,7 @@
 use crate::json;
 use crate::manifest::{Input, Provenance, SCHEMA, VERSION, sha256};
 use crate::words::Say;
+use crate::words::rule::{measure, together};
 use hadar::error::{Error, Result};
 use hadar_scenario::rule::Verdict;
 use hadar_study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
@@ -62,7 +63,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
         "sentence": answer.sentence.say(),
         "cameras": cameras.collect::<Vec<_>>(),
         "clauses": clauses,
-        "warnings": json::value(&super::text::together(answer))?,
+        "warnings": json::value(&together(answer))?,
         "inputs": json::value(&provenance.inputs)?,
     });
     if let Some(rule) = record.get_mut("rule").and_then(Value::as_object_mut).filter(|_| !set.is_empty()) {
@@ -74,7 +75,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
 fn of_clause(clause: &ClauseAnswer) -> Result<Value> {
     let (quantity, demanded) = match &clause.found {
         Found::Apart(apart) => ("statistical_distance", apart.requirement.distance),
-        Found::Measured(measured) => (super::measured::measure(measured.quantity), measured.demanded),
+        Found::Measured(measured) => (measure(measured.quantity), measured.demanded),
     };
     let lines = clause.lines().into_iter().enumerate().map(|(index, line)| of_line(clause, index, &line));
     Ok(json!({

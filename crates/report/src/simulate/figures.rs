@@ -14,52 +14,34 @@ const LIMIT_COLOUR: usize = 0;
 /// All experiments and classifiers as a table, a row each.
 #[must_use]
 pub fn simulation_table(result: &Simulation) -> Table {
-    let mut table = Table::new([
-        "photons",
-        "normalised_photons_n_d0_squared",
-        "gamma_per_band",
-        "statistical_distance",
-        "statistical_distance_local",
-        "limit_accuracy",
-        "limit_accuracy_many_photons",
-        "accuracy_promised_by_local_distance",
-        "classifier",
-        "accuracy",
-        "accuracy_low",
-        "accuracy_high",
-        "information_bits",
-        "share_of_photons_used",
-        "share_of_photons_used_low",
-        "share_of_photons_used_high",
-        "against_the_limit",
-        "training",
-    ]);
-    for point in &result.points {
-        for found in &point.performances {
-            let performance = &found.performance;
-            table.push(vec![
-                number(point.photons),
-                number(point.normalised_photons),
-                number(point.gamma),
-                number(point.statistical_distance),
-                number(point.statistical_distance_local),
-                optional(point.limit_accuracy),
-                number(point.limit_accuracy_normal),
-                number(point.local_accuracy),
-                performance.name(),
-                number(performance.accuracy),
-                number(performance.interval.low),
-                number(performance.interval.high),
-                optional(found.information_bits),
-                optional(found.photon_share),
-                optional(found.photon_share_low),
-                optional(found.photon_share_high),
-                found.standing.map_or("", |standing| standing.name()).into(),
-                performance.training.clone().unwrap_or_default(),
-            ]);
-        }
-    }
-    table
+    let rows: Vec<(&SimulatedPoint, &SimulatedPerformance)> = result
+        .points
+        .iter()
+        .flat_map(|point| point.performances.iter().map(move |found| (point, found)))
+        .collect();
+    Table::of(
+        &rows,
+        &[
+            ("photons", &|(point, _)| number(point.photons)),
+            ("normalised_photons_n_d0_squared", &|(point, _)| number(point.normalised_photons)),
+            ("gamma_per_band", &|(point, _)| number(point.gamma)),
+            ("statistical_distance", &|(point, _)| number(point.statistical_distance)),
+            ("statistical_distance_local", &|(point, _)| number(point.statistical_distance_local)),
+            ("limit_accuracy", &|(point, _)| optional(point.limit_accuracy)),
+            ("limit_accuracy_many_photons", &|(point, _)| number(point.limit_accuracy_normal)),
+            ("accuracy_promised_by_local_distance", &|(point, _)| number(point.local_accuracy)),
+            ("classifier", &|(_, found)| found.performance.name()),
+            ("accuracy", &|(_, found)| number(found.performance.accuracy)),
+            ("accuracy_low", &|(_, found)| number(found.performance.interval.low)),
+            ("accuracy_high", &|(_, found)| number(found.performance.interval.high)),
+            ("information_bits", &|(_, found)| optional(found.information_bits)),
+            ("share_of_photons_used", &|(_, found)| optional(found.photon_share)),
+            ("share_of_photons_used_low", &|(_, found)| optional(found.photon_share_low)),
+            ("share_of_photons_used_high", &|(_, found)| optional(found.photon_share_high)),
+            ("against_the_limit", &|(_, found)| found.standing.map_or("", |standing| standing.name()).into()),
+            ("training", &|(_, found)| found.performance.training.clone().unwrap_or_default()),
+        ],
+    )
 }
 
 /// What a figure of experiments over photons shows besides the points.
@@ -86,14 +68,11 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
         Axis::log("normalised photon number N d₀²"),
         information_axis("information log₂ 2P (bits)"),
     );
-    let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
     if points.len() > 2 {
-        let reach = |point: &SimulatedPoint, sign: f64| {
-            let p = limit_of(point);
-            // Two classes of so many test spectra each.
-            bits((p + sign * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()).clamp(0.5, 1.0))
+        let of = |point: &SimulatedPoint, sign: f64| {
+            bits((limit_of(point) + sign * 1.96 * spread(result, point)).clamp(0.5, 1.0))
         };
-        let edge = |sign: f64| points.iter().map(|point| reach(point, sign)).collect();
+        let edge = |sign: f64| points.iter().map(|point| of(point, sign)).collect();
         let label = "where 95 % of an ideal classifier's points lie";
         figure = figure.band(Band::new(label, x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
     }
@@ -141,12 +120,9 @@ fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
     let mut panel = Panel::new(Axis::linear("accuracy − limit (points)"));
     for result in std::iter::once(result).chain(other) {
         let x: Vec<f64> = result.points.iter().map(|point| point.normalised_photons).collect();
-        let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
-        let reach = |point: &SimulatedPoint| {
-            let p = limit_of(point);
-            100.0 * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()
+        let edge = |sign: f64| {
+            result.points.iter().map(|point| sign * (100.0 * 1.96 * spread(result, point))).collect()
         };
-        let edge = |sign: f64| result.points.iter().map(|point| sign * reach(point)).collect();
         if x.len() > 2 {
             panel = panel.band(Band::new("", x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
         }
@@ -193,6 +169,12 @@ fn series(result: &Simulation, place: usize, label: String) -> Series {
     };
     let x = result.points.iter().map(|point| point.normalised_photons).collect();
     Series::points(label, x, result.points.iter().map(of).collect())
+}
+
+/// The deviation of the accuracy of an ideal classifier: two classes of so many test spectra each.
+fn spread(result: &Simulation, point: &SimulatedPoint) -> f64 {
+    let (p, spectra) = (limit_of(point), result.spectra_per_class);
+    (p * (1.0 - p) / (2.0 * (spectra - 2 * (spectra / 4)) as f64)).sqrt()
 }
 
 fn limit_of(point: &SimulatedPoint) -> f64 {

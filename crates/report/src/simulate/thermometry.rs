@@ -1,18 +1,17 @@
 //! Thermometry against its bound: table, two plots and text.
 
 mod figures;
+pub(crate) mod rows;
 #[cfg(test)]
 mod tests;
-mod text;
 
+pub use crate::words::simulate::thermometry::text;
 pub use figures::{errors, rmse};
-pub use text::text;
 
 use crate::bundle::Bundle;
-use crate::table::{Table, number, optional};
+use crate::table::{Table, number, optional, yes_no};
 use hadar::error::Result;
-use hadar_simulate::efficiency::Errors;
-use hadar_study::{Reader, Study, Thermometry, ThermometryRow};
+use hadar_study::{Reader, Study, Thermometry};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
@@ -28,34 +27,32 @@ pub fn bundle(study: &Study, result: &Thermometry, out: &Path) -> Result<Bundle>
     Ok(bundle)
 }
 
-/// The reader that stands for what a spectrum tells: lighting unknown where the scenario has it so.
-fn decisive(row: &ThermometryRow) -> &Reader {
-    row.lighting_unknown.as_ref().unwrap_or(&row.lighting_known)
-}
+/// A column, with the cell of a reader in it.
+type OfReader = (&'static str, fn(&Reader) -> String);
+
+const OF_READER: [OfReader; 14] = [
+    ("bound_k", |reader| optional(reader.bound_k)),
+    ("bias_k", |reader| number(reader.errors.bias)),
+    ("bias_low_k", |reader| number(reader.errors.bias_interval.low)),
+    ("bias_high_k", |reader| number(reader.errors.bias_interval.high)),
+    ("rmse_k", |reader| number(reader.errors.rmse)),
+    ("rmse_low_k", |reader| number(reader.errors.rmse_interval.low)),
+    ("rmse_high_k", |reader| number(reader.errors.rmse_interval.high)),
+    ("variance_over_bound", |reader| optional(reader.efficiency.map(|e| e.ratio))),
+    ("variance_over_bound_low", |reader| optional(reader.efficiency.map(|e| e.ratio_interval.low))),
+    ("variance_over_bound_high", |reader| optional(reader.efficiency.map(|e| e.ratio_interval.high))),
+    ("verdict", |reader| reader.efficiency.map_or("", |e| e.verdict.text()).into()),
+    ("bound_applies", |reader| yes_no(reader.bound_applies)),
+    ("share_of_fits_at_edge", |reader| number(reader.at_edge)),
+    ("unconverged_fits", |reader| reader.unconverged.to_string()),
+];
 
 /// Everything, a row for every true temperature.
 #[must_use]
 pub fn table(result: &Thermometry) -> Table {
     let mut header = vec!["temperature_k".to_owned(), "photons".into()];
     for reader in ["lighting_known", "lighting_unknown"] {
-        for column in [
-            "bound_k",
-            "bias_k",
-            "bias_low_k",
-            "bias_high_k",
-            "rmse_k",
-            "rmse_low_k",
-            "rmse_high_k",
-            "variance_over_bound",
-            "variance_over_bound_low",
-            "variance_over_bound_high",
-            "verdict",
-            "bound_applies",
-            "share_of_fits_at_edge",
-            "unconverged_fits",
-        ] {
-            header.push(format!("{column}_{reader}"));
-        }
+        header.extend(OF_READER.map(|(column, _)| format!("{column}_{reader}")));
     }
     header.push("bound_lighting_within_range_k".into());
     for imager in ["fixed", "manual"] {
@@ -68,7 +65,7 @@ pub fn table(result: &Thermometry) -> Table {
     for row in &result.rows {
         let mut cells = vec![number(row.temperature_k), number(row.photons)];
         for reader in [Some(&row.lighting_known), row.lighting_unknown.as_ref()] {
-            cells.extend(reader_cells(reader));
+            cells.extend(OF_READER.map(|(_, cell)| reader.map(cell).unwrap_or_default()));
         }
         cells.push(optional(row.bound_range_k));
         for imager in [&row.fixed, &row.manual] {
@@ -81,33 +78,4 @@ pub fn table(result: &Thermometry) -> Table {
         table.push(cells);
     }
     table
-}
-
-fn reader_cells(reader: Option<&Reader>) -> Vec<String> {
-    let Some(reader) = reader else { return vec![String::new(); 14] };
-    let Errors { bias, bias_interval, rmse, rmse_interval, .. } = reader.errors;
-    let efficiency = reader.efficiency;
-    vec![
-        optional(reader.bound_k),
-        number(bias),
-        number(bias_interval.low),
-        number(bias_interval.high),
-        number(rmse),
-        number(rmse_interval.low),
-        number(rmse_interval.high),
-        optional(efficiency.map(|e| e.ratio)),
-        optional(efficiency.map(|e| e.ratio_interval.low)),
-        optional(efficiency.map(|e| e.ratio_interval.high)),
-        efficiency.map_or("", |e| e.verdict.text()).into(),
-        if reader.bound_applies { "yes" } else { "no" }.into(),
-        number(reader.at_edge),
-        reader.unconverged.to_string(),
-    ]
-}
-
-/// Rows by rising temperature.
-fn rising(result: &Thermometry) -> Vec<&ThermometryRow> {
-    let mut rows: Vec<&ThermometryRow> = result.rows.iter().collect();
-    rows.sort_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
-    rows
 }

@@ -5,6 +5,7 @@
 use crate::figures::{Plot, band_axis, information_axis, over_bands, wavenumber_axis};
 use crate::plot::{self, Axis, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use crate::table::Table;
+use crate::words::size::captions;
 use hadar::spectrum::Bands;
 use hadar_study::{InformationCurves, PhotonMap, Spectra, Surface};
 
@@ -21,13 +22,9 @@ const SEEN: f64 = 4e-3;
 pub fn emissivities(title: &str, wavenumbers_cm1: &[f64], surfaces: &[&Surface]) -> Vec<Plot> {
     let pictures = surfaces.len().div_ceil(CURVES);
     let one = |(i, drawn): (usize, &[&Surface])| {
-        let header = drawn.iter().map(|surface| format!("emissivity_{}", surface.name));
-        let mut table = Table::new(std::iter::once("wavenumber_cm1".to_owned()).chain(header));
-        for (j, &nu) in wavenumbers_cm1.iter().enumerate() {
-            let row: Vec<f64> =
-                std::iter::once(nu).chain(drawn.iter().map(|surface| surface.emissivity[j])).collect();
-            table.push_numbers(&row);
-        }
+        let curves = drawn.iter().map(|own| (format!("emissivity_{}", own.name), own.emissivity.as_slice()));
+        let nodes = ("wavenumber_cm1".to_owned(), wavenumbers_cm1);
+        let table = Table::of_columns(std::iter::once(nodes).chain(curves));
         let (low, high) = emissivity_range(drawn);
         let (name, title) = match pictures {
             1 => ("emissivities".into(), title.to_owned()),
@@ -74,43 +71,32 @@ fn emissivity_range(drawn: &[&Surface]) -> (f64, f64) {
 #[must_use]
 pub fn spectra(spectra: &Spectra, bands: &Bands, target: &str, alternative: &str) -> Plot {
     let unit = "photons_per_s_m2_sr_cm1";
-    let mut header = vec![
-        "wavenumber_cm1".to_owned(),
-        format!("target_{target}_{unit}"),
-        format!("nearest_{alternative}_{unit}"),
-        "relative_difference".to_owned(),
-    ];
     let noisy = !spectra.sigma.is_empty();
-    if noisy {
-        header.push("relative_sigma_shot".to_owned());
-        header.push("relative_sigma_camera".to_owned());
-    }
-    let mut table = Table::new(header);
     let difference: Vec<f64> =
         spectra.nearest.iter().zip(&spectra.target).map(|(nearest, own)| nearest / own - 1.0).collect();
     let share = |sigma: &[f64]| -> Vec<f64> {
         sigma.iter().zip(&spectra.target).map(|(sigma, own)| sigma / own).collect()
     };
     let (shot, total) = (share(&spectra.sigma_shot), share(&spectra.sigma));
-    for j in 0..spectra.wavenumber_cm1.len() {
-        let mut row = vec![spectra.wavenumber_cm1[j], spectra.target[j], spectra.nearest[j], difference[j]];
-        if noisy {
-            row.extend([shot[j], total[j]]);
-        }
-        table.push_numbers(&row);
+    let mut columns = vec![
+        ("wavenumber_cm1".to_owned(), &spectra.wavenumber_cm1),
+        (format!("target_{target}_{unit}"), &spectra.target),
+        (format!("nearest_{alternative}_{unit}"), &spectra.nearest),
+        ("relative_difference".to_owned(), &difference),
+    ];
+    if noisy {
+        columns.push(("relative_sigma_shot".to_owned(), &shot));
+        columns.push(("relative_sigma_camera".to_owned(), &total));
     }
+    let table = Table::of_columns(columns);
     let curve = |label: String, values: &[f64]| {
         let (x, y) = over_bands(bands, values);
         Series::line(label, x, y)
     };
     let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value.abs()).collect::<Vec<f64>>();
     let celsius = spectra.state.temperature_k - 273.15;
-    let lighting: Vec<String> = spectra.state.lighting.iter().map(|v| format!("{v:.3}")).collect();
-    let lit =
-        if lighting.is_empty() { String::new() } else { format!(" with lighting {}", lighting.join(", ")) };
     // What is left of a difference where there is none is rounding.
     let equal = difference.iter().all(|share| share.abs() < ROUNDING);
-    let alike = if equal { " The two spectra are equal: no camera tells them apart." } else { "" };
     let mut lower = Panel::new(Axis::log("share of the signal (%)"));
     if !equal {
         lower = lower.series(curve("|nearest − target|".into(), &percent(&difference)).colour(3));
@@ -131,7 +117,7 @@ pub fn spectra(spectra: &Spectra, bands: &Bands, target: &str, alternative: &str
         band_axis(bands),
         Axis::linear("photon radiance (photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹)"),
     )
-    .subtitle(format!("The nearest {alternative} is at {celsius:.2} °C{lit}.{alike}"))
+    .subtitle(captions::nearest(alternative, celsius, &spectra.state.lighting, equal))
     .series(curve(target.into(), &spectra.target).colour(0))
     .series(
         curve(format!("{alternative} at {celsius:.1} °C"), &spectra.nearest).style(Style::Dashed).colour(1),
@@ -174,26 +160,21 @@ pub fn identifiability(
     alternative: &str,
     marks: &InformationMarks,
 ) -> Plot {
-    let mut header = vec!["photons", "information_bits_nearest", "information_bits_local"];
     let with_camera = !curves.camera_bits.is_empty();
-    if with_camera {
-        header.push("information_bits_camera");
-    }
-    let mut table = Table::new(header);
-    for j in 0..curves.photons.len() {
-        let mut row = vec![curves.photons[j], curves.nearest_bits[j], curves.local_bits[j]];
-        if with_camera {
-            row.push(curves.camera_bits[j]);
-        }
-        table.push_numbers(&row);
-    }
+    let mut columns = vec![
+        ("photons", &curves.photons),
+        ("information_bits_nearest", &curves.nearest_bits),
+        ("information_bits_local", &curves.local_bits),
+    ];
+    columns.extend(with_camera.then_some(("information_bits_camera", &curves.camera_bits)));
+    let table = Table::of_columns(columns);
     let x = &curves.photons;
     let mut figure = LineFigure::new(
         format!("How many photons it takes to tell {target} from {alternative}"),
         Axis::log("photons at the detector"),
         information_axis("information (bits)"),
     )
-    .subtitle("Information log₂ 2P; 1 bit is certainty. The camera's photons grow with its exposure.")
+    .subtitle(captions::INFORMATION)
     .series(Series::line("shot-noise limit (nearest distance)", x.clone(), curves.nearest_bits.clone()))
     .series(
         Series::line("shot noise, local distance", x.clone(), curves.local_bits.clone()).style(Style::Dashed),
@@ -266,14 +247,7 @@ pub fn photon_map(
         (Axis::linear("thermal lighting factor V"), map.lightings.clone()),
         (Axis::log("required photons").range(low, high), map.photons.clone()),
     )
-    .subtitle(if top == 1.0 {
-        format!(
-            "By the {by} distance, shot noise only. In equilibrium (V = 1, T = {:.1} °C) no number of photons suffices.",
-            map.equilibrium_k - 273.15
-        )
-    } else {
-        format!("By the {by} distance, shot noise only. V is that of the first of the surroundings, the others' held.")
-    })
+    .subtitle(captions::photon_map(by, (top == 1.0).then_some(map.equilibrium_k - 273.15)))
     .no_value("no number of photons suffices")
     .contours(levels);
     let at_equilibrium = top == 1.0 && here == (map.equilibrium_k, 1.0);

@@ -8,6 +8,7 @@ use crate::plot::{self, Axis, Band, LineFigure, Marker, Rule, Series, Style};
 use crate::table::{Table, number, optional};
 use crate::text::{quantity, significant};
 use crate::words::shortfall::no;
+use crate::words::size::captions;
 use hadar::policy::{CapCode, Quantity, TradeOff, trade_off::Point};
 use hadar_study::Sizing;
 
@@ -50,7 +51,7 @@ pub(super) fn trade_off(curve: &TradeOff, result: &Sizing) -> Plot {
         Axis::log(axis(x)).range(from, to),
         Axis::log(axis(y)).range(bottom, top),
     )
-    .subtitle(subtitle(curve, camera));
+    .subtitle(captions::trade_off(curve, camera));
     let required = significant(curve.required, 3);
     let allowed = ends(curve, sy, |point| point.within_limits);
     let label =
@@ -198,16 +199,6 @@ fn extent(curve: &TradeOff, curves: &[&Vec<f64>], own: f64, scale: f64) -> (f64,
         .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
     let least = if curve.y == Quantity::Frames { 1.0f64.min(low) } else { low / MARGIN };
     (least.max(f64::MIN_POSITIVE), high * MARGIN)
-}
-
-fn subtitle(curve: &TradeOff, camera: &str) -> String {
-    let side = if curve.y.is_least() { "above" } else { "below" };
-    let allowed = curve.points.iter().any(|point| point.within_limits.is_some());
-    let none = if allowed { "" } else { " Nothing shown keeps within all limits." };
-    format!(
-        "All else as {camera} has it. There is signal enough {side} the curve; dotted and grey lines are limits beside shot \
-         noise, of which pixel = λF alone forbids nothing.{none}"
-    )
 }
 
 fn title(quantity: Quantity) -> String {

@@ -1,16 +1,16 @@
 //! Pictures of a sweep: a curve over one key, a heat map over two.
 
+use super::over::{Over, over};
 use super::swept::Swept;
 use crate::figures::Plot;
 use crate::plot::{Axis, HeatMap, LineFigure, Series, Style};
 use crate::table::Table;
+use crate::words::sweep::interpolated;
 use hadar::order;
 use hadar_study::sweep::{Cell, Input};
-use std::collections::BTreeSet;
 
-/// Most pictures, and most curves in one.
+/// Most pictures.
 const MOST_PICTURES: usize = 12;
-const MOST_CURVES: usize = 7;
 /// Values that spread over more than this are shown on a logarithmic scale.
 const WIDE: f64 = 100.0;
 /// Units as results have them in their names, the longer ones first.
@@ -30,56 +30,6 @@ const UNITS: [(&str, &str); 14] = [
     ("_m", "m"),
     ("_s", "s"),
 ];
-
-/// Over what pictures are drawn.
-enum Over<'a> {
-    /// A curve.
-    One(&'a Input),
-    /// A curve for each value of the second.
-    OneForEach(&'a Input, &'a Input),
-    /// A map.
-    Two(&'a Input, &'a Input),
-}
-
-/// Over what pictures of a sweep can be drawn, or why there are none.
-fn over(swept: &Swept) -> Result<Over<'_>, String> {
-    let rows = swept.gathered.rows();
-    let varied: Vec<&Input> = swept.gathered.inputs.iter().filter(|input| input.cells.len() > 1).collect();
-    if varied.is_empty() || varied.len() > 2 {
-        return Err(format!("{} keys vary, and pictures are over one or two", varied.len()));
-    }
-    let mut places = BTreeSet::new();
-    let apart =
-        (0..rows).all(|row| places.insert(varied.iter().map(|input| input.index(row)).collect::<Vec<_>>()));
-    if !apart || varied.iter().map(|input| input.cells.len()).product::<usize>() != rows {
-        return Err(
-            "the cases are no grid, which has every value of one key with every value of the other once"
-                .into(),
-        );
-    }
-    let is_number = |input: &&Input| input.cells.iter().all(|cell| cell.number().is_some());
-    let few = |input: &Input| match input.cells.len() {
-        count if count > MOST_CURVES => {
-            Err(format!("`{}` has {count} values, and a picture {MOST_CURVES} curves at most", input.key))
-        }
-        _ => Ok(()),
-    };
-    match varied.as_slice() {
-        [x] if is_number(x) => Ok(Over::One(x)),
-        [x, y] => match (is_number(x), is_number(y)) {
-            (true, true) => Ok(Over::Two(x, y)),
-            (true, false) => few(y).map(|()| Over::OneForEach(x, y)),
-            (false, true) => few(x).map(|()| Over::OneForEach(y, x)),
-            (false, false) => Err("the values of neither key are numbers in one unit".into()),
-        },
-        _ => Err("the values of the key are no numbers in one unit".into()),
-    }
-}
-
-/// Why a sweep of several rows has no pictures.
-pub(super) fn none(swept: &Swept) -> Option<String> {
-    over(swept).err().filter(|_| swept.gathered.rows() > 1)
-}
 
 /// The pictures of a sweep over one or two keys, one for each column of numbers that is drawn.
 pub(super) fn plots(swept: &Swept) -> Vec<Plot> {
@@ -165,7 +115,7 @@ fn map(name: &str, values: &[f64], x: &Input, y: &Input) -> Option<Plot> {
     // A margin of 1 is what is demanded.
     let contours = if name.ends_with("margin") { vec![1.0] } else { Vec::new() };
     let figure = figure
-        .subtitle(format!("{} x {} values; colours between them are interpolated", columns.len(), rows.len()))
+        .subtitle(interpolated(columns.len(), rows.len()))
         .no_value("no value, or the row failed")
         .contours(contours);
     Some(Plot { name: file_name("map", name).into(), figure: figure.into(), table })

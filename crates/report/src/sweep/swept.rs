@@ -16,7 +16,7 @@ pub struct Swept {
 
 impl Swept {
     /// Columns that are told of and drawn: those that were chosen, else what the question is about.
-    pub(super) fn drawn(&self) -> Vec<&str> {
+    pub(crate) fn drawn(&self) -> Vec<&str> {
         if !self.chosen.is_empty() {
             return self.gathered.names(&self.chosen).unwrap_or_default();
         }

@@ -1,7 +1,13 @@
 //! How well the distance can be read from the air, in a sentence.
 
+mod text;
+
+pub use text::text;
+pub(crate) use text::{one_reading, window, without_sky};
+
 use super::Say;
 use super::demand::error_of;
+use super::text::numbers::in_a_row;
 use hadar::words::{length, significant};
 use hadar_study::air_ranging::{AirFinding, BlindChange};
 
@@ -23,10 +29,9 @@ impl Say for AirFinding {
                     out += ", which is more than itself, so not at all,";
                 }
                 out += " from one pixel and one reading";
-                out += &match unknown.split_last() {
-                    None => ", all else known".into(),
-                    Some((last, [])) => format!(", {last} unknown"),
-                    Some((last, others)) => format!(", {} and {last} unknown", others.join(", ")),
+                out += &match in_a_row(unknown, "and") {
+                    none if none.is_empty() => ", all else known".into(),
+                    names => format!(", {names} unknown"),
                 };
                 if let Some((demand, _, met_between_m)) = demand {
                     out += &format!(" ({} demanded", error_of(*demand));

@@ -1,5 +1,9 @@
 //! What sizing practice says: what a number is worth, its caveat, and why there is none.
 
+mod text;
+
+pub(crate) use text::text;
+
 use super::Say;
 use hadar_study::companion::{Caveat, Kind, Unknown};
 

@@ -1,5 +1,10 @@
 //! How well depth can be measured, in a sentence.
 
+pub(crate) mod captions;
+mod text;
+
+pub use text::text;
+
 use super::Say;
 use super::demand::error_of;
 use hadar::words::{self, significant};

@@ -1,7 +1,24 @@
 //! What comes of a rule, in sentences.
 
+pub(crate) mod certificate;
+mod check;
+mod measured;
+mod sources;
+mod stand_in;
+mod stop;
+mod text;
+
+pub use check::check;
+pub(crate) use measured::measure;
+pub use sources::{sources, tests};
+pub(crate) use stand_in::below_a_line;
+pub use stand_in::stand_in;
+pub use text::text;
+pub(crate) use text::together;
+
 use super::Say;
 use super::probability::demanded;
+use super::text::numbers::in_a_row;
 use hadar::ranging::depth::Demand;
 use hadar::words::{self, length, quantity, significant};
 use hadar_scenario::{Units, interval};
@@ -221,11 +238,7 @@ fn with_spectra(envelope: &EnvelopeResult, names: &[String]) -> Vec<String> {
 
 /// `a, b or c`.
 fn either(names: &[String]) -> String {
-    match names {
-        [] => "nothing".into(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} or {last}", first.join(", ")),
-    }
+    if names.is_empty() { "nothing".into() } else { in_a_row(names, "or") }
 }
 
 /// The ranges of an envelope in a few words.
@@ -254,6 +267,19 @@ pub(crate) fn in_words_of_kind(kind: &str) -> &str {
         "depth-error" => "knows a distance",
         other => other,
     }
+}
+
+/// Below the margins over all clauses.
+pub(crate) const ALL_CLAUSES: &str =
+    "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails.";
+
+/// Below the margins of a rule that only tells materials apart.
+pub(crate) fn one_clause(distance: f64) -> String {
+    format!(
+        "Least over the envelope; demanded is d = {}. Full symbols meet the rule; a camera may have signal enough and \
+         still fail by its image.",
+        significant(distance, 3)
+    )
 }
 
 #[cfg(test)]

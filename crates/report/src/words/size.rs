@@ -1,8 +1,15 @@
 //! The verdict on a camera in a sentence.
 
+pub(crate) mod captions;
+pub mod rows;
+mod text;
+
+pub use text::text;
+
 use super::Say;
 use super::probability::{demanded, reliability};
 use super::shortfall::clauses;
+use super::text::numbers::in_a_row;
 use hadar::fisher::Nuisance;
 use hadar::words::significant;
 use hadar_scenario::DistanceKind;
@@ -171,10 +178,9 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
 /// Unknowns in a sentence, and the verb that goes with them.
 fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
     let names: Vec<&str> = unknowns.iter().map(|nuisance| nuisance.name()).collect();
-    match names.as_slice() {
-        [] => ("nothing".into(), "is"),
-        [one] => ((*one).into(), "is"),
-        [most @ .., last] => (format!("{} and {last}", most.join(", ")), "are"),
+    match names.len() {
+        0 => ("nothing".into(), "is"),
+        count => (in_a_row(&names, "and"), if count == 1 { "is" } else { "are" }),
     }
 }
 

@@ -1,14 +1,12 @@
 //! Parts of a study's page: tables, intervals in plots, errors.
 
 use hadar_report::plot::Series;
+use hadar_report::table::ruled_markdown;
 use hadar_simulate::sequential::Interval;
 
 /// A table in Markdown.
 pub(super) fn markdown<S: AsRef<str>>(header: &[&str], rows: &[Vec<S>]) -> String {
-    let line = |cells: Vec<&str>| format!("| {} |\n", cells.join(" | "));
-    let mut text = line(header.to_vec()) + &line(vec!["---"; header.len()]);
-    rows.iter().for_each(|row| text.push_str(&line(row.iter().map(AsRef::as_ref).collect())));
-    text
+    ruled_markdown(" --- ", header, rows)
 }
 
 /// Upright strokes from `low` to `high`, with gaps between them.

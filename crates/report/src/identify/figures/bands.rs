@@ -3,21 +3,19 @@
 use crate::figures::{Plot, band_axis, over_bands};
 use crate::plot::{Axis, Band, LineFigure, Series, Style};
 use crate::table::Table;
+use crate::words::identify::captions::SHARES;
 use hadar_study::{BandsThatMatter, Study};
 
 /// Share of every band in the distance, with the best bands and filters marked.
 #[must_use]
 pub(crate) fn bands_that_matter(found: &BandsThatMatter, study: &Study) -> Plot {
     let (x, bands, target) = (&found.center_cm1, study.bands(), &study.target().name);
-    let mut table = Table::new([
-        "center_cm1",
-        "share_of_local_distance_squared",
-        "lost_without_the_band",
-        "share_of_nearest_separation_squared",
+    let table = Table::of_columns([
+        ("center_cm1", x),
+        ("share_of_local_distance_squared", &found.share_local),
+        ("lost_without_the_band", &found.lost_without),
+        ("share_of_nearest_separation_squared", &found.share_nearest),
     ]);
-    for (i, x) in x.iter().enumerate() {
-        table.push_numbers(&[*x, found.share_local[i], found.lost_without[i], found.share_nearest[i]]);
-    }
     let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value).collect::<Vec<f64>>();
     let (local, nearest) = (percent(&found.share_local), percent(&found.share_nearest));
     let most = local.iter().chain(&nearest).copied().fold(0.0, f64::max);
@@ -27,7 +25,7 @@ pub(crate) fn bands_that_matter(found: &BandsThatMatter, study: &Study) -> Plot 
         band_axis(bands),
         Axis::linear("share of the squared distance (% per band)").range(0.0, top),
     )
-    .subtitle("What each band adds to the square of the distance once the unknowns are fitted.");
+    .subtitle(SHARES);
     // A choice that tells nothing is no best one.
     let choice = found.filters.as_ref().filter(|choice| choice.distance > 0.0);
     let filters = choice.map_or(&[][..], |choice| &choice.passbands);

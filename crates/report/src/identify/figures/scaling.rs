@@ -4,6 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
+use crate::words::identify::captions;
 use hadar_study::{Scaling, Study};
 
 /// Least distance against the size of the library; nothing where there is only one size.
@@ -13,31 +14,26 @@ pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Option<Plot> {
     if library.materials.len() < 2 {
         return None;
     }
-    let mut table = Table::new([
-        "materials".to_owned(),
-        format!("expected_minimum_{target}_per_sqrt_photon"),
-        "quantile_10_percent_per_sqrt_photon".into(),
-        "median_per_sqrt_photon".into(),
-        "quantile_90_percent_per_sqrt_photon".into(),
-    ]);
     let x: Vec<f64> = library.materials.iter().map(|&count| count as f64).collect();
-    for ((x, own), [low, middle, high]) in x.iter().zip(&library.target).zip(&library.quantiles) {
-        table.push_numbers(&[*x, *own, *low, *middle, *high]);
-    }
     let of = |i: usize| library.quantiles.iter().map(|q| q[i]).collect::<Vec<f64>>();
+    let table = Table::of_columns([
+        ("materials", &x),
+        (&format!("expected_minimum_{target}_per_sqrt_photon"), &library.target),
+        ("quantile_10_percent_per_sqrt_photon", &of(0)),
+        ("median_per_sqrt_photon", &of(1)),
+        ("quantile_90_percent_per_sqrt_photon", &of(2)),
+    ]);
     let figure = LineFigure::new(
         "More materials, less distance between them",
         Axis::log("materials in the library"),
         Axis::log("least distance (per √photon)"),
     )
-    .subtitle(format!(
-        "Expected {} distance from a target to the nearest of its alternatives, over all libraries of that size.{}",
-        scaling.by,
-        if of(2).iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
-    ))
+    .subtitle(captions::library_size(scaling.by, of(2).iter().all(|d| *d == 0.0)))
     .band(Band::new("10 % to 90 % of the targets", x.clone(), of(0), of(2)))
     .series(Series::line("median target", x.clone(), of(1)).style(Style::Marked).colour(0))
-    .series(Series::line(format!("target {target}"), x, library.target.clone()).style(Style::Marked).colour(1));
+    .series(
+        Series::line(format!("target {target}"), x, library.target.clone()).style(Style::Marked).colour(1),
+    );
     Some(Plot { name: "library_size".into(), figure: figure.into(), table })
 }
 
@@ -51,39 +47,28 @@ pub(crate) fn band_number(scaling: &Scaling, study: &Study) -> Option<Plot> {
     }
     let target = &study.target().name;
     let noisy = !bands.camera.is_empty();
-    let mut header = vec!["bands", "minimum_per_sqrt_photon", "median_per_sqrt_photon"];
-    if noisy {
-        header.extend(["minimum_camera_statistical_distance", "median_camera_statistical_distance"]);
-    }
-    let mut table = Table::new(header);
     let x: Vec<f64> = bands.bands.iter().map(|&count| count as f64).collect();
-    for (i, x) in x.iter().enumerate() {
-        let mut row = vec![*x, bands.shot_noise[i], bands.shot_noise_median[i]];
-        if noisy {
-            row.extend([bands.camera[i], bands.camera_median[i]]);
-        }
-        table.push_numbers(&row);
+    let mut columns = vec![
+        ("bands", &x),
+        ("minimum_per_sqrt_photon", &bands.shot_noise),
+        ("median_per_sqrt_photon", &bands.shot_noise_median),
+    ];
+    if noisy {
+        columns.push(("minimum_camera_statistical_distance", &bands.camera));
+        columns.push(("median_camera_statistical_distance", &bands.camera_median));
     }
+    let table = Table::of_columns(columns);
     // With a camera, what its photons make of them.
     let photons = study.counting().map(|counting| counting.counts_per_radiance * study.photon_radiance());
     let at_photons =
         |values: &[f64]| values.iter().map(|d| d * photons.unwrap_or(1.0).sqrt()).collect::<Vec<f64>>();
-    let left_out = match bands.left_out.as_slice() {
-        [] => String::new(),
-        [one] => format!(" Without {one}, which light alone does not tell as required."),
-        more => format!(" Without {} alternatives that light alone does not tell as required.", more.len()),
-    };
     let axis = if photons.is_some() { "statistical distance d" } else { "distance (per √photon)" };
     let mut figure = LineFigure::new(
         format!("How many bands it takes to tell {target} from the library"),
         Axis::log("number of bands"),
         Axis::log(axis),
     )
-    .subtitle(format!(
-        "Neighbouring bands joined. Photons are the same for any number of bands{}.{left_out}{}",
-        if noisy { "; the camera's noise is added to every reading" } else { "" },
-        if bands.shot_noise_median.iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
-    ));
+    .subtitle(captions::band_number(scaling));
     let shot = (at_photons(&bands.shot_noise), at_photons(&bands.shot_noise_median));
     let mut curves =
         vec![("least, shot noise alone", &shot.0, 0, false), ("median, shot noise alone", &shot.1, 0, true)];

@@ -2,9 +2,9 @@
 
 use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
-use crate::simulate::thermometry::{decisive, rising};
+use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::table::Table;
-use crate::text::significant;
+use crate::words::simulate::thermometry as words;
 use hadar_simulate::efficiency::Errors;
 use hadar_study::{Reader, Thermometry, ThermometryRow};
 
@@ -50,17 +50,14 @@ pub fn errors(result: &Thermometry) -> Plot {
     );
     let fixed = of(&|row| imager_error(row.fixed.errors, |errors| errors.bias));
     let manual = of(&|row| imager_error(row.manual.errors, |errors| errors.bias));
-    let mut table = Table::new([
-        "temperature_k",
-        "error_maximum_likelihood_k",
-        "error_maximum_likelihood_low_k",
-        "error_maximum_likelihood_high_k",
-        "error_fixed_emissivity_k",
-        "error_manual_emissivity_k",
+    let table = Table::of_columns([
+        ("temperature_k", &of(&|row| row.temperature_k)),
+        ("error_maximum_likelihood_k", &own),
+        ("error_maximum_likelihood_low_k", &low),
+        ("error_maximum_likelihood_high_k", &high),
+        ("error_fixed_emissivity_k", &fixed),
+        ("error_manual_emissivity_k", &manual),
     ]);
-    for (i, row) in rows.iter().enumerate() {
-        table.push_numbers(&[row.temperature_k, own[i], low[i], high[i], fixed[i], manual[i]]);
-    }
     // Millikelvin where that keeps the numbers short.
     let largest = low.iter().chain(&high).fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let (factor, unit) = if largest < 1.0 { (1e3, "mK") } else { (1.0, "K") };
@@ -79,13 +76,7 @@ pub fn errors(result: &Thermometry) -> Plot {
         true_temperature(),
         Axis::linear("mean error (K)"),
     )
-    .subtitle(format!(
-        "{}, {} spectra at each temperature, emissivity known to maximum likelihood. Below: maximum likelihood alone. Manual emissivity {} is calibrated at {:.1} °C.",
-        result.camera,
-        result.trials,
-        significant(result.manual.emissivity, 3),
-        result.calibrated_k - 273.15
-    ))
+    .subtitle(words::errors(result))
     .rule(Rule::horizontal(0.0, ""))
     .series(Series::points(label, celsius.clone(), own).colour(colour))
     .series(Series::line(fixed_label(result), celsius.clone(), fixed).style(FIXED.0).colour(FIXED.1))
@@ -147,17 +138,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
         true_temperature(),
         Axis::log("root mean squared error (K)"),
     )
-    .subtitle(format!(
-        "{}, {} spectra at each temperature. Bounds are Cramér-Rao's, for unbiased estimates.{}",
-        result.camera,
-        result.trials,
-        if rows.iter().any(|row| range_bound(row).is_some()) {
-            " Estimates that the range of the lighting holds are biased, and can err less than the bound for unknown lighting: \
-             to them the dotted one applies, for the error averaged over that range."
-        } else {
-            ""
-        }
-    ));
+    .subtitle(words::bounds(result, rows.iter().any(|row| range_bound(row).is_some())));
     for (label, style, colour, values) in columns {
         if values.iter().any(|value| value.is_finite()) {
             figure = figure.series(Series::line(label, celsius.clone(), values).style(style).colour(colour));

@@ -169,6 +169,13 @@ pub(super) fn readme(
         "median",
         "answered",
     ];
+    let decomposed = [("true library", &street.by_truth), ("library found", &street.by_found)];
+    let decomposed = decomposed.map(|(name, of)| {
+        let kelvin = [of.temperature_rms_k, of.right_temperature_rms_k].map(|k| significant(k, 3));
+        [name.to_owned(), percent(of.right)].into_iter().chain(kelvin)
+    });
+    let by_library =
+        ["decomposed by", "right material", "temperature error, all (K rms)", "of right ones (K rms)"];
     let known = bounds.known;
     let clusters: Vec<Vec<String>> = street
         .found
@@ -221,8 +228,7 @@ pub(super) fn readme(
          ## A library out of a cube\n\n\
          {} pixels of {} materials of a street, {PHOTONS:.1e} photons each in 54 bands, random temperatures (270 to 310 K) and shares of sky and ground. Counts of groups \
          from 2 to 10 are tried; {} are made.\n\n{}\n{}\n\
-         | decomposed by | right material | temperature error, all (K rms) | of right ones (K rms) |\n|---|---|---|---|\n\
-         | true library | {} | {} | {} |\n| library found | {} | {} | {} |\n\n\
+         {}\n\
          Emissivities are off by {} rms, {} of their stated deviations; {} lie within 1.96 of them.\n\n\
          ![Emissivities found](street_emissivities.png)\n\n\
          ## Ledger\n\n{}",
@@ -243,12 +249,7 @@ pub(super) fn readme(
             &["material", "pixels fitted", "mean emissivity ±", "temperatures in common ± (K)", "χ²/ν"],
             &clusters
         ),
-        percent(street.by_truth.right),
-        significant(street.by_truth.temperature_rms_k, 3),
-        significant(street.by_truth.right_temperature_rms_k, 3),
-        percent(street.by_found.right),
-        significant(street.by_found.temperature_rms_k, 3),
-        significant(street.by_found.right_temperature_rms_k, 3),
+        hadar_report::table::markdown(&by_library, decomposed),
         significant(street.emissivity_rms, 2),
         significant(street.over_sigma, 3),
         percent(street.covered),

@@ -1,0 +1,136 @@
+//! The noise of a camera, in words.
+
+use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
+use hadar::units::Dimension;
+use hadar::words::{significant, whole};
+use hadar_estimate::calibrate::Line;
+use hadar_study::calibrate::NoiseFound;
+use std::fmt::Write as _;
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &NoiseFound) -> String {
+    let mut out = format!("{}\n\n", sentence(result));
+    // The others are of the same shape.
+    out.extend(result.read.first().map(read_as));
+    let common = &result.transfer.common;
+    let _ = writeln!(out, "Variance of a sample of mean m (unit of the cube), all bands");
+    let line = |name: &str, [value, low, high]: [f64; 3]| {
+        let [low, high] = [low, high].map(|end| significant(end, 3));
+        format!("  {name:<34}  {:>10}   95 %: {low} to {high}\n", significant(value, 3))
+    };
+    let of = |value: f64, sigma: f64| {
+        let [low, high] = Line::interval(value, sigma);
+        [value, low, high]
+    };
+    out += &line("a, electronic noise (unit^2)", of(common.electronic, common.sigma_electronic));
+    out += &line("b, one photon (unit)", of(common.per_photon, common.sigma_per_photon));
+    if result.gain_deviation.is_some() {
+        out += &line("c, spread of gains squared", of(common.spread, common.sigma_spread));
+    }
+    out += &line("1/b, photons per unit", result.photons_per_unit);
+    out += &line("sqrt(a)/b, noise of a reading (e-)", result.noise_electrons);
+    let _ = writeln!(
+        out,
+        "  {}; own lines of all {} bands are in noise.csv\n",
+        match result.transfer.chi_square_reduced.is_nan() {
+            true => "whether bands have a line in common is not told by so few".to_owned(),
+            false => format!(
+                "bands about their common line: chi2/nu {}, by chance below {} (99.9 %)",
+                significant(result.transfer.chi_square_reduced, 2),
+                significant(result.transfer.chi_square_limit, 2)
+            ),
+        },
+        result.transfer.bands.len()
+    );
+    if let Some(camera) = camera(result) {
+        let _ = writeln!(out, "For a scenario\n{}", indented(&camera));
+    }
+    let _ = writeln!(out, "{ASSUMPTIONS}");
+    let how = match result.transfer.uneven {
+        None => format!(
+            "  {} frames of one scene that did not change; a pixel is compared with itself.",
+            result.frames
+        ),
+        Some(uneven) => format!(
+            "  one frame: neighbours of a row are compared, {} % of them, as many of bright as of dark ones, left out as different;\n  \
+             texture that three neighbouring bands share is taken out (at most {} of the noise of a band).",
+            significant(100.0 * uneven, 2),
+            significant(result.transfer.bands.iter().map(|band| band.texture).fold(0.0, f64::max), 2)
+        ),
+    };
+    let _ = writeln!(out, "{how}");
+    let _ = writeln!(
+        out,
+        "  {} % of the differences are left out as beyond 6 deviations; a band's sigma (sigma.csv) is that at the mean of all its samples.\n  \
+         Poissonian photons; a sample without light is {}.\n  \
+         Noise that is independent between pixels and bands, which is not checked: noise of whole rows or of all bands alike is in these\n  \
+         figures, but what follows from several samples by them errs by more than it says.\n",
+        significant(100.0 * result.transfer.outliers, 2),
+        significant(result.scenario.noise.dark_level, 4)
+    );
+    out + &warnings(&result.warnings)
+}
+
+fn sentence(result: &NoiseFound) -> String {
+    let [photons, low, high] = result.photons_per_unit;
+    let [noise, least, most] = result.noise_electrons;
+    if !result.usable {
+        return format!(
+            "No camera's figures follow from these {} samples: see the warnings; variances of the bands are measured all the same.",
+            whole((result.shape.len() * result.frames) as u64)
+        );
+    }
+    let half = |low: f64, high: f64| significant(0.5 * (high - low), 2);
+    if least <= 0.0 {
+        return format!(
+            "One unit of the cube is {} photons (+- {}), and the electronic noise of a reading is below {} electrons.",
+            significant(photons, 3),
+            half(low, high),
+            significant(most, 3)
+        );
+    }
+    format!(
+        "One unit of the cube is {} photons (+- {}), and the electronic noise of a reading is {} electrons (+- {}).",
+        significant(photons, 3),
+        half(low, high),
+        significant(noise, 3),
+        half(least, most)
+    )
+}
+
+/// The figures as a scenario's `[camera]` has them; none where they do not hold.
+pub(crate) fn camera(result: &NoiseFound) -> Option<String> {
+    if !result.usable {
+        return None;
+    }
+    let [photons, ..] = result.photons_per_unit;
+    let [noise, least, most] = result.noise_electrons;
+    let mut out = String::from("[camera]\n");
+    let _ = writeln!(out, "# one unit of the cube is {} photons", significant(photons, 4));
+    let _ = match least > 0.0 {
+        true => writeln!(out, "noise_electrons = {}", significant(noise, 3)),
+        // What is not seen is taken as large as it can be.
+        false => writeln!(out, "noise_electrons = {} # at most", significant(most, 3)),
+    };
+    let _ = match result.scenario.noise.exposure_s {
+        Some(exposure_s) => {
+            writeln!(out, "noise_exposure = \"{}\"", Dimension::Time.format(exposure_s))
+        }
+        None => writeln!(out, "# noise_exposure = \"…\": the exposure of these frames"),
+    };
+    Some(out)
+}
+
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// Below the picture of the photon transfer.
+pub(crate) fn each_point(common: &Line) -> String {
+    format!(
+        "Each point: samples of nearly one mean in one band; line: all bands together, one photon = {} unit(s), electronic noise {} electrons.",
+        significant(common.per_photon, 3),
+        significant(common.noise_electrons(), 3)
+    )
+}

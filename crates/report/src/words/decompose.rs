@@ -1,0 +1,314 @@
+//! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
+
+mod segmented;
+
+use crate::table::number;
+use crate::text::columns::{Columns, left, right};
+use crate::text::cubes::{AGAINST, lighting_total, noise};
+use crate::text::footing::{read_as, warnings};
+use crate::text::numbers::degrees;
+use hadar::words::{quantity, share, significant, whole};
+use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
+use hadar_scenario::decompose::CubeUnit;
+use hadar_study::decompose::{CORRELATION_CM1, Decomposed, TruthFound};
+use std::fmt::Write as _;
+
+/// Materials that are listed.
+const LISTED: usize = 12;
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &Decomposed) -> String {
+    let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
+    out.push_str(&found(result));
+    if let Some(segmentation) = &result.segmentation {
+        out.push_str(&segmented::text(segmentation));
+    }
+    out.push_str(&flags(result));
+    if let Some(truth) = &result.truth {
+        out.push_str(&against(truth, result));
+    }
+    out.push_str(&distilled(result));
+    out.push_str(&assumptions(result));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+fn distilled(result: &Decomposed) -> String {
+    let Some(of_sky) = &result.vision.distilled else { return String::new() };
+    let [texture, sigma] = of_sky.medians;
+    let mut out = format!(
+        "Texture of the sky's light (distilled_texture.npy)\n  {} photons s^-1 m^-2 sr^-1 with a deviation of {}, medians; {} scatterings\n",
+        significant(texture, 4),
+        significant(sigma, 2),
+        of_sky.scatterings
+    );
+    for of in &of_sky.residues {
+        let name = result.materials.get(of.material).map_or("", String::as_str);
+        let _ = writeln!(
+            out,
+            "  residue of {name}: {} of a band's noise of {} is light that the surroundings do not explain",
+            significant(of.light, 2),
+            significant(of.noise, 2)
+        );
+    }
+    out.push_str("  Residues are taken for the sky's as far as they are no noise; light of objects that are no surroundings is in them.\n\n");
+    out
+}
+
+fn of(part: usize, all: usize) -> String {
+    format!("{} of {}", whole(part as u64), whole(all as u64))
+}
+
+fn sentence(result: &Decomposed) -> String {
+    let seen = result.pixels - result.skipped;
+    if !result.method.has_likelihood() {
+        let named = result.found.iter().map(|row| row.pixels).sum();
+        return match result.method.names_materials() {
+            true => format!(
+                "{} pixels have a material named; how sure that is the method does not say.",
+                of(named, seen)
+            ),
+            false => format!("{} pixels as one blackbody each: no material is told.", whole(seen as u64)),
+        };
+    }
+    let mut out = match result.decided {
+        0 => format!("No pixel of {} is decided", whole(seen as u64)),
+        decided => format!(
+            "{} pixels ({}) have one material of {} left",
+            of(decided, seen),
+            share(decided as f64 / seen.max(1) as f64),
+            result.materials.len()
+        ),
+    };
+    match result.undecided {
+        0 => out.push('.'),
+        undecided => {
+            let _ = write!(out, "; {} are undecided.", whole(undecided as u64));
+        }
+    }
+    out
+}
+
+fn found(result: &Decomposed) -> String {
+    if !result.method.names_materials() {
+        return String::new();
+    }
+    let shown = &result.found[..result.found.len().min(LISTED)];
+    let width = shown.iter().map(|row| row.material.chars().count()).max().unwrap_or(0).max(8);
+    let mut table = Columns::new([
+        left("", width),
+        right("pixels", 9),
+        right("decided", 9),
+        right("median (degC)", 14),
+        right("tenths (degC)", 18),
+        right("sigma (K)", 10),
+    ]);
+    let says = |what: String| if result.method.has_likelihood() { what } else { "-".to_owned() };
+    for row in shown {
+        let [low, high] = row.temperature_tenths_k.map(degrees);
+        table.row([
+            row.material.clone(),
+            whole(row.pixels as u64),
+            says(whole(row.decided as u64)),
+            degrees(row.temperature_median_k),
+            format!("{low} to {high}"),
+            says(significant(row.temperature_sigma_median_k, 2)),
+        ]);
+    }
+    let mut out = format!("Materials, the most probable of each pixel\n{}", table.text());
+    if let Some(more) = result.found.len().checked_sub(LISTED).filter(|more| *more > 0) {
+        let _ = writeln!(out, "  and {more} more: materials.csv");
+    }
+    for row in &result.classes {
+        let _ =
+            writeln!(out, "  {} of {} spectra: {} pixels", row.class, row.spectra, whole(row.pixels as u64));
+    }
+    out.push('\n');
+    out
+}
+
+fn flags(result: &Decomposed) -> String {
+    if result.flags.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("Said of pixels\n");
+    for row in &result.flags {
+        let meaning = match row.bit {
+            flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
+            flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
+            flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
+            flag::LIGHTING_UNKNOWN => {
+                "the lighting is not told: nothing is scattered, or surroundings look alike"
+            }
+            flag::NO_FIT => "no material of the library fits (p below 1e-4)",
+            flag::UNDECIDED => "several materials are left by 95 %",
+            flag::SKIPPED => "left out: a sample is missing",
+            flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
+            _ => row.flag,
+        };
+        let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
+    }
+    out.push('\n');
+    out
+}
+
+fn against(truth: &TruthFound, result: &Decomposed) -> String {
+    let neighbours = result.spatial.is_some();
+    let bound = match result.method {
+        Method::Ml if neighbours => "its stated deviation",
+        Method::Ml => "its Cramér–Rao bound",
+        _ => "the deviation that the method says",
+    };
+    let mut out = format!("{AGAINST}\n");
+    let percent = |x: f64| format!("{} %", significant(100.0 * x, 4));
+    if let Some(right) = truth.right_material {
+        let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
+            let error = truth.right_material_limit_error.unwrap_or(0.0);
+            format!(
+                "; {} +- {} by the nearest distances (the most of any test between a pixel{} and the nearest state of another \
+                 material, mean over {} pixels)",
+                percent(limit),
+                significant(100.0 * error, 1),
+                if neighbours { ", without its neighbours," } else { "" },
+                truth.right_material_limit_pixels
+            )
+        });
+        let _ = writeln!(out, "  right material: {}{limit}", percent(right));
+    }
+    if let Some(right) = truth.right_where_decided {
+        let _ = writeln!(out, "  right material where decided: {}", percent(right));
+    }
+    if let (Some(ratio), Some(covered)) = (truth.temperature_error_over_bound_rms, truth.coverage_95) {
+        let _ = writeln!(
+            out,
+            "  temperature error over {bound}: {} rms; 95 % intervals hold {} ({} pixels of right material within all limits)",
+            significant(ratio, 3),
+            percent(covered),
+            whole(truth.coverage_pixels as u64)
+        );
+    }
+    if let Some(covered) = truth.coverage_95_all {
+        let _ = writeln!(
+            out,
+            "  95 % intervals of all pixels, also of a wrong material or none that fits: {}",
+            percent(covered)
+        );
+    }
+    if let Some(rmse) = truth.temperature_rmse_k {
+        let _ = writeln!(out, "  temperature error of all pixels: {} rms", quantity(rmse, "K"));
+    }
+    out.push('\n');
+    out
+}
+
+/// How pixels are decomposed, in a few words.
+pub(crate) fn how(result: &Decomposed) -> &'static str {
+    match (result.scenario.spatial, result.method) {
+        (Some(SpatialPrior::Potts { .. }), _) => {
+            "Maximum posterior of every pixel with its neighbours (Potts prior)"
+        }
+        (Some(SpatialPrior::TexSgd { .. }), _) => "Least cost of every pixel with its neighbours (TeX-SGD)",
+        (None, Method::Ml) => "Maximum likelihood of every pixel, for itself",
+        (None, Method::AnalyticInverse) => "Inverse functions along wavenumber, every pixel for itself",
+        (None, Method::Te) => "Maximum likelihood without scattered light, every pixel for itself",
+        (None, Method::GreyBody) => "Brightness temperature of every pixel, for itself",
+    }
+}
+
+/// Below the picture of the categories.
+pub(crate) const SEGMENTED: &str = "Every pixel is in segmentation.npy, every object in objects.csv.";
+
+/// What brightness means in a picture whose contrast is limited so, and what it is where the lighting is unknown.
+pub(crate) fn brightness_said(limit: f64, unlit: f64) -> String {
+    format!(
+        "Brightness: logarithm of the texture, equalised in tiles (contrast limited to {limit}); {} where the lighting is unknown. \
+         Temperatures beyond the scale have the colours of its ends. Every pixel is in tex_vision_image.png, texture.npy and thermal.npy.",
+        number(unlit),
+    )
+}
+
+/// The prior over the image, a line; nothing where there is none.
+fn neighbours(result: &Decomposed) -> String {
+    let changed =
+        |spatial: &Spatial| format!("; it changed the material of {} pixels", whole(spatial.changed as u64));
+    let Some((prior, about)) = result.scenario.spatial.zip(result.spatial.as_ref()) else {
+        return String::new();
+    };
+    match prior {
+        SpatialPrior::Potts { weight, .. } => format!(
+            "  neighbours (Potts): each of four adds {} to the log-odds of its own material and temperature{}{}\n",
+            significant(weight, 3),
+            about.temperature_step_k.map_or_else(String::new, |step| {
+                format!("; temperatures of a material differ by {} from pixel to pixel", quantity(step, "K"))
+            }),
+            changed(about)
+        ),
+        SpatialPrior::TexSgd { weight } => format!(
+            "  neighbours (TeX-SGD): temperatures are pulled to the median of 3 x 3 pixels, p = {}{}\n",
+            significant(weight, 3),
+            changed(about)
+        ),
+    }
+}
+
+fn assumptions(result: &Decomposed) -> String {
+    let scenario = &result.scenario;
+    let [low, high] = scenario.unknown.temperature_k;
+    let total = lighting_total(scenario.unknown.lighting_total);
+    let model = match scenario.cube.unit {
+        CubeUnit::Radiance => "",
+        CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => ", variance from the model",
+    };
+    let noise = noise(&scenario.cube.unit).to_owned() + model;
+    let library =
+        scenario.library.emissivity_error.filter(|error| *error > 0.0).map_or_else(String::new, |error| {
+            let over = scenario.library.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1);
+            format!(
+                " but for errors of the library, {} of the emissivity, to a quarter over {}",
+                share(error),
+                quantity(over, "cm^-1")
+            )
+        });
+    let method = result.method.name();
+    let (model, intervals) = match (result.method, scenario.spatial) {
+        (_, Some(SpatialPrior::Potts { .. })) => (
+            "",
+            "with the neighbours of its material, were it and the prior certain; materials: posterior under the prior",
+        ),
+        (_, Some(SpatialPrior::TexSgd { .. })) => (
+            "",
+            "Cramér–Rao bound of the pixel alone, which a temperature that was pulled need not keep; candidates: of the pixel alone",
+        ),
+        (Method::Ml, None) => {
+            ("", "Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods")
+        }
+        (Method::Te, None) => (
+            ", nothing is scattered",
+            "those of this model, wrong where light is scattered; materials: profile likelihoods",
+        ),
+        (Method::AnalyticInverse, None) => {
+            let out = format!(
+                "Assumptions\n  method: {method}: the lighting has no slope along wavenumber (S46, S47); temperature {low} to {high} K, \
+                 lighting of any total\n  intervals: none, the method has none\n\n"
+            );
+            return out;
+        }
+        (Method::GreyBody, None) => {
+            let out = format!(
+                "Assumptions\n  method: {method}: emissivity 1, all bands together\n  intervals: none, the method has none\n\n"
+            );
+            return out;
+        }
+    };
+    let lighting = match result.method {
+        Method::Te => String::new(),
+        _ => format!(", lighting of {} surroundings, {total}", scenario.environment.len()),
+    };
+    format!(
+        "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent{library}\n  \
+         unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}\n",
+        if scenario.unknown.gain { ", gain" } else { "" },
+        neighbours(result),
+    )
+}

@@ -1,0 +1,178 @@
+//! What is said of many materials.
+
+mod bands;
+pub(crate) mod captions;
+mod exact;
+mod matrix;
+mod terms;
+
+use self::bands::{bands, scaling};
+use self::exact::exact;
+use self::matrix::{apart, matrix};
+use self::terms::{camera, does_not_tell, no_limit};
+use crate::text::footing::footing;
+use crate::text::numbers::{numbers, photons, significant};
+use crate::text::pairs::pair_table;
+use crate::words::{Say, classes, probability as words};
+use hadar::order;
+use hadar_study::{Answers, Check, Identification, Study};
+use std::fmt::Write as _;
+
+/// Entries of the prediction vector that are shown.
+const SHOWN: usize = 5;
+/// Entries below this are not worth a name.
+const LEAST_SHOWN: f64 = 1e-3;
+
+/// All that was asked for. All against all come first where they were asked for; `apart` alone has no table of the
+/// target's.
+#[must_use]
+pub fn text(answers: &Answers, study: &Study) -> String {
+    let mut out = String::new();
+    if let Some(found) = &answers.matrix {
+        out.push_str(&matrix(found, study));
+    }
+    match &answers.apart {
+        Some(found) => out.push_str(&apart(found, study)),
+        None => out.push_str(&identification(&answers.identification, study)),
+    }
+    if let Some(found) = &answers.scaling {
+        out.push_str(&scaling(found, &study.target().name));
+    }
+    if let Some(found) = &answers.bands_that_matter {
+        out.push_str(&bands(found, study));
+    }
+    if let Some(found) = &answers.exact {
+        out.push_str(&exact(found, study));
+    }
+    out + &footing(&answers.identification, study)
+}
+
+/// Distances to all alternatives.
+fn identification(result: &Identification, study: &Study) -> String {
+    let mut out = verdict(result, study);
+    if result.prior_average.is_none() && !study.scenario().unknown.priors.is_empty() {
+        out.push_str("For a target in the state of the scenario; on average over the priors: --average.\n");
+    }
+    out.push_str(&pair_table(&result.pairs, study));
+    out.push_str(&prediction(result));
+    out.push('\n');
+    out.push_str(&classes::text(&result.classes));
+    out
+}
+
+/// The answer in a sentence, and the hardest alternative.
+fn verdict(result: &Identification, study: &Study) -> String {
+    let mut out = String::new();
+    let Some(pair) = result.pairs.iter().find(|pair| pair.alternative == result.limiting) else {
+        return out;
+    };
+    // Where there are classes each stands for all of its members.
+    let class = result.pairs.iter().position(|other| other.alternative == pair.alternative);
+    let class = class.and_then(|index| result.classes.get(index));
+    let (target, alternative) = match class {
+        Some(class) => (&class.target.name, &class.alternative.name),
+        None => (&pair.target, &pair.alternative),
+    };
+    let all = result.pairs.len();
+    let reliability = words::demanded(study.required_distance());
+    // The average is finite also where the state that stands in the scenario is one of equilibrium.
+    if let Some(average) = &result.prior_average {
+        let _ = writeln!(
+            out,
+            "Averaged over the priors {target} is told from {} with {reliability} right answers by {} (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
+            average.alternative,
+            number_of_photons(average.photons_required),
+            number_of_photons(average.photons_required_hybrid_bound)
+        );
+        let state = study.state();
+        let _ = writeln!(
+            out,
+            "At exactly {}{}:",
+            study.units().temperature(state.temperature_k),
+            numbers(" and V ", &state.lighting, 2)
+        );
+    }
+    if let Some(told) = result.identifiability.told_from {
+        let name = camera(study);
+        let sentence = match (all, told) {
+            (1, 1) => format!("Yes: {name} tells {target} from {alternative}"),
+            (1, _) => format!("No: {name} {} {target} from {alternative}", does_not_tell(study)),
+            (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
+            (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
+            (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
+        };
+        let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
+        if let Some(class) = class {
+            let _ = writeln!(out, "{}", class.say());
+        }
+        if let (false, Some(limit)) = (no_limit(study).is_empty(), pair.statistical_distance_nearest) {
+            let _ = writeln!(
+                out,
+                "The limit, by the nearest distance: {} against {}, of {} required.",
+                words::reliability(limit),
+                pair.alternative,
+                reliability
+            );
+        }
+    }
+    let needed = match pair.photons_required {
+        Some(_) => {
+            let least = if no_limit(study).is_empty() { "at least " } else { "" };
+            format!("it takes {least}{} photons, by shot noise alone", photons(pair.photons_required))
+        }
+        None => "no number of photons suffices".into(),
+    };
+    let _ =
+        writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));
+    out.push('\n');
+    out
+}
+
+fn number_of_photons(count: Option<f64>) -> String {
+    count.map_or_else(|| "no number of photons".into(), |count| format!("{} photons", significant(count, 3)))
+}
+
+/// The largest entries of the prediction vector.
+fn prediction(result: &Identification) -> String {
+    let Some(all) = &result.identifiability.prediction_heuristic else { return String::new() };
+    let mut sorted: Vec<_> = all.iter().collect();
+    order::descending(&mut sorted, |b| b.probability);
+    let shown: Vec<String> = sorted
+        .iter()
+        .take(SHOWN)
+        .filter(|entry| entry.probability >= LEAST_SHOWN)
+        .map(|entry| format!("{} {}", entry.material, significant(entry.probability, 2)))
+        .collect();
+    let rest = if shown.len() < all.len() { ", less for the others" } else { "" };
+    format!(
+        "\nPrediction vector S32 of the paper (a heuristic: no bound, and no test's probability)\n  {}{rest}\n",
+        shown.join(", ")
+    )
+}
+
+/// The answer of a check.
+#[must_use]
+pub fn check(result: &Check, study: &Study) -> String {
+    // Where there are classes each stands for all of its members.
+    let classes = study.class_answers();
+    let target = classes.first().map_or(&study.target().name, |class| &class.target.name);
+    let camera = camera(study);
+    let reliability = words::demanded(study.required_distance());
+    match &result.not_told_from {
+        Some(other) => {
+            let class = result.failed.and_then(|index| classes.get(index));
+            let other = class.map_or(other, |class| &class.alternative.name);
+            let cannot = does_not_tell(study);
+            let by = no_limit(study);
+            format!("No: {camera} {cannot} {target} from {other} with {reliability} reliability{by}.\n")
+        }
+        None => {
+            let all = match study.alternatives() {
+                [one] => classes.first().map_or(&one.name, |class| &class.alternative.name).clone(),
+                all => format!("all {} alternatives", all.len()),
+            };
+            let by = no_limit(study);
+            format!("Yes: {camera} tells {target} from {all} with {reliability} reliability{by}.\n")
+        }
+    }
+}

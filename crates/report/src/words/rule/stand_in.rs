@@ -1,0 +1,86 @@
+//! The thermal stand-in in words: how exact it must be so that no camera of the rule tells it from a person.
+
+use super::text::idle;
+use crate::text::columns::aligned;
+use crate::text::footing::warnings;
+use crate::text::significant;
+use crate::words::probability::reliability;
+use hadar_study::warning::Code;
+use hadar_study::{StandIn, StandInAnswer};
+use std::fmt::Write as _;
+
+/// The tolerances.
+#[must_use]
+pub fn stand_in(answer: &StandInAnswer) -> String {
+    let units = answer.units;
+    let mut out = idle(answer.idle);
+    out.push_str(&sentence(answer));
+    let _ = write!(
+        out,
+        "\n\n{}a stand-in at {}, before people of {}; told from them at most {} of the time (d = {})\n\n",
+        answer.clause.as_ref().map_or_else(String::new, |clause| format!("clause {clause:?}: ")),
+        units.temperature(answer.temperature_k),
+        units.temperatures(answer.person_k),
+        reliability(answer.distance),
+        significant(answer.distance, 4)
+    );
+    let head = ["camera", "person", "stand-in", "emissivity +-", "temperature +-", "proved"];
+    let mut rows = vec![head.map(str::to_owned)];
+    rows.extend(answer.rows.iter().map(|row| {
+        [
+            row.camera.clone(),
+            row.person.clone(),
+            row.material.clone(),
+            significant(row.emissivity_tolerance, 2),
+            tolerance(row.temperature_tolerance_k),
+            match (row.temperature_tolerance_k, row.temperature_tolerance_proved_k) {
+                (None, _) => "-".into(),
+                (Some(_), None) => "no".into(),
+                (Some(_), Some(proved)) => tolerance(Some(proved)),
+            },
+        ]
+    }));
+    out.push_str(&aligned(&rows, &[3, 4, 5]));
+    out.push_str(
+        "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
+         as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \
+         by what one pixel counts in all bands and frames: shape, motion and many pixels alike are other questions, and tell more\n",
+    );
+    let others = answer.warnings.iter().filter(|warning| warning.code() != Code::NotInForce);
+    out.push_str(&warnings(&others.cloned().collect::<Vec<_>>()));
+    out
+}
+
+/// What is asked of a stand-in, in a sentence.
+fn sentence(answer: &StandInAnswer) -> String {
+    let passes: Vec<&StandIn> =
+        answer.rows.iter().filter(|row| row.temperature_tolerance_k.is_some()).collect();
+    let told: Vec<&StandIn> =
+        answer.rows.iter().filter(|row| row.temperature_tolerance_k.is_none()).collect();
+    let [passing, all] = [passes.len(), answer.rows.len()];
+    match (passes.first(), told.first()) {
+        (None, _) => "Every stand-in is told from a person, even at its very temperature.".into(),
+        (Some(_), None) if answer.without_errors => format!(
+            "All {all} stand-ins pass for a person if spectra are exact and their temperatures are within the tolerances below; errors of \
+             the emissivities are not in it."
+        ),
+        (Some(_), None) => format!(
+            "No camera tells any of these {all} stand-ins from a person, if their temperatures are within the tolerances below."
+        ),
+        (Some(_), Some(_)) => format!(
+            "{passing} of {all} stand-ins pass for a person before their camera, within the tolerances below; the others are told."
+        ),
+    }
+}
+
+fn tolerance(kelvin: Option<f64>) -> String {
+    kelvin.map_or_else(|| "told".into(), |kelvin| format!("{} K", significant(kelvin, 3)))
+}
+
+/// Below the picture of the tolerances.
+pub(crate) fn below_a_line(distance: f64) -> String {
+    format!(
+        "Below a line no test of one pixel tells it from a person more often than {}; open symbols: proved for all within.",
+        reliability(distance)
+    )
+}

@@ -1,0 +1,9 @@
+//! Several scenarios asked the same, in words.
+
+/// The verdict of a rule that does not hold on the day.
+pub(crate) const NOT_IN_FORCE: &str = "no, not in force";
+
+/// Below a table in which some rows have no answer.
+pub(crate) fn unanswered(failed: usize, all: usize) -> String {
+    format!("{failed} of {all} scenarios without an answer.")
+}

@@ -1,0 +1,177 @@
+//! The numbers of a sizing one by one: what each is called, its value with its unit, and the key of the JSON that it stands at.
+
+use crate::text::numbers::{quantity, significant};
+use crate::words::probability::probability;
+use crate::words::size::no_limit;
+use hadar::policy::{Quantity, Solution};
+use hadar_scenario::Units;
+use hadar_study::{PairResult, Sizing, Study};
+
+/// A number that is shown.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Row {
+    /// What it is called.
+    pub label: &'static str,
+    /// The number with its unit, with no more digits than are trusted.
+    pub value: String,
+    /// Its key in the JSON, by which it is explained.
+    pub key: &'static str,
+}
+
+/// A figure of the camera that was solved for.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Solved {
+    /// What it is called; nothing where one sentence says it of all.
+    pub label: &'static str,
+    /// Whether there is such a value.
+    pub found: bool,
+    /// What would do with its unit, or that nothing does.
+    pub value: String,
+    /// What the camera has; empty where that is not known.
+    pub now: String,
+    /// What is to be said of the value, behind a semicolon; may be empty.
+    pub remark: String,
+    /// What stands against it.
+    pub caps: Vec<String>,
+    /// Its key in the JSON.
+    pub key: &'static str,
+}
+
+/// What the camera delivers in the scene, against the limiting alternative; nothing without a camera.
+#[must_use]
+pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
+    let (Some(camera), Some(pair)) = (&result.camera, limiting(result)) else { return Vec::new() };
+    let mut rows = Vec::new();
+    let mut row = |label, value, key| rows.push(Row { label, value, key });
+    row("photons at the detector, all bands", significant(camera.photons, 4), "camera.photons");
+    let of_band = match camera.camera.frames {
+        1 => "electronic noise of a band reading",
+        _ => "electronic noise of a band",
+    };
+    row(of_band, format!("{} counts", significant(camera.noise_counts, 4)), "camera.noise_counts");
+    row("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3), "camera.gamma_per_band");
+    let hardware = format!("{} m^2 s", significant(camera.hardware_m2_s, 4));
+    row("t A_p / ((1+gamma) F^2)", hardware, "camera.hardware_m2_s");
+    let by_local = no_limit(study.scenario().requirement.by).is_some();
+    if let Some(d) = pair.statistical_distance {
+        let required = significant(result.verdict.required_distance, 4);
+        let label = if by_local { "statistical distance, local" } else { "statistical distance reached" };
+        row(label, format!("{} (required {required})", significant(d, 3)), "verdict.statistical_distance");
+    }
+    if let (Some(d), Some(miss), Some(bits)) =
+        (pair.statistical_distance, pair.miss_probability, pair.information_bits)
+    {
+        let label = if by_local { "probability by it, no limit" } else { "detection probability at most" };
+        let error = match miss {
+            0.0 => "below 1e-300".to_owned(),
+            miss => significant(miss, 3),
+        };
+        row(label, format!("{} (error {error})", probability(d, 4)), "pairs.detection_probability");
+        row("information log2 2P", format!("{} bit", significant(bits, 3)), "pairs.information_bits");
+    }
+    if let (true, Some(d)) = (by_local, pair.statistical_distance_nearest) {
+        let limit = format!("{} (probability {})", significant(d, 3), probability(d, 4));
+        row("the limit, by the nearest distance", limit, "verdict.statistical_distance_nearest");
+    }
+    let least = format!("{} per sqrt(photon)", significant(camera.least_distance, 3));
+    row("least distance it resolves", least, "camera.least_distance");
+    if let Some(footprint) = camera.footprint_m {
+        row("pixel footprint at the target", study.units().length(footprint), "camera.footprint_m");
+    }
+    if let Some(blur) = camera.motion_blur_pixels {
+        let of_bands = camera.camera.readout.exposures(study.bands().len()) > 1;
+        let label = if of_bands { "motion while bands are exposed" } else { "motion during an exposure" };
+        row(label, format!("up to {} pixel", significant(blur, 2)), "camera.motion_blur_pixels");
+    }
+    rows
+}
+
+/// What would do, quantity by quantity; where nothing helps for one and the same reason a single one without a name.
+#[must_use]
+pub fn solved(result: &Sizing, units: Units) -> Vec<Solved> {
+    let Some(solutions) = &result.solve_for else { return Vec::new() };
+    let hopeless = |solution: &Solution| solution.value.is_none() && solution.statistical_distance == 0.0;
+    if solutions.0.iter().all(|(_, solution)| hopeless(solution))
+        && let Some(reason) = solutions.0.iter().find_map(|(_, solution)| solution.reason.as_ref())
+    {
+        let value = format!("nothing: {reason}");
+        let (now, remark) = (String::new(), String::new());
+        return vec![Solved {
+            label: "",
+            found: false,
+            value,
+            now,
+            remark,
+            caps: Vec::new(),
+            key: "solve_for",
+        }];
+    }
+    // A speed that was not asked for and cannot be worked out is of no interest.
+    let of_interest =
+        |(solved, solution): &&(Quantity, Solution)| *solved != Quantity::Speed || !solution.camera.is_nan();
+    let row = |(solved, solution): &(Quantity, Solution)| one(*solved, solution, result, units);
+    solutions.0.iter().filter(of_interest).map(row).collect()
+}
+
+fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> Solved {
+    let label = match solved {
+        Quantity::Speed => "speed, at the exposure it takes",
+        other => other.name(),
+    };
+    let value = match (solution.value, &solution.reason) {
+        (Some(value), _) => in_unit(solved, value, units),
+        (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
+            format!("any: {reason}")
+        }
+        (None, Some(reason)) => {
+            format!("none suffices: {reason} (reaches d = {})", significant(solution.statistical_distance, 2))
+        }
+        (None, None) => "none suffices".into(),
+    };
+    // The noise of bands may differ: what is solved for is a factor of them all.
+    let factor = match (solved, solution.value) {
+        (Quantity::Noise, Some(value)) if solution.camera > 0.0 => {
+            format!(", times {}", significant(value / solution.camera, 3))
+        }
+        _ => String::new(),
+    };
+    let now = match solution.camera.is_finite() {
+        true => format!("now {}{factor}", in_unit(solved, solution.camera, units)),
+        false => String::new(),
+    };
+    let remark = solution.value.and(solution.reason.as_ref()).map(|reason| format!("; {reason}"));
+    let caps = solution.caps.iter().map(|cap| {
+        let side = if cap.blocks { "but" } else { "better" };
+        let bound = match (cap.blocks, solved.is_least()) {
+            (true, true) | (false, false) => "no more than",
+            (true, false) | (false, true) => "no less than",
+        };
+        format!("[{}] {side} {bound} {}: {}", cap.code.name(), in_unit(solved, cap.limit, units), cap.reason)
+    });
+    Solved {
+        label,
+        found: solution.value.is_some(),
+        value,
+        now,
+        remark: remark.unwrap_or_default(),
+        caps: caps.collect(),
+        key: "solve_for",
+    }
+}
+
+/// The alternative that is hardest to tell apart.
+pub(crate) fn limiting(result: &Sizing) -> Option<&PairResult> {
+    result.pairs.iter().find(|pair| pair.alternative == result.limiting)
+}
+
+pub(crate) fn in_unit(solved: Quantity, value: f64, units: Units) -> String {
+    match solved {
+        Quantity::Exposure => quantity(value, "s"),
+        Quantity::Pixel => quantity(value, "m"),
+        Quantity::FNumber => format!("f/{}", significant(value, 3)),
+        Quantity::Noise => format!("{} counts", significant(value, 3)),
+        Quantity::Frames => format!("{value:.0}"),
+        Quantity::Distance => units.length(value),
+        Quantity::Speed => units.speed(value),
+    }
+}

@@ -1,0 +1,204 @@
+//! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
+
+use super::rows;
+use crate::text::footing::{assumptions, gaussian, warnings};
+use crate::text::numbers::{numbers, photons, significant};
+use crate::text::pairs::pair_table;
+use crate::words::Say;
+use crate::words::probability::demanded_probability;
+use crate::words::{classes, companion};
+use hadar::words::share;
+use hadar_scenario::Units;
+use hadar_study::{PairResult, Sizing, Study};
+use std::fmt::Write as _;
+
+/// Share of the draws that settles a question, and how many times the distance of the entries half of them must exceed to say
+/// that errors outweigh it.
+const SETTLED: f64 = 0.95;
+const DROWNED: f64 = 2.0;
+
+/// The verdict and everything behind it.
+#[must_use]
+pub fn text(result: &Sizing, study: &Study) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "{}\n", result.verdict.sentence.say());
+    let limiting = rows::limiting(result);
+    if let Some(pair) = limiting {
+        out.push_str(&readings(pair, result, study));
+    }
+    if result.camera.is_some() && limiting.is_some() {
+        let name = match (&result.camera, study.scenario().camera.as_ref()) {
+            (Some(camera), Some(spec)) if spec.preset.is_some() => format!("Camera {}", camera.camera.name),
+            _ => "The camera".to_owned(),
+        };
+        let _ = writeln!(out, "{name} in this scene");
+        for row in rows::of_camera(result, study) {
+            let _ = writeln!(out, "  {:<34} {}", row.label, row.value);
+        }
+        out.push('\n');
+    }
+    out.push_str(&classes::text(&result.classes));
+    out.push_str(&solutions(result, study.units()));
+    out.push_str(&sensitivity(result));
+    if result.pairs.len() > 1 {
+        out.push_str("All alternatives, hardest first\n");
+        out.push_str(&pair_table(&result.pairs, study));
+        out.push('\n');
+    }
+    if let Some(found) = &result.companion {
+        out.push_str(&companion::text(found, study.units()));
+    }
+    out.push_str(&assumptions(study, gaussian(study)));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+/// The three readings of the distance, side by side.
+fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
+    let mut out = String::new();
+    let requirement = &result.requirement;
+    let _ = writeln!(
+        out,
+        "What it takes to tell {} from {} with d = {} (probability {}), by three readings",
+        pair.target,
+        pair.alternative,
+        significant(requirement.distance, 4),
+        demanded_probability(requirement.distance, 4)
+    );
+    let _ =
+        writeln!(out, "  {:<34} {:>10}  {:>18}  {:>14}", "reading", "distance", "photons", "H_req [m^2 s]");
+    let (n, h) = (requirement.photons_by, requirement.hardware_by_m2_s);
+    let rows = [
+        ("nearest", "nearest state (the limit)", pair.distance_nearest, n.nearest, h.nearest),
+        ("local", "local, calibrated (S27)", pair.distance_local, n.local, h.local),
+        (
+            "local-unknown-gain",
+            "local, unknown gain (S29)",
+            pair.distance_local_unknown_gain,
+            n.local_unknown_gain,
+            h.local_unknown_gain,
+        ),
+    ];
+    for (key, label, distance, count, hardware) in rows {
+        let mark = if key == requirement.by { "* " } else { "  " };
+        let hardware = hardware.map_or_else(|| "-".into(), |h| significant(h, 2));
+        let distance = significant(distance, 3);
+        let _ = writeln!(out, "{mark}{label:<34} {distance:>10}  {:>18}  {hardware:>14}", photons(count));
+    }
+    let state = &pair.nearest_state;
+    let _ = writeln!(
+        out,
+        "  * decides. Nearest state of {} by shot noise: {}{}.\n",
+        pair.alternative,
+        study.units().temperature(state.temperature_k),
+        numbers(", lighting ", &state.lighting, 3)
+    );
+    out
+}
+
+/// What would do, quantity by quantity, and what stands against it.
+fn solutions(result: &Sizing, units: Units) -> String {
+    if result.solve_for.is_none() {
+        return String::new();
+    }
+    let head = match result.verdict.met {
+        Some(true) => "How far each figure may go, with the rest of the camera as it is",
+        _ => "What would meet the requirement, each with the rest of the camera as it is",
+    };
+    let mut out = format!("{head}\n");
+    let solved = rows::solved(result, units);
+    if let [rows::Solved { label: "", value, .. }] = solved.as_slice() {
+        let _ = writeln!(out, "  {value}\n");
+        return out;
+    }
+    for row in solved {
+        let now = if row.now.is_empty() { String::new() } else { format!("({})", row.now) };
+        let answer = match row.found {
+            true => format!("{:<18} {now}{}", row.value, row.remark),
+            false => row.value,
+        };
+        let _ = writeln!(out, "  {:<34} {}", row.label, answer.trim_end());
+        for cap in row.caps {
+            let _ = writeln!(out, "  {:<34} {cap}", "");
+        }
+    }
+    out.push('\n');
+    out
+}
+
+/// What the verdict hangs on, in a few lines.
+fn sensitivity(result: &Sizing) -> String {
+    let Some(found) = &result.sensitivity else { return String::new() };
+    // A distance of 0 hangs on nothing.
+    if found.emissivity.distance == 0.0 {
+        return String::new();
+    }
+    let mut out = String::from("What the verdict hangs on\n");
+    let levers = found.elasticities.0.iter().filter_map(|(lever, elasticity)| {
+        let value = elasticity.as_ref()?.value;
+        // What changes nothing is not worth a word.
+        (value.abs() >= 5e-3).then(|| format!("{} {value:+.2} %", lever.name()))
+    });
+    let levers: Vec<String> = levers.collect();
+    let levers = if levers.is_empty() { "nothing".into() } else { levers.join(", ") };
+    let mut line = |label: &str, text: String| {
+        let _ = writeln!(out, "  {label:<34} {text}");
+    };
+    line("1 % more of it changes d by", levers);
+    let of = &found.emissivity;
+    if of.error > 0.0 || !of.of_classes.is_empty() {
+        let linear = of.sigma_linear.map_or_else(String::new, |sigma| {
+            format!("; to first order {} +- {}", significant(of.distance, 2), significant(sigma, 2))
+        });
+        let [low, middle, high] =
+            [of.distance_5, of.distance_50, of.distance_95].map(|distance| significant(distance, 2));
+        let spread = format!("d = {middle} ({low} to {high} in 90 % of {} draws){linear}", of.draws);
+        let met =
+            format!("{} of the draws meet the requirement: {}", share(of.share_met), conclusion(result));
+        if of.of_classes.is_empty() {
+            line(&format!("emissivities wrong by {} rms", of.error), spread);
+            line(&format!("  correlated over {} cm^-1", of.correlation_cm1), met);
+        } else {
+            line("emissivities scatter as classes say", spread);
+            for class in &of.of_classes {
+                let how = match class.correlation_cm1 {
+                    Some(length) => {
+                        format!("{} rms, correlated over {length} cm^-1", significant(class.error, 2))
+                    }
+                    None => {
+                        format!("{} rms, as its {} spectra do", significant(class.error, 2), class.spectra)
+                    }
+                };
+                line(&format!("  {}", class.class), how);
+            }
+            if of.of_classes.len() == 1 {
+                line(
+                    "  the other",
+                    format!("{} rms, correlated over {} cm^-1", of.error, of.correlation_cm1),
+                );
+            }
+            line("  together", met);
+        }
+    }
+    out.push('\n');
+    out
+}
+
+/// What errors of the emissivities mean for the distance.
+fn conclusion(result: &Sizing) -> String {
+    let Some(found) = &result.sensitivity else { return String::new() };
+    let of = &found.emissivity;
+    let drowned = of.distance_50 > DROWNED * of.distance;
+    let what = match (of.distance >= result.requirement.distance, of.share_met) {
+        (true, met) if met >= SETTLED => "such errors leave it met",
+        (true, _) => "such errors can undo it; measure these emissivities before relying on it",
+        (false, met) if met <= 1.0 - SETTLED => "such errors do not make it met",
+        (false, _) => "within such errors it may be met or not; measure these emissivities first",
+    };
+    let more = if drowned {
+        ", but look more different than the materials do: d is that of the entries, to be measured"
+    } else {
+        ""
+    };
+    format!("{what}{more}")
+}
