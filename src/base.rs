@@ -12,7 +12,7 @@ pub mod grid;
 pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
-mod named;
+pub(crate) mod named;
 pub mod order;
 pub mod parallel;
 pub mod random;

@@ -28,3 +28,5 @@ macro_rules! named {
         }
     };
 }
+
+pub(crate) use named;

@@ -26,7 +26,7 @@ pub use crate::instrument::Counting;
 use crate::error::{Error, Result, check};
 use crate::scene::Parameter;
 
-crate::named! {
+crate::base::named::named! {
     /// A kind of nuisance: unknown, but not what is asked for.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum Nuisance {

@@ -46,7 +46,7 @@ use table::same;
 /// By how much rounding may take a computed emissivity out of [0, 1].
 const ROUNDING: f64 = 1e-9;
 
-crate::named! {
+crate::base::named::named! {
     /// What to assume outside the range in which a material is known.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
     #[serde(rename_all = "lowercase")]

@@ -19,7 +19,7 @@ const SHRINK: f64 = 1.6;
 /// Steps at most.
 const STEPS: usize = 9;
 
-crate::named! {
+crate::base::named::named! {
     /// A quantity whose part in a verdict is asked for.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Lever {

@@ -33,7 +33,7 @@ use crate::instrument::Camera;
 /// Pixels of a cycle.
 pub const PIXELS_PER_CYCLE: f64 = 2.0;
 
-crate::named! {
+crate::base::named::named! {
     /// What an observer is to do with a target.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum ObserverTask {

@@ -30,7 +30,7 @@ use fourier::Fourier;
 use spline::Spline;
 use std::f64::consts::PI;
 
-crate::named! {
+crate::base::named::named! {
     /// How ∂N/∂x is taken on a grid of pixels.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]

@@ -56,7 +56,7 @@ impl NoiseVariance {
     }
 }
 
-crate::named! {
+crate::base::named::named! {
     /// What the electronic noise of joined samples is.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]

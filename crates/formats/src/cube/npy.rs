@@ -127,7 +127,8 @@ fn header(file: &mut impl Read, len: u64) -> Result<(Header, u64)> {
 
 /// What samples are, and whether their lowest byte comes first.
 fn sample_type(descr: &str) -> Result<(Stored, bool)> {
-    let name = descr.trim_start_matches(['<', '>', '|']);
+    let plain = header::quoted(descr).unwrap_or_default();
+    let name = plain.trim_start_matches(['<', '>', '|']);
     let (kind, size) = name.split_at_checked(1).unwrap_or_default();
     let size = size.parse().unwrap_or(0);
     let stored = match kind {
@@ -137,12 +138,12 @@ fn sample_type(descr: &str) -> Result<(Stored, bool)> {
         _ => None,
     };
     // Only of single bytes there is no order.
-    let stored = stored.filter(|_| match descr.len() - name.len() {
-        1 => size == 1 || !descr.starts_with('|'),
+    let stored = stored.filter(|_| match plain.len() - name.len() {
+        1 => size == 1 || !plain.starts_with('|'),
         _ => false,
     });
     if let Some(stored) = stored {
-        return Ok((stored, descr.starts_with('<')));
+        return Ok((stored, plain.starts_with('<')));
     }
     if name == "b1" {
         let instead = "write what was counted, or np.save(path, a.astype(np.uint8)) if 0 and 1 are counts";

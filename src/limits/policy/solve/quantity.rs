@@ -2,7 +2,7 @@
 
 use crate::instrument::Camera;
 
-crate::named! {
+crate::base::named::named! {
     /// A quantity that can be solved for.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Quantity {

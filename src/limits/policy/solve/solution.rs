@@ -3,7 +3,7 @@
 /// Why no value suffices where the distance is 0.
 pub(super) const NEVER: &str = "nothing tells the two apart";
 
-crate::named! {
+crate::base::named::named! {
     /// Which limit it is; in the order of the codes' letters, in which several are listed.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]

@@ -5,7 +5,7 @@
 /// What it says.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Header {
-    /// Type of the samples: an array-protocol string without its quotes, or the list of a structured one as it stands.
+    /// Type of the samples as it stands: an array-protocol string in quotes, or the list of a structured one.
     pub(super) descr: String,
     pub(super) fortran_order: bool,
     pub(super) sides: Vec<usize>,
@@ -29,10 +29,7 @@ pub(super) fn parse(text: &str) -> Option<Header> {
         }
         rest = after.trim_start();
     }
-    let descr = match descr? {
-        list if list.starts_with('[') => list,
-        name => quoted(name)?,
-    };
+    let descr = descr.filter(|descr| descr.starts_with('[') || quoted(descr).is_some())?;
     let fortran_order = match order? {
         "True" => true,
         "False" => false,
@@ -59,7 +56,7 @@ fn side(text: &str) -> Option<usize> {
 }
 
 /// What stands between quotes of one kind.
-fn quoted(text: &str) -> Option<&str> {
+pub(super) fn quoted(text: &str) -> Option<&str> {
     let mark = text.chars().next().filter(|mark| matches!(mark, '\'' | '"'))?;
     text.strip_prefix(mark)?.strip_suffix(mark).filter(|inside| !inside.contains([mark, '\\']))
 }
@@ -96,11 +93,11 @@ mod tests {
         for (text, expected) in [
             (
                 "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4), }    \n",
-                header("<f4", false, &[2, 3, 4]),
+                header("'<f4'", false, &[2, 3, 4]),
             ),
-            ("{\"shape\":(5,),\"descr\":\">u2\",\"fortran_order\":True}", header(">u2", true, &[5])),
-            ("{'descr': '|b1', 'fortran_order': False, 'shape': ()}", header("|b1", false, &[])),
-            ("{'descr': '<i8', 'fortran_order': False, 'shape': (2L, 3L)}", header("<i8", false, &[2, 3])),
+            ("{\"shape\":(5,),\"descr\":\">u2\",\"fortran_order\":True}", header("\">u2\"", true, &[5])),
+            ("{'descr': '|b1', 'fortran_order': False, 'shape': ()}", header("'|b1'", false, &[])),
+            ("{'descr': '<i8', 'fortran_order': False, 'shape': (2L, 3L)}", header("'<i8'", false, &[2, 3])),
             (
                 "{'descr': [('a, b', '<f4'), ('c', '<f4', (2,))], 'fortran_order': False, 'shape': (1,), }",
                 header("[('a, b', '<f4'), ('c', '<f4', (2,))]", false, &[1]),
