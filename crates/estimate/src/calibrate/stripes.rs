@@ -107,7 +107,15 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
             if more.iter().all(Vec::is_empty) {
                 break;
             }
-            parallel::fill(&mut looked, 1, || (), |(), at, band| Ok(band[0].again(&more[at])))?;
+            parallel::fill(
+                &mut looked,
+                1,
+                || (),
+                |(), at, band| {
+                    band.iter_mut().for_each(|band| band.again(&more[at]));
+                    Ok(())
+                },
+            )?;
         }
     }
     let told: Vec<Told> =
