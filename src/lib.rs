@@ -36,6 +36,7 @@
 //! | | [`lattice_points`], [`grid`] | points that fill the unit cube, text of tables |
 //! | | [`cube`] | heat cubes, in memory or given by rows |
 //! | | [`demand`], [`allowed`], [`words`] | what a question needs and what of it was computed; ranges of figures; numbers in words |
+//! | | [`parallel`], [`order`] | jobs in parallel, their results in order; things in the order of a number |
 //! | physics | [`planck`] | photon radiance of a blackbody and its differences |
 //! | | [`spectrum`] | bands: grids, filters, integrals |
 //! | | [`material`] | emissivities: rows, optical constants, library with provenance |

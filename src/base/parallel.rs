@@ -99,3 +99,62 @@ pub fn fill<V: Send, W: Send, E: Send>(
 fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().for_each(job);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{booked, fill, map_with, try_map};
+    use crate::demand::{self, Ledger, Thing};
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    fn with_threads<T: Send>(threads: usize, job: impl FnOnce() -> T + Send) -> T {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(job)
+    }
+
+    /// Results stand in the order of the jobs, the first failure is told, and the ledger has all, for any number of threads.
+    #[test]
+    fn order_failures_and_ledgers_do_not_depend_on_threads() {
+        for threads in [1, 2, 5] {
+            let failed = with_threads(threads, || try_map(100, |i| if i % 7 == 6 { Err(i) } else { Ok(i) }));
+            assert_eq!(failed, Err(6));
+            let mut runs = [0; 10];
+            let filled = |runs: &mut [usize]| {
+                fill(
+                    runs,
+                    3,
+                    || (),
+                    |(), at, run| {
+                        run.fill(at + run.len());
+                        Ok::<(), ()>(())
+                    },
+                )
+            };
+            with_threads(threads, || filled(&mut runs)).unwrap();
+            assert_eq!(runs, [3, 3, 3, 4, 4, 4, 5, 5, 5, 4]);
+            let work = with_threads(threads, || {
+                let ledger = Ledger::open();
+                booked(50, |i| {
+                    demand::computed(Thing::Samples, i as u64);
+                    Ok(())
+                })
+                .unwrap();
+                ledger.close()
+            });
+            assert_eq!(work.computed(Thing::Samples), 49 * 50 / 2);
+        }
+    }
+
+    /// A workspace is of one job at a time, and no more are made than jobs run at once.
+    #[test]
+    fn workspaces_are_of_one_job_at_a_time() {
+        let made = AtomicUsize::new(0);
+        let own = || (made.fetch_add(1, Ordering::SeqCst), 0_usize);
+        let found = with_threads(3, || {
+            map_with(200, own, |(_, jobs), i| {
+                *jobs += 1;
+                i
+            })
+        });
+        assert_eq!(found, (0..200).collect::<Vec<_>>());
+        assert!(made.load(Ordering::SeqCst) <= 3);
+    }
+}
