@@ -1,4 +1,4 @@
-//! Things in the order of a number: equal ones stay in the order that they had, and what is no number comes last.
+//! Things in the order of a number, that of `f64::total_cmp`: equal ones stay in the order that they had, NaN is beyond infinity.
 //!
 //! Sorting itself is compiled once, for numbers and places; a sort with a comparison of its own costs the compiler some 2800 lines of
 //! intermediate code.

@@ -1,12 +1,13 @@
 //! Jobs in parallel, their results in order.
 //!
 //! The threads are handed one and the same kind of job, a call of a function with an index, so that the code that hands it out is
-//! compiled once and not anew for each use (an iterator of `rayon` costs the compiler some 9000 lines of intermediate code a use). Each result costs a lock of its
-//! own, some 20 ns: what takes less is better done in blocks.
+//! compiled once and not anew for each use (an iterator of `rayon` costs the compiler some 9000 lines of intermediate code a use). Locks
+//! cost some 20 ns for each result, three times that with a workspace: what takes less is better done in blocks.
 
 use crate::demand;
 use crate::error::Result as Checked;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// `of(0)`, `of(1)`, … `of(count - 1)`, computed in parallel, in this order.
@@ -39,30 +40,39 @@ pub fn map_with<W: Send, T: Send>(
 /// As [`map`] for jobs that can fail.
 ///
 /// # Errors
-/// That of the first job, in their order, that failed.
+/// As [`try_map_with`].
 pub fn try_map<T: Send, E: Send>(
     count: usize,
     of: impl Fn(usize) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
-    map(count, of).into_iter().collect()
+    try_map_with(count, || (), |(), i| of(i))
 }
 
-/// As [`map_with`] for jobs that can fail.
+/// As [`map_with`] for jobs that can fail. After one that failed no later one is begun.
 ///
 /// # Errors
-/// That of the first job, in their order, that failed.
+/// That of the first job, in their order, that fails, whatever the number of threads.
 pub fn try_map_with<W: Send, T: Send, E: Send>(
     count: usize,
     workspace: impl Fn() -> W + Sync,
     of: impl Fn(&mut W, usize) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
-    map_with(count, workspace, of).into_iter().collect()
+    let failed = AtomicUsize::new(count);
+    let of = |own: &mut W, i: usize| {
+        // Every job before the first that fails is done.
+        (i < failed.load(Ordering::Relaxed)).then(|| {
+            of(own, i).inspect_err(|_| {
+                failed.fetch_min(i, Ordering::Relaxed);
+            })
+        })
+    };
+    map_with(count, workspace, of).into_iter().flatten().collect()
 }
 
 /// As [`try_map`], each job with a ledger of its own; what they took is booked in the one that is open here.
 ///
 /// # Errors
-/// That of the first job, in their order, that failed.
+/// As [`try_map_with`].
 pub fn booked<T: Send>(count: usize, of: impl Fn(usize) -> Checked<T> + Sync) -> Checked<Vec<T>> {
     booked_with(count, || (), |(), i| of(i))
 }
@@ -70,7 +80,7 @@ pub fn booked<T: Send>(count: usize, of: impl Fn(usize) -> Checked<T> + Sync) ->
 /// As [`booked`], each job with a workspace that no other uses at the same time.
 ///
 /// # Errors
-/// That of the first job, in their order, that failed.
+/// As [`try_map_with`].
 pub fn booked_with<W: Send, T: Send>(
     count: usize,
     workspace: impl Fn() -> W + Sync,
@@ -83,7 +93,7 @@ pub fn booked_with<W: Send, T: Send>(
 /// Every run of `length` values, filled in parallel: `of` is told its index.
 ///
 /// # Errors
-/// That of the first run, in their order, that failed.
+/// As [`try_map_with`].
 pub fn fill<V: Send, W: Send, E: Send>(
     values: &mut [V],
     length: usize,
@@ -114,8 +124,15 @@ mod tests {
     #[test]
     fn order_failures_and_ledgers_do_not_depend_on_threads() {
         for threads in [1, 2, 5] {
-            let failed = with_threads(threads, || try_map(100, |i| if i % 7 == 6 { Err(i) } else { Ok(i) }));
-            assert_eq!(failed, Err(6));
+            let begun = AtomicUsize::new(0);
+            let fails = |i| {
+                begun.fetch_add(1, Ordering::SeqCst);
+                if i % 7 == 6 { Err(i) } else { Ok(i) }
+            };
+            assert_eq!(with_threads(threads, || try_map(100, fails)), Err(6));
+            // By one thread nothing after it.
+            assert!(threads > 1 || begun.load(Ordering::SeqCst) == 7);
+            assert_eq!(with_threads(threads, || try_map(6, fails)), Ok((0..6).collect()));
             let mut runs = [0; 10];
             let filled = |runs: &mut [usize]| {
                 fill(

@@ -4,7 +4,7 @@
 //! scenario, or by both, one laid over the other. [`TABLE`] has a [`Row`] for every key of `[camera]`: what kind of value it
 //! is, which are allowed, an example, what it means, and where it stands in [`CameraSpec`]. Reading and writing a scenario,
 //! laying one camera over another, checking ranges, naming a changed camera, the sheet of a camera, what is asked
-//! for where it is missing, and the documentation of `[camera]` ([`documentation`]) are loops over it.
+//! for where it is missing are loops over it.
 //!
 //! A new figure takes a block of `figures/list.rs`, of which fields, row, reading and writing are made, and the physics that uses it. What
 //! stands for it where it is not stated is said in `made.rs`, unless it is nothing.
@@ -25,22 +25,6 @@ pub use table::{FASTEST_F_NUMBER, NOISES, TABLE};
 #[must_use]
 pub fn row(key: &str) -> Option<&'static Row> {
     TABLE.iter().find(|row| row.key == key)
-}
-
-/// The keys of `[camera]` as a table in Markdown: key, what may be written, example, meaning.
-///
-/// ```
-/// let table = hadar::instrument::figures::documentation();
-/// assert!(table.contains("| `f_number` | number, at least 0.5"));
-/// ```
-#[must_use]
-pub fn documentation() -> String {
-    let mut table = String::from("| key | value | example | meaning |\n|---|---|---|---|\n");
-    for row in TABLE {
-        let Row { key, example, meaning, .. } = row;
-        table.push_str(&format!("| `{key}` | {} | `{example}` | {meaning} |\n", row.value()));
-    }
-    table
 }
 
 impl CameraSpec {

@@ -8,7 +8,7 @@
 
 use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, every_figure};
 use super::presets::{Missing, Preset};
-use super::{Camera, CameraSpec, Efficiency, NoiseSpec, Readout};
+use super::{Camera, CameraSpec, Efficiency, EfficiencyCurve, NoiseSpec, Readout};
 
 /// Temperature of the blackbody at which figures are quoted where none is stated, K.
 pub const REFERENCE_K: f64 = 303.15;
@@ -52,11 +52,16 @@ impl Taken<Option<Efficiency>> for f64 {
 }
 
 macro_rules! conversions {
-    ($spec:tt $camera:tt [$($name:ident)*] [$($own:ident)*] $rows:tt) => {
+    ($spec:tt $camera:tt [$($name:ident)*] [$($own:ident: $own_type:ty,)*] $rows:tt) => {
+        /// What a camera has that is not taken from a field of the same name.
+        struct Own {
+            $($own: $own_type,)*
+        }
+
         impl Camera {
-            /// What is stated, and nothing for all else.
-            fn as_stated(figures: &CameraSpec) -> Self {
-                Self { $($name: figures.$name.taken(),)* $($own: Default::default(),)* }
+            /// What is stated, and what the camera has of its own.
+            fn as_stated(figures: &CameraSpec, own: Own) -> Self {
+                Self { $($name: figures.$name.taken(),)* $($own: own.$own,)* }
             }
         }
 
@@ -107,26 +112,28 @@ impl Preset {
                 "frame_rate: not stated; exposures are taken to follow each other without a pause".into(),
             );
         }
-        Ok(Camera {
+        let own = Own {
             name: self.name.clone(),
             description: self.description.clone(),
             provenance: self.document.iter().chain(&self.provenance).cloned().collect(),
             assumed,
+            efficiency_curves: self.efficiency_curves.clone(),
+            noise,
+            frame_rate_hz: figures.frame_rate_hz,
+        };
+        Ok(Camera {
             exposure_s,
             pixel_m,
             f_number,
             focal_length_m,
             optics_efficiency,
-            efficiency_curves: self.efficiency_curves.clone(),
-            noise,
             noise_exposure_s: figures.noise_exposure_s.unwrap_or(exposure_s),
             flicker_fraction,
             readout,
             frames,
-            frame_rate_hz: figures.frame_rate_hz,
             reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
             spectral_range_cm1,
-            ..Camera::as_stated(figures)
+            ..Camera::as_stated(figures, own)
         })
     }
 

@@ -3,7 +3,7 @@
 mod sheet;
 
 pub use crate::words::cameras::{comparison, list, text};
-pub use sheet::{Sheet, SideBySide};
+pub use sheet::{Sheet, SideBySide, Worked};
 
 use crate::json::value;
 use crate::words::cameras::{alone, caveats, comparison_sentence, in_scene};

@@ -132,13 +132,13 @@ fn list(items: &[String]) -> String {
 /// Every kind of warning once: what it means, what to do, and what was said of which.
 fn warnings(warnings: &[Warning]) -> String {
     let of = |(code, said): (Code, Vec<&Warning>)| {
-        let of_code = of_code(code);
+        let block = of_code(code);
         format!(
             "<h3><code>{}</code></h3>\n<p>{} <strong>{}</strong> {}</p>\n{}",
             code.name(),
-            escape(of_code.meaning),
+            escape(block.meaning),
             words::REMEDY,
-            escape(of_code.remedy),
+            escape(block.remedy),
             list(&said.into_iter().map(Say::say).collect::<Vec<_>>())
         )
     };

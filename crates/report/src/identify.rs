@@ -7,7 +7,7 @@ pub use crate::words::identify::{check, text};
 use crate::bundle::Bundle;
 use crate::classes;
 use crate::size::pictures_of_pairs;
-use crate::table::{Table, number, optional};
+use crate::table::{Table, number, optional, yes_no};
 use crate::tables;
 use hadar::error::Result;
 use hadar_study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
@@ -91,9 +91,7 @@ fn targets(matrix: &Matrix) -> Table {
             ("hardest_alternative", &|target| target.limiting.clone()),
             ("distance_minimum_per_sqrt_photon", &|target| number(target.distance_minimum)),
             ("statistical_distance_minimum_camera", &|target| optional(target.statistical_distance_minimum)),
-            ("identifiable", &|target| {
-                target.identifiable.map_or("", |yes| if yes { "yes" } else { "no" }).into()
-            }),
+            ("identifiable", &|target| target.identifiable.map_or_else(String::new, yes_no)),
         ],
     )
 }
@@ -142,7 +140,7 @@ fn best_bands(found: &BandsThatMatter, with_camera: bool) -> Table {
                 number(choice.distance),
                 number(choice.kept),
                 number(choice.bound),
-                if choice.exact { "yes" } else { "no" }.into(),
+                yes_no(choice.exact),
                 optional(choice.reached.as_ref().map(|reached| reached.statistical_distance)),
             ]);
         }

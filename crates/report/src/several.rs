@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::columns::aligned;
 use crate::text::significant;
-use crate::words::several::{NOT_IN_FORCE, unanswered};
+use crate::words::several::{NOT_IN_FORCE, YES_IF, unanswered};
 use hadar::error::Result;
 use hadar::order;
 use hadar_study::sweep::Question;
@@ -79,26 +79,20 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
     // A rule without a camera, or on a day on which it does not hold, is met by none.
     let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
-        (Question::Rule, "verdict") if !is_in_force(answer) => NOT_IN_FORCE.into(),
-        (Question::Rule, "verdict") if met && hang => "yes, if".into(),
+        // Where a day was asked about, the answer says whether the rule holds on it.
+        (Question::Rule, "verdict") if !answer["on"].is_null() && answer["in_force"] != true => {
+            NOT_IN_FORCE.into()
+        }
+        (Question::Rule, "verdict") if met && hang => YES_IF.into(),
         (Question::Rule, "verdict") => met.into(),
         (Question::Rule, "meet it") => {
             format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
         }
         // A 'yes' that hangs on something is none by itself.
-        (_, "verdict") if !answer["verdict"]["provided"].is_null() => "yes, if".into(),
+        (_, "verdict") if !answer["verdict"]["provided"].is_null() => YES_IF.into(),
         _ => found(paths).unwrap_or_default(),
     };
     columns(question).iter().map(of).collect()
-}
-
-/// Whether a rule holds on the day for which it was asked; every day where none was named. Dates are written as year, month, day.
-fn is_in_force(answer: &Value) -> bool {
-    let day = |place: &str| answer.pointer(place).and_then(Value::as_str);
-    day("/on").is_none_or(|on| {
-        day("/rule/rule/from").is_none_or(|from| from <= on)
-            && day("/rule/rule/until").is_none_or(|until| on <= until)
-    })
 }
 
 /// The answer about a rule with the camera of the largest margin first.
@@ -209,15 +203,15 @@ mod tests {
     /// Only a rule that holds on the day, of at least one camera, all of which pass, is a 'yes'.
     #[test]
     fn a_rule_that_is_not_in_force_or_has_no_camera_is_no_yes() {
-        let verdict = |on: &str, cameras: Value| {
-            let answer = json!({
-                "rule": { "rule": { "until": "2020-01-01" } }, "on": on, "cameras": cameras,
-            });
+        let verdict = |on: Value, in_force: Value, cameras: Value| {
+            let answer = json!({ "on": on, "in_force": in_force, "cameras": cameras });
             cells(Question::Rule, &answer).remove(0)
         };
         let passes = || json!([{ "name": "a", "passes": true, "margin": 2.0 }]);
-        assert_eq!(verdict("2020-01-02", passes()), "no, not in force");
-        assert_eq!(verdict("2020-01-01", passes()), true);
-        assert_eq!(verdict("2020-01-01", json!([])), false);
+        assert_eq!(verdict(json!("2020-01-02"), json!(false), passes()), "no, not in force");
+        assert_eq!(verdict(json!("2020-01-02"), Value::Null, passes()), "no, not in force");
+        assert_eq!(verdict(json!("2020-01-01"), json!(true), passes()), true);
+        assert_eq!(verdict(json!("2020-01-01"), json!(true), json!([])), false);
+        assert_eq!(verdict(Value::Null, Value::Null, passes()), true);
     }
 }

@@ -36,23 +36,23 @@ impl Shown {
     }
 
     /// Row, column and place, counted row after row.
-    pub(crate) fn places(self) -> Vec<[usize; 3]> {
+    pub(crate) fn places(self) -> impl Iterator<Item = [usize; 3]> {
         let ([rows, columns], stride) = (self.size, self.stride);
-        let of_row = |row: usize| {
+        let of_row = move |row: usize| {
             (0..columns).step_by(stride).map(move |column| [row, column, row * columns + column])
         };
-        (0..rows).step_by(stride).flat_map(of_row).collect()
+        (0..rows).step_by(stride).flat_map(of_row)
     }
 
     /// A value of each of them by its place.
     pub(crate) fn values(self, of: impl Fn(usize) -> f64) -> Vec<f64> {
-        self.places().into_iter().map(|[_, _, at]| of(at)).collect()
+        self.places().map(|[_, _, at]| of(at)).collect()
     }
 
     /// Layers as a table and as pictures.
     pub(crate) fn layers(self, layers: Vec<Layer>) -> (Table, Vec<Picture>) {
         let mut table = Table::new(["row", "column"].into_iter().chain(layers.iter().map(|layer| layer.0)));
-        for (i, [row, column, _]) in self.places().into_iter().enumerate() {
+        for (i, [row, column, _]) in self.places().enumerate() {
             let values = layers.iter().map(|layer| number(layer.3.get(i).copied().unwrap_or(f64::NAN)));
             table.push([row.to_string(), column.to_string()].into_iter().chain(values).collect());
         }

@@ -35,16 +35,15 @@ impl Table {
         Self { header, rows: rows.iter().map(row).collect() }
     }
 
-    /// A table of whole columns of numbers; as many rows as the first one has.
+    /// A table of whole columns of numbers, which must be equally long ([`Table::to_csv`]).
     #[must_use]
     pub fn of_columns<S: Into<String>>(columns: impl IntoIterator<Item = (S, impl AsRef<[f64]>)>) -> Self {
         let (header, columns): (Vec<String>, Vec<_>) =
             columns.into_iter().map(|(name, values)| (name.into(), values)).unzip();
-        let rows = columns.first().map_or(0, |first| first.as_ref().len());
-        let cell = |values: &[f64], row: usize| number(values.get(row).copied().unwrap_or(f64::NAN));
-        let row = |row: usize| columns.iter().map(|column| cell(column.as_ref(), row)).collect();
-        let rows = (0..rows).map(row).collect();
-        Self { header, rows }
+        let rows = columns.iter().map(|values| values.as_ref().len()).max().unwrap_or(0);
+        let cell = |values: &[f64], row: usize| values.get(row).copied().map(number);
+        let row = |row: usize| columns.iter().filter_map(|column| cell(column.as_ref(), row)).collect();
+        Self { header, rows: (0..rows).map(row).collect() }
     }
 
     /// Adds a row of text cells.
@@ -163,5 +162,9 @@ mod tests {
         assert!(
             Table { header: vec!["a".into()], rows: vec![vec!["1".into(), "2".into()]] }.to_csv().is_err()
         );
+        let columns =
+            |second: &[f64]| Table::of_columns([("a", vec![1.0, 2.0]), ("b", second.to_vec())]).to_csv();
+        assert_eq!(columns(&[3.0, f64::NAN]).unwrap(), "a,b\n1,3\n2,\n");
+        assert!(columns(&[3.0]).is_err() && columns(&[3.0, 4.0, 5.0]).is_err());
     }
 }

@@ -14,7 +14,7 @@
 //! A camera takes the figure as it is stated, the default of its type (0, false) where it is not; what else stands for a figure is
 //! said in `made.rs`. Fields of one struct alone stand in `@CameraSpec` and `@Camera`. The order is that of the fields in JSON and of the keys.
 
-/// Hands `[fields of CameraSpec] [fields of Camera] [names of both] [names of Camera alone] [rows]` to a macro.
+/// Hands `[fields of CameraSpec] [fields of Camera] [names of both] [names and types of Camera alone] [rows]` to a macro.
 macro_rules! every_figure {
     (@blocks $then:ident $(
         $(@CameraSpec { $($(#[$spec_doc:meta])* $spec:ident: $spec_type:ty,)+ })?
@@ -29,7 +29,7 @@ macro_rules! every_figure {
             [$($($($(#[$spec_doc])* pub $spec: $spec_type,)+)? $(#[$stated_doc])* pub $name: $stated,)*]
             [$($($($(#[$own_doc])* pub $own: $own_type,)+)? $(#[$kept_doc])* pub $name: $kept,)*]
             [$($name)*]
-            [$($($($own)+)?)*]
+            [$($($($own: $own_type,)+)?)*]
             [$($($row,)*)*]
         }
     };

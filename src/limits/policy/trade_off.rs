@@ -13,6 +13,7 @@
 use super::caps::{Circumstances, Limit, limits};
 use super::solve::{CameraTask, CapCode, Quantity, Solution};
 use crate::error::Result;
+use crate::order;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 /// Points of a curve that are evenly spread; there are some more at boundaries.
@@ -169,7 +170,7 @@ pub fn trace(
     for holds in [|point: &Point| point.y.is_some(), |point: &Point| point.within_limits.is_some()] {
         let mut at = |at| point(task, pair, at, as_now, given, solve);
         found.extend(edges(&found, &exact, holds, &mut at)?);
-        found.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+        order::ascending(&mut found, |(point, _)| point.x);
     }
 
     let mut lines: Vec<LimitLine> = Vec::new();

@@ -6,6 +6,7 @@
 //! row's own value is returned. A table does not know what lies outside its rows.
 
 use crate::error::{Error, Result, check};
+use crate::order;
 
 /// Relative difference below which two wavenumbers are one and the same.
 pub(super) const SAME: f64 = 1e-12;
@@ -36,7 +37,7 @@ pub fn ascending(wavenumbers_cm1: &[f64]) -> std::result::Result<Vec<usize>, Fau
     }
     let at = |row: usize| wavenumbers_cm1.get(row).copied().unwrap_or(f64::NAN);
     let mut order: Vec<usize> = (0..wavenumbers_cm1.len()).collect();
-    order.sort_by(|&a, &b| at(a).total_cmp(&at(b)));
+    order::ascending(&mut order, |row| at(*row));
     for pair in order.windows(2) {
         if let [a, b] = *pair
             && same(at(a), at(b))

@@ -250,6 +250,7 @@ fn the_report_has_its_sentences_in_its_words() {
     let fine = |name: &str, text: &str, literal: &Literal| {
         let draws = name.starts_with("plot/") || text.contains("::plot::");
         name.starts_with("words/")
+            // The scan leaves the letter of `\n`.
             || literal.text.trim_start_matches('n').starts_with('<')
             || (draws && !literal.has_stops())
             || literal.is_of(&ERRORS_OF_REPORT, &PARTS_OF_REPORT)

@@ -46,6 +46,7 @@ use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
 use hadar::parallel;
 use hadar::words::significant;
+use rayon::prelude::*;
 
 /// Fewest lines, and pixels of a line.
 const FEWEST: [usize; 2] = [8, 16];
@@ -107,15 +108,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
             if more.iter().all(Vec::is_empty) {
                 break;
             }
-            parallel::fill(
-                &mut looked,
-                1,
-                || (),
-                |(), at, band| {
-                    band.iter_mut().for_each(|band| band.again(&more[at]));
-                    Ok(())
-                },
-            )?;
+            looked.par_iter_mut().zip(&more).for_each(|(band, more)| band.again(more));
         }
     }
     let told: Vec<Told> =

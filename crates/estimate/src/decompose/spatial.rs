@@ -20,7 +20,6 @@ use self::potts::Beliefs;
 use super::pixel::{CANDIDATE_SHARE, Pixel, Spared, Task, flag};
 use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
-use hadar::order;
 use rayon::prelude::*;
 
 /// Largest log-odds of a neighbour: e¹⁰ is certainty, and single precision still holds the product of four.
@@ -190,7 +189,7 @@ impl Beliefs {
         }
         let Some(&(belief, count)) = order.get(self.best(kept, i)) else { return };
         pixel.posterior = belief / count.max(1) as f64;
-        order::descending(&mut order, |b| b.0);
+        order.sort_by(|a, b| b.0.total_cmp(&a.0));
         let (mut held, mut candidates) = (0.0, 0);
         for (belief, count) in order {
             if held >= CANDIDATE_SHARE {

@@ -19,7 +19,7 @@ use hadar_estimate::calibrate::twin::{FilterWheelTwin, SpectrometerTwin, normal}
 const REACH: f64 = 1.959_963_984_540_054;
 
 /// A coverage with its deviation.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Coverage {
     /// Share of the intervals that hold the truth.
     pub(crate) share: f64,
@@ -48,7 +48,7 @@ fn held(errors: impl Iterator<Item = (f64, f64)>) -> f64 {
 }
 
 /// What is held in the experiments of a spectrometer.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpectrometerCoverage {
     /// Of R.
     pub(crate) response: Coverage,
@@ -140,7 +140,7 @@ pub(crate) fn spectrometer(
 }
 
 /// What is held in the experiments of a filter-wheel camera.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FilterWheelCoverage {
     /// Of the 30 values.
     pub(crate) response: Coverage,

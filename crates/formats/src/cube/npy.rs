@@ -130,7 +130,7 @@ fn sample_type(descr: &str) -> Result<(Stored, bool)> {
     let plain = header::quoted(descr).unwrap_or_default();
     let name = plain.trim_start_matches(['<', '>', '|']);
     let (kind, size) = name.split_at_checked(1).unwrap_or_default();
-    let size = size.parse().unwrap_or(0);
+    let size = if size.bytes().all(|byte| byte.is_ascii_digit()) { size.parse().unwrap_or(0) } else { 0 };
     let stored = match kind {
         "f" => Stored::float(size),
         "u" => Stored::whole(false, size),

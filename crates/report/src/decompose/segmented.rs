@@ -53,7 +53,7 @@ pub(super) fn objects(found: &Segmented) -> Table {
 
 /// The map of categories beside the thermal image, of the pixels that are shown.
 pub(super) fn plot(found: &Segmented, pixels: &Block, shown: Shown) -> Plot {
-    let (places, wide) = (shown.places(), shown.wide());
+    let (places, wide): (Vec<_>, _) = (shown.places().collect(), shown.wide());
     let colour = |category: u8| match usize::from(category) {
         place if place < found.categories.len() => categorical(place),
         _ => NONE,

@@ -191,7 +191,7 @@ fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> Rgb {
 #[must_use]
 pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
     let result = brush.result;
-    let (places, wide) = (shown.places(), shown.wide());
+    let (places, wide): (Vec<_>, _) = (shown.places().collect(), shown.wide());
     let asked = &result.vision;
     let vision = brush.vision(pixels, places.iter().map(|[_, _, at]| *at));
     let take = |all: &[f32], is_shown: fn(f32) -> bool| -> Vec<f64> {

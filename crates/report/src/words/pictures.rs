@@ -16,7 +16,7 @@ pub(crate) fn thinned_alone(shown: Shown) -> String {
 }
 
 fn every(shown: Shown, end: &str) -> String {
-    let Shown { size: [rows, columns], stride, .. } = shown;
+    let Shown { size: [rows, columns], stride } = shown;
     match stride {
         1 => String::new(),
         stride => format!(" Every {stride}th row and column of {rows} × {columns}{end}."),

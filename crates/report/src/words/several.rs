@@ -1,5 +1,8 @@
 //! Several scenarios asked the same, in words.
 
+/// A verdict that hangs on something, which the answer itself says.
+pub(crate) const YES_IF: &str = "yes, if";
+
 /// The verdict of a rule that does not hold on the day.
 pub(crate) const NOT_IN_FORCE: &str = "no, not in force";
 

@@ -138,10 +138,10 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
     for key in ["document", "clause", "quote", "date", "mark"] {
         section.at_most_one(&["choice", key])?;
     }
-    if let Some(reason) = section.read("choice", |entry| said(entry, "\"why\""))? {
+    if let Some(reason) = section.read("choice", |entry| entry.name("\"why\""))? {
         return Ok(Citation { keys, ground: Ground::Choice(reason) });
     }
-    let text = |key, example| said(&section.require(key)?, example);
+    let text = |key, example| section.require(key)?.name(example);
     let marks = Mark::ALL.map(|mark| (mark.name(), mark));
     let ground = Ground::Document {
         document: text("document", "\"49 CFR 571.127\"")?,
@@ -151,10 +151,6 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
         mark: section.require("mark")?.choice(&marks)?,
     };
     Ok(Citation { keys, ground })
-}
-
-fn said(entry: &Entry<'_>, example: &str) -> Result<String> {
-    entry.name(example)
 }
 
 /// A figure of a rule as its file has it.

@@ -62,16 +62,15 @@ impl Confusion {
     ) -> Result<Vec<Self>> {
         let (bands, classes) = (check_laws(draws)?, draws.len());
         classifiers.iter().try_for_each(|classifier| check(*classifier, bands, classes))?;
-        let chunks: Vec<Range<u64>> =
-            range.clone().step_by(CHUNK).map(|first| first..(first + CHUNK as u64).min(range.end)).collect();
+        let chunks: Vec<u64> = range.clone().step_by(CHUNK).collect();
         let parts: Vec<Vec<Self>> = parallel::map_with(
             chunks.len(),
             || classifiers.iter().map(|classifier| classifier.judge()).collect::<Vec<_>>(),
-            |judges, i| {
-                let chunk = chunks[i].clone();
+            |judges, chunk| {
+                let first = chunks[chunk];
                 let mut parts = vec![Self::empty(classes); classifiers.len()];
                 let (mut counts, mut scores) = (vec![0.0; bands], vec![0.0; classes]);
-                for i in chunk {
+                for i in first..(first + CHUNK as u64).min(range.end) {
                     for class in 0..classes {
                         draw_one(draws, class, i, seed, &mut counts);
                         for (part, judge) in parts.iter_mut().zip(judges.iter_mut()) {

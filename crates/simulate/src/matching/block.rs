@@ -6,7 +6,7 @@
 //! * equiangular lines: d = d₀ + (s₊ − s₋)/[2(s₀ − min(s₋, s₊))].
 //!
 //! Neither is the true shape of the peak: views without noise already have an error b of the sub-pixel part of
-//! d (pixel locking, [`super::locking`]), which the bound knows nothing of. It also changes how far the
+//! d (pixel locking), which the bound knows nothing of. It also changes how far the
 //! estimate follows d: the variance is bounded by (1 + b′)²/J instead of 1/J. A parabola through correlations
 //! in 5 × 5 pixels of a texture of up to 0.25 cycles per pixel: |b| up to 0.03 pixels on average over windows
 //! and 0.065 rms; variance 0.7 of 1/J at whole disparities (1.07 of its own bound) and 2.3 half-way, however

@@ -4,6 +4,7 @@ use super::lighting::Shares;
 use super::radiosity::Basis;
 use hadar::cube::{MemoryCube, Shape};
 use hadar::error::{Error, Result, check};
+use hadar::parallel;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -95,17 +96,16 @@ impl View {
     pub fn cube(&self, part: Part, factor: f64) -> Result<MemoryCube<f64>> {
         check::positive("counts per radiance", factor, "")?;
         let mut samples = vec![0.0; self.shape.len()];
-        samples
-            .par_chunks_mut(self.shape.row_len())
-            .zip(&self.rows)
-            .for_each(|(out, row)| self.fill(part, factor, row, out));
-        if samples.iter().all(|sample| sample.is_finite()) {
-            return MemoryCube::new(self.shape, samples);
-        }
-        Err(Error::malformed(
-            "counts beyond all numbers",
-            "lower the temperatures or the counts per radiance",
-        ))
+        let of_row = |(): &mut (), row: usize, out: &mut [f64]| {
+            self.fill(part, factor, &self.rows[row], out);
+            if out.iter().all(|sample| sample.is_finite()) {
+                return Ok(());
+            }
+            let instead = "lower the temperatures or the counts per radiance";
+            Err(Error::malformed("counts beyond all numbers", instead))
+        };
+        parallel::fill(&mut samples, self.shape.row_len(), || (), of_row)?;
+        MemoryCube::new(self.shape, samples)
     }
 
     /// Rows of a part of the signal times `factor`, `[row][column][band]`, into `out`; nothing of rows that are not there.

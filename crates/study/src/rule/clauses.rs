@@ -318,6 +318,7 @@ impl Serialize for RuleAnswer {
         map.serialize_entry("rule", &self.rule)?;
         if let Some(day) = self.on {
             map.serialize_entry("on", &day.to_string())?;
+            map.serialize_entry("in_force", &self.sentence.idle.is_none())?;
         }
         map.serialize_entry("sentence", &self.sentence)?;
         match (self.only(), self.clauses.first()) {

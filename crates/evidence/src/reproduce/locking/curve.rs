@@ -17,7 +17,7 @@ use hadar_simulate::matching::{Match, Matcher, Search, StereoPair};
 use hadar_simulate::sequential::Interval;
 
 /// At one disparity.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LockingPoint {
     /// True disparity, pixels.
     pub(super) disparity: f64,

@@ -198,7 +198,7 @@ fn whole_numbers_are_counts() {
 #[test]
 fn types_that_are_no_counts_are_named_with_the_remedy() {
     let folder = Folder::new();
-    for descr in ["'<f16'", "'|O'", "'<M8[s]'"] {
+    for descr in ["'<f16'", "'|O'", "'<M8[s]'", "'|f4'", "'=f4'", "'f4'", "'<f+4'", "'<<f4'", "'<'", "''"] {
         let file =
             version_1(&format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (1, 2), }}"), &[0; 64]);
         let message = folder.refusal(&file);

@@ -1,5 +1,6 @@
 //! The rows of a study of thermometry.
 
+use hadar::order;
 use hadar_study::{Reader, Thermometry, ThermometryRow};
 
 /// The reader that stands for what a spectrum tells: lighting unknown where the scenario has it so.
@@ -10,6 +11,6 @@ pub(crate) fn decisive(row: &ThermometryRow) -> &Reader {
 /// Rows by rising temperature.
 pub(crate) fn rising(result: &Thermometry) -> Vec<&ThermometryRow> {
     let mut rows: Vec<&ThermometryRow> = result.rows.iter().collect();
-    rows.sort_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
+    order::ascending(&mut rows, |row| row.temperature_k);
     rows
 }

@@ -1,6 +1,7 @@
 //! All materials against all: who can be told from whom.
 
 use super::terms::{camera, no_limit};
+use crate::table::yes_no;
 use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::{listed, shortened, significant};
 use crate::words::probability as words;
@@ -83,10 +84,10 @@ pub(super) fn matrix(matrix: &Matrix, study: &Study) -> String {
     let mut table = Columns::new(columns);
     for target in matrix.hardest_first() {
         let distance = significant(target.distance_minimum, 3);
-        let mut cells = vec![short.of(&target.material), short.of(&target.limiting), &distance];
-        let reached = target.statistical_distance_minimum.map_or_else(String::new, |d| significant(d, 3));
-        if let (false, Some(yes)) = (reached.is_empty(), target.identifiable) {
-            cells.extend([reached.as_str(), if yes { "yes" } else { "no" }]);
+        let names = [&target.material, &target.limiting].map(|name| short.of(name).to_owned());
+        let mut cells: Vec<String> = names.into_iter().chain([distance]).collect();
+        if let (Some(d), Some(yes)) = (target.statistical_distance_minimum, target.identifiable) {
+            cells.extend([significant(d, 3), yes_no(yes)]);
         }
         table.row(cells);
     }

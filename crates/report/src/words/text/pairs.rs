@@ -2,6 +2,7 @@
 
 use super::columns::{Columns, left, right};
 use super::numbers::{numbers, photons, shortened, significant};
+use crate::table::yes_no;
 use hadar::order;
 use hadar_scenario::DistanceKind;
 use hadar_study::{NearestProof, PairResult, Study};
@@ -50,7 +51,7 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
         cells.push(photons(pair.photons_required));
         cells.push(study.units().temperature(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2));
         cells.extend(pair.statistical_distance.map(|d| significant(d, 3)));
-        cells.extend(pair.told_apart.map(|told| if told { "yes" } else { "no" }.to_owned()));
+        cells.extend(pair.told_apart.map(yes_no));
         let limit = pair.statistical_distance_nearest.filter(|_| by_local);
         cells.extend(limit.map(|d| significant(d, 3)));
         table.row(cells);

@@ -16,7 +16,7 @@ const EXPONENTS: [f64; 2] = [0.2, 2.0];
 const ROUNDS: usize = 5;
 
 /// e_min = a − b·MMD^c.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Mmd {
     /// Least emissivity of a grey body.
     pub(crate) a: f64,

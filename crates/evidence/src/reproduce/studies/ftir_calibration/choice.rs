@@ -33,7 +33,7 @@ pub(crate) struct Wanted {
 }
 
 /// Error common to all pixels of a calibrated radiance, as temperature.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RadianceError {
     /// By the noise of the blackbodies' readings, K.
     pub(crate) noise_k: f64,
@@ -149,7 +149,7 @@ pub(crate) struct WantedSurface {
 }
 
 /// Errors of an emissivity, root mean square over the channels.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EmissivityError {
     /// By noise.
     pub(crate) noise: f64,
