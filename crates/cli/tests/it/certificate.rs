@@ -142,6 +142,8 @@ fn a_rule_that_is_not_in_force_is_no_pass() {
                 run(&[option])
             );
         }
+        let answer: serde_json::Value = serde_json::from_str(&run(&["--json"])).unwrap();
+        assert_eq!(answer["in_force"], !told);
         for option in ["--test", "--stand-in"] {
             let json: serde_json::Value = serde_json::from_str(&run(&[option, "--json"])).unwrap();
             assert_eq!(json["warnings"][0]["code"] == "not-in-force", told, "{option}");

@@ -58,7 +58,7 @@ fn every_key_of_real_answers_is_explained() {
     let mut see = |arguments: &[&str]| walk(&folder.json(arguments), arguments[0], &mut found);
     see(&["size", "a.toml"]);
     see(&["identify", "a.toml", "--matrix", "--exact", "--scaling", "--half-width", "0.05"]);
-    see(&["rule", "rule.toml"]);
+    see(&["rule", "rule.toml", "--on", "2026-01-01"]);
     see(&["cameras", "list"]);
     see(&["cameras", "show", "flir-a325sc"]);
     see(&["cameras", "compare", "flir-a325sc", "nicolet-is50"]);
