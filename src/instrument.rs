@@ -41,7 +41,7 @@ pub use counting::Counting;
 pub use efficiency::EfficiencyCurve;
 pub use equivalents::Equivalents;
 pub use figures::{CameraSpec, Efficiency, FASTEST_F_NUMBER};
-pub use made::{PAPER_RANGE_CM1, REFERENCE_K};
+pub use made::{Assumed, PAPER_RANGE_CM1, REFERENCE_K};
 pub use noise::NoiseSpec;
 pub use readout::Readout;
 pub use view::{Light, View};

@@ -8,11 +8,13 @@
 
 use super::counting::Counting;
 use super::figures::every_figure;
-use super::{EfficiencyCurve, NoiseSpec, Readout, View};
+use super::{Assumed, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, Readout, View};
 use crate::error::Result;
 use crate::planck;
 use crate::spectrum::Bands;
 
+/// Windows of the air in which thermal detectors work: 8 to 14 µm as the paper counts it, and 3 to 5 µm, cm⁻¹.
+const WINDOWS_CM1: [[f64; 2]; 2] = [PAPER_RANGE_CM1, [2000.0, 1e4 / 3.0]];
 /// Share of a time that is rounding.
 const SAME_TIME: f64 = 1e-12;
 /// How far the angle of a pixel may be outside what field of view and pixels across it say, as a share: distortion.
@@ -78,6 +80,21 @@ impl Camera {
     #[must_use]
     pub fn view_and_pixels(&self) -> Option<(f64, f64)> {
         Some((self.field_of_view_rad?, f64::from(self.pixels?)))
+    }
+
+    /// Where nobody states the range of the detector, it is taken to see these bands and the rest of the windows of the air that they lie
+    /// in: an NETD is of all that its detector sees.
+    pub fn sees(&mut self, bands: &Bands) {
+        let Some(range) = self.assumed.iter_mut().find(|one| one.figure == "spectral_range") else { return };
+        let asked = bands.range_cm1();
+        let [mut low, mut high] = [asked.0, asked.1];
+        for [from, to] in WINDOWS_CM1 {
+            if asked.0 < to && asked.1 > from {
+                (low, high) = (low.min(from), high.max(to));
+            }
+        }
+        self.spectral_range_cm1 = [low, high];
+        range.taken = format!("{low:.0} to {high:.0} cm^-1");
     }
 
     /// The bands as the detector receives them, weighed with the efficiencies that depend on wavenumber.

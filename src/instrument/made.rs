@@ -1,8 +1,9 @@
 //! A camera made from what is stated of it, and what is stated of a camera that is made.
 //!
-//! What a camera cannot do without and nobody states is asked for, or stands for a stated reason: the frame time for an
+//! What a camera cannot do without and nobody states is asked for, or something stands for it: the frame time for an
 //! exposure (an NETD is of a frame, so that signal and noise stretch alike and only shot noise depends on it), an efficiency
-//! of 1 beside an NETD (which was measured through the same lens). Every such figure is listed in [`Camera::assumed`].
+//! of 1 beside an NETD (which was measured through the same lens). Every such figure is listed in [`Camera::assumed`], with whether a
+//! camera may be worse.
 //!
 //! All other figures are taken as they are ([`Taken`]), there and back.
 
@@ -14,6 +15,45 @@ use super::{Camera, CameraSpec, Efficiency, EfficiencyCurve, NoiseSpec, Readout}
 pub const REFERENCE_K: f64 = 303.15;
 /// The range in which the paper counts photons, cm⁻¹.
 pub const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
+
+/// A figure of a camera that nobody stated, and what stands for it.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Assumed {
+    /// Its key.
+    pub figure: &'static str,
+    /// What stands for it, with its unit.
+    pub taken: String,
+    /// Whether the camera may be worse than with that.
+    pub favourable: bool,
+}
+
+impl Assumed {
+    /// Keys of all figures that something may stand for.
+    pub const FIGURES: &'static [&'static str] = &[
+        "exposure",
+        "optics_efficiency",
+        "quantum_efficiency",
+        "netd_temperature",
+        "netd_f_number",
+        "spectral_range",
+        "flicker_fraction",
+        "readout",
+        "frame_rate",
+        "full_well",
+        "dark_rate",
+        "read_noise",
+        "quantisation_bits",
+    ];
+
+    fn favourable(figure: &'static str, taken: impl Into<String>) -> Self {
+        Self { figure, taken: taken.into(), favourable: true }
+    }
+
+    /// No camera is worse than with that.
+    fn worst(figure: &'static str, taken: impl Into<String>) -> Self {
+        Self { figure, taken: taken.into(), favourable: false }
+    }
+}
 
 /// A figure in the other struct: what a camera has of what is stated, what is stated of what it has.
 trait Taken<T> {
@@ -91,26 +131,52 @@ impl Preset {
         };
         let spectral_range_cm1 = figures.spectral_range_cm1.unwrap_or_else(|| {
             let [low, high] = PAPER_RANGE_CM1;
-            assumed.push(format!("spectral range: not stated; {low} to {high} cm^-1 is taken"));
+            assumed.push(Assumed::favourable("spectral_range", format!("{low} to {high} cm^-1")));
             PAPER_RANGE_CM1
         });
-        let flicker_fraction = figures.flicker_fraction.unwrap_or_else(|| {
-            if noise != NoiseSpec::None && noise != (NoiseSpec::Counts { sigma_counts: 0.0 }) {
-                let why = "0 is taken, so that frames average all of the noise out";
-                assumed.push(format!("flicker_fraction: not stated; {why}"));
-            }
-            0.0
-        });
-        let readout = figures.readout.unwrap_or(match figures.spectral_bands {
+        let is_noisy = noise != NoiseSpec::None && noise != (NoiseSpec::Counts { sigma_counts: 0.0 });
+        if figures.flicker_fraction.is_none() && is_noisy {
+            assumed.push(Assumed::favourable("flicker_fraction", "0"));
+        }
+        let readout = figures.readout.unwrap_or_else(|| match figures.spectral_bands {
             // Filters before a camera of one band are exposed one after the other.
             Some(1) => Readout::Sequential,
-            _ => Readout::Simultaneous,
+            Some(_) => {
+                assumed.push(Assumed::favourable("readout", Readout::Simultaneous.name()));
+                Readout::Simultaneous
+            }
+            // The slowest of all that is not known.
+            None => {
+                assumed.push(Assumed::worst("readout", Readout::Sequential.name()));
+                Readout::Sequential
+            }
         });
         let frames = figures.frames.unwrap_or(1);
         if figures.frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
-            assumed.push(
-                "frame_rate: not stated; exposures are taken to follow each other without a pause".into(),
-            );
+            assumed.push(Assumed::favourable("frame_rate", "no pause between exposures"));
+        }
+        // A noise that was measured in front of the optics is of the detector with all that it loses.
+        let of_scene =
+            matches!(figures.noise.stated(), Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }));
+        if figures.quantum_efficiency.is_none() && !of_scene {
+            assumed.push(Assumed::favourable("quantum_efficiency", "1"));
+        }
+        if figures.full_well.is_none() {
+            assumed.push(Assumed::favourable("full_well", "never full"));
+        }
+        let rest = [
+            ("dark_rate", figures.dark_rate_per_s.is_none()),
+            ("read_noise", figures.read_noise_counts.is_none()),
+            // Bits divide the full well; without one there is no step to speak of.
+            ("quantisation_bits", figures.full_well.is_some() && figures.quantisation_bits.is_none()),
+        ];
+        // What is measured of a whole camera has all of its noise.
+        let of_camera =
+            matches!(figures.noise.stated(), Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }));
+        for (key, silent) in rest {
+            if silent && !of_camera {
+                assumed.push(Assumed::favourable(key, "0"));
+            }
         }
         let own = Own {
             name: self.name.clone(),
@@ -128,7 +194,6 @@ impl Preset {
             focal_length_m,
             optics_efficiency,
             noise_exposure_s: figures.noise_exposure_s.unwrap_or(exposure_s),
-            flicker_fraction,
             readout,
             frames,
             reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
@@ -138,7 +203,7 @@ impl Preset {
     }
 
     /// The figures without which there is no camera: the frame is taken for an exposure that is not stated, 1 for an efficiency of the optics.
-    fn required(&self, assumed: &mut Vec<String>) -> Result<Required, Missing> {
+    fn required(&self, assumed: &mut Vec<Assumed>) -> Result<Required, Missing> {
         let CameraSpec { exposure_s, frame_rate_hz, pixel_m, f_number, focal_length_m, .. } = self.figures;
         let stated = self.figures.noise.stated();
         let mut missing = Missing::default();
@@ -150,7 +215,13 @@ impl Preset {
         let exposure_s = match (exposure_s, frame_rate_hz) {
             (Some(exposure), _) => exposure,
             (None, Some(rate)) => {
-                assumed.push(format!("exposure: not stated; the frame of {:.4} ms is taken", 1e3 / rate));
+                let frame = format!("{:.4} ms, the frame", 1e3 / rate);
+                assumed.push(match stated {
+                    Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
+                        Assumed::worst("exposure", frame)
+                    }
+                    _ => Assumed::favourable("exposure", frame),
+                });
                 1.0 / rate
             }
             (None, None) => ask("exposure"),
@@ -166,13 +237,12 @@ impl Preset {
         }
         let optics_efficiency = &self.figures.optics_efficiency;
         if optics_efficiency.is_none() {
-            let why = match stated {
+            assumed.push(match stated {
                 Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
-                    "1 is taken, the noise being stated through the same optics"
+                    Assumed::worst("optics_efficiency", "1, the noise being stated through the same optics")
                 }
-                _ => "1 is taken",
-            };
-            assumed.push(format!("optics_efficiency: not stated; {why}"));
+                _ => Assumed::favourable("optics_efficiency", "1"),
+            });
         }
         let optics_efficiency = optics_efficiency.taken();
         Ok(Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency })
@@ -192,7 +262,7 @@ struct Required {
 fn noise_of(
     stated: Option<StatedNoise>,
     [f_number, optics_efficiency, pixel_m]: [f64; 3],
-    assumed: &mut Vec<String>,
+    assumed: &mut Vec<Assumed>,
 ) -> NoiseSpec {
     match stated {
         None | Some(StatedNoise::None) => NoiseSpec::None,
@@ -204,10 +274,10 @@ fn noise_of(
             pixel_m: of,
         }) => {
             if temperature_k.is_none() {
-                assumed.push(format!("netd_temperature: not stated; {REFERENCE_K} K is taken"));
+                assumed.push(Assumed::favourable("netd_temperature", format!("{REFERENCE_K} K")));
             }
             if at.is_none() {
-                assumed.push(format!("netd_f_number: not stated; f/{f_number} is taken"));
+                assumed.push(Assumed::favourable("netd_f_number", format!("f/{f_number}")));
             }
             NoiseSpec::Netd {
                 netd_k,

@@ -4,6 +4,7 @@
 //! told by the documentation of the fields that they are made of: `results.tsv` is collected from the sources by a test, which
 //! fails where it is not what the sources say; `named.tsv` has those that are no fields.
 
+use crate::words::conditions::EXPLAINED;
 use crate::words::warnings;
 use hadar_scenario::keys::{self, Place, Silent};
 use hadar_study::warning::Code;
@@ -19,6 +20,8 @@ pub struct Reference {
     pub keys: Vec<ExplainedKey>,
     /// Codes of warnings.
     pub warnings: Vec<ExplainedCode>,
+    /// Codes of conditions of a verdict; those of figures of a camera are their keys.
+    pub conditions: Vec<ExplainedCode>,
     /// Keys of answers.
     pub results: Vec<ResultKey>,
 }
@@ -112,8 +115,14 @@ pub fn all() -> Reference {
     Reference {
         keys: keys::all().iter().map(ExplainedKey::from).collect(),
         warnings: Code::ALL.iter().copied().map(ExplainedCode::from).collect(),
+        conditions: conditions().collect(),
         results: results().collect(),
     }
+}
+
+/// Codes of conditions of a verdict.
+pub fn conditions() -> impl Iterator<Item = ExplainedCode> {
+    EXPLAINED.iter().map(|[code, meaning, remedy]| ExplainedCode { code, meaning, remedy })
 }
 
 /// All keys of answers.
@@ -147,7 +156,9 @@ pub fn code(word: &str) -> Option<Code> {
 /// The keys of files that a word means.
 #[must_use]
 pub fn key(word: &str) -> Vec<Place> {
-    keys::find(word)
+    let found = keys::find(word);
+    // The code of a condition is called as the key that would settle it.
+    if found.is_empty() { keys::find(&format!("camera.{}", word.replace('-', "_"))) } else { found }
 }
 
 /// All words that mean something, for those that are like one.
@@ -158,6 +169,7 @@ pub fn words() -> Vec<String> {
         place.paths.into_iter().chain([name])
     });
     let codes = Code::ALL.iter().map(|code| code.name().to_owned());
+    let codes = codes.chain(conditions().map(|one| one.code.to_owned()));
     let mut words: Vec<String> = keys.chain(codes).chain(results().map(|one| one.key.to_owned())).collect();
     words.sort_unstable();
     words.dedup();

@@ -15,7 +15,6 @@ use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, joined, number, optional, yes_no};
 use super::tables;
-use crate::words::Say;
 use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
@@ -89,7 +88,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
         "camera",
         "meets_the_rule",
         "fails_by",
-        "provided",
+        "conditions",
         "bands",
         "readout",
         "sweep_s",
@@ -122,7 +121,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
                 line.camera.to_owned(),
                 yes_no(line.verdict == Verdict::Meets),
                 codes(line.fails_by, " "),
-                line.provided.map(|proviso| proviso.say()).unwrap_or_default(),
+                line.conditions.iter().map(hadar_study::Condition::code).collect::<Vec<_>>().join(" "),
                 of(&|camera| camera.bands.to_string()),
                 of(&|camera| camera.readout.name().into()),
                 of(&|camera| number(camera.sweep_s)),

@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::columns::aligned;
 use crate::text::significant;
-use crate::words::several::{NOT_IN_FORCE, YES_IF, unanswered};
+use crate::words::several::{NOT_IN_FORCE, UNDECIDED, YES_IF, unanswered};
 use hadar::error::Result;
 use hadar::order;
 use hadar_study::sweep::Question;
@@ -55,7 +55,7 @@ const fn columns(question: Question) -> &'static [(&'static str, &'static [&'sta
         ],
         Question::Size | Question::Simulate | Question::Decompose => &[
             ("verdict", &["/verdict/met"]),
-            ("provided", &["/verdict/provided"]),
+            ("if", &["/verdict/conditions"]),
             ("limited by", &["/limiting", "/not_told_from"]),
             ("reaches", &["/verdict/statistical_distance"]),
             ("demanded", &["/verdict/required_distance"]),
@@ -75,7 +75,7 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         .as_array()
         .map_or_else(Vec::new, |cameras| cameras.iter().map(|camera| camera["passes"] == true).collect());
     let hang =
-        answer["cameras"].as_array().is_some_and(|all| all.iter().any(|one| !one["provided"].is_null()));
+        answer["cameras"].as_array().is_some_and(|all| all.iter().any(|one| hangs(&one["conditions"])));
     // A rule without a camera, or on a day on which it does not hold, is met by none.
     let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
@@ -89,10 +89,26 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
             format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
         }
         // A 'yes' that hangs on something is none by itself.
-        (_, "verdict") if !answer["verdict"]["provided"].is_null() => YES_IF.into(),
+        (_, "verdict") if answer["verdict"]["answer"] == "yes" && hangs(&answer["verdict"]["conditions"]) => {
+            YES_IF.into()
+        }
+        (_, "verdict") if answer["verdict"]["answer"] == "undecided" => UNDECIDED.into(),
+        (_, "if") => found(paths).map_or(Value::Null, |conditions| hardest(&conditions)),
         _ => found(paths).unwrap_or_default(),
     };
     columns(question).iter().map(of).collect()
+}
+
+/// Whether one of some conditions is favourable.
+fn hangs(conditions: &Value) -> bool {
+    conditions.as_array().is_some_and(|all| all.iter().any(|one| one["favourable"] == true))
+}
+
+/// Codes of the favourable ones, hardest first.
+fn hardest(conditions: &Value) -> Value {
+    let codes = conditions.as_array().into_iter().flatten().filter(|one| one["favourable"] == true);
+    let codes: Vec<&str> = codes.filter_map(|one| one["code"].as_str()).collect();
+    if codes.is_empty() { Value::Null } else { codes.join(" ").into() }
 }
 
 /// The answer about a rule with the camera of the largest margin first.

@@ -8,7 +8,7 @@ pub(crate) mod calibrate;
 pub(crate) mod cameras;
 pub(crate) mod classes;
 pub(crate) mod companion;
-mod conditions;
+pub(crate) mod conditions;
 pub(crate) mod decompose;
 mod demand;
 pub(crate) mod diff;
@@ -43,12 +43,12 @@ pub fn voice(phrase: Phrase<'_>) -> String {
         Phrase::AirFinding(it) => it.say(),
         Phrase::Caveat(it) => it.say(),
         Phrase::Certified(it) => it.say(),
+        Phrase::Condition(it) => it.say(),
         Phrase::Definition(it) => it.say(),
         Phrase::DepthFinding(it) => it.say(),
         Phrase::EmissivityError(it) => it.say(),
         Phrase::Finding(it) => it.say(),
         Phrase::IdealCamera(it) => it.say(),
-        Phrase::Proviso(it) => it.say(),
         Phrase::Quotable(it) => it.say(),
         Phrase::Unknown(it) => it.say(),
         Phrase::WhoMeets(it) => it.say(),

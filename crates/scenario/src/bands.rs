@@ -164,7 +164,8 @@ fn ranges(entry: &Entry<'_>) -> Result<Vec<[Spectral; 2]>> {
     items.iter().map(range).collect()
 }
 
-fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
+/// From edge to edge, both of one kind.
+pub(super) fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
     let example = "[\"715 cm^-1\", \"800 cm^-1\"]";
     let [low, high] = entry.pair(example)?;
     let (low, high) = (spectral(&low)?, spectral(&high)?);
@@ -174,6 +175,12 @@ fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
         return Err(entry.fail(Error::malformed(found, instead)));
     }
     entry.wide_range(example, spectral, Spectral::number)
+}
+
+/// The wavenumbers of a range, lower one first, cm⁻¹.
+pub(super) fn wavenumbers(ends: [Spectral; 2]) -> [f64; 2] {
+    let [a, b] = ends.map(Spectral::wavenumber_cm1);
+    [a.min(b), a.max(b)]
 }
 
 /// A position or step above 0.

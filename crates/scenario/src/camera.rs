@@ -1,5 +1,6 @@
 //! The `[camera]` of a scenario: a preset, and the figures that override it, read and written by the table of figures.
 
+use super::bands::{range, wavenumbers};
 use super::entries::Entries;
 use super::keys::rule::UNCERTAIN;
 use super::paths::{Paths, file};
@@ -7,6 +8,7 @@ use super::section::Entry;
 use hadar::error::Result;
 use hadar::instrument::Readout;
 use hadar::instrument::figures::{CameraSpec, Efficiency, Kind, NOISES, Row, TABLE};
+use hadar::units::Spectral;
 use toml::Value;
 
 pub(super) fn read(entry: &Entry<'_>) -> Result<CameraSpec> {
@@ -55,6 +57,9 @@ pub(super) fn read_with(
                 let choices = Readout::ALL.map(|readout| (readout.name(), readout));
                 *(slot.at)(spec) = section.choice(key, &choices)?;
             }
+            Kind::Span(slot) => {
+                *(slot.at)(spec) = section.read(key, |entry| Ok(wavenumbers(range(entry)?)))?
+            }
             Kind::File(slot) => *(slot.at)(spec) = section.read(key, file)?,
             Kind::Name(slot) => {
                 *(slot.at)(spec) = section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()))?;
@@ -79,6 +84,10 @@ pub(super) fn written(spec: &CameraSpec, paths: Paths<'_>) -> Entries {
             Kind::Count(slot) => (slot.of)(spec).map(Value::from),
             Kind::Flag(slot) => (slot.of)(spec).map(Value::from),
             Kind::Readout(slot) => (slot.of)(spec).map(|readout| Value::from(readout.name())),
+            Kind::Span(slot) => (slot.of)(spec).map(|ends| {
+                let ends = ends.map(|end| Value::from(Spectral::Wavenumber(end).format()));
+                Value::from(ends.to_vec())
+            }),
             Kind::File(slot) => (slot.of)(spec).as_ref().map(|path| Value::from(paths.file(path))),
             Kind::Name(slot) => (slot.of)(spec).as_deref().map(Value::from),
         };

@@ -268,10 +268,17 @@ pub struct Requirement {
     pub by: DistanceKind,
     /// Speed of the vehicle, m s⁻¹; above 0.
     pub speed_m_s: Option<f64>,
+    /// Time within which all bands of all frames must be read, s; above 0.
+    pub time_s: Option<f64>,
 }
 
 impl Default for Requirement {
     fn default() -> Self {
-        Self { reliability: Reliability::Distance(1.0), by: DistanceKind::Nearest, speed_m_s: None }
+        Self {
+            reliability: Reliability::Distance(1.0),
+            by: DistanceKind::Nearest,
+            speed_m_s: None,
+            time_s: None,
+        }
     }
 }

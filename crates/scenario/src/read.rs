@@ -212,6 +212,7 @@ pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
         },
         by: section.choice("by", &DistanceKind::ALL.map(|kind| (kind.name(), kind)))?.unwrap_or(default.by),
         speed_m_s: section.quantity("speed")?,
+        time_s: section.quantity("time")?,
     })
 }
 

@@ -99,5 +99,8 @@ pub(super) fn requirement(requirement: &Requirement) -> Entries {
             .put("detection_probability", detection)
             .put("false_alarm_probability", false_alarm),
     };
-    entries.put("by", requirement.by.name()).put_quantity("speed", Dimension::Speed, requirement.speed_m_s)
+    entries
+        .put("by", requirement.by.name())
+        .put_quantity("speed", Dimension::Speed, requirement.speed_m_s)
+        .put_quantity("time", Dimension::Time, requirement.time_s)
 }

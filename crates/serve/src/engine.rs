@@ -88,7 +88,7 @@ struct Answer {
     /// Whether the requirement is met; none without a camera.
     met: Option<bool>,
     /// Whether a 'yes' hangs on something.
-    provided: bool,
+    conditional: bool,
     sentence: String,
     numbers: Vec<rows::Row>,
     solved: Vec<rows::Solved>,
@@ -182,7 +182,7 @@ impl Engine {
         let met = result.verdict.met;
         Ok(Answer {
             met,
-            provided: result.verdict.provided.is_some(),
+            conditional: result.verdict.open().next().is_some(),
             sentence: result.verdict.sentence.say(),
             numbers: rows::of_camera(&result, &study),
             solved: rows::solved(&result, study.units()),

@@ -4,7 +4,7 @@ use hadar::error::{Error, Place, Result};
 use hadar::grid::Grid;
 use hadar::instrument::figures::{Kind, Part, TABLE};
 use hadar::instrument::presets::{self, Preset};
-use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, REFERENCE_K};
+use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, REFERENCE_K};
 use hadar_formats::file::text_of_file;
 use hadar_scenario::{CameraSpec, Efficiency, Source};
 use std::path::Path;
@@ -140,10 +140,6 @@ fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
     let conditions = figures.noise.is_of_bandwidth();
     let own_bandwidth = figures.noise.bandwidth_hz;
     under_own_conditions(figures);
-    if spec.preset.is_none() {
-        // There is no key for it; a camera of one's own is taken to see what it is asked to.
-        figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);
-    }
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
         row.lay(spec, figures);
         if let (Kind::Efficiency(..), Some(path)) = (row.kind, row.file(spec)) {
@@ -252,6 +248,7 @@ mod tests {
             }
             Kind::Flag(slot) => *(slot.at)(&mut spec) = (slot.of)(&own).map(|flag| !flag),
             Kind::Readout(slot) => *(slot.at)(&mut spec) = Some(Readout::Sequential),
+            Kind::Span(slot) => *(slot.at)(&mut spec) = Some([700.0, 1300.0]),
             Kind::File(slot) => *(slot.at)(&mut spec) = Some(table.to_owned()),
             Kind::Name(_) => {}
         }

@@ -18,14 +18,22 @@ const TOLERANCE_OF_MANY: f64 = 1e-3;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Statistical {
     pub(super) distance: f64,
+    /// What a state that was found shows: no camera does more.
+    pub(super) upper: f64,
     /// Where the solver tells it.
     pub(super) relative_error: Option<f64>,
 }
 
 impl Statistical {
+    /// What it is at least, and at most, whatever rounding did to it.
+    pub(super) fn bounds(self) -> [f64; 2] {
+        let error = self.relative_error.unwrap_or(0.0);
+        [self.distance * (1.0 - error), self.upper * (1.0 + error)]
+    }
+
     /// Whether the distance is enough whatever rounding did to it.
     pub(super) fn reaches(self, required: f64) -> bool {
-        self.distance * (1.0 - self.relative_error.unwrap_or(0.0)) >= required
+        self.bounds()[0] >= required
     }
 }
 
@@ -151,13 +159,18 @@ impl Study {
         let local = |unknowns: Unknowns| {
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
             let found = solver.with_counting(target, other, &self.state, counting)?;
-            Ok(Statistical { distance: found.distance, relative_error: Some(found.relative_error) })
+            Ok(Statistical {
+                distance: found.distance,
+                upper: found.distance,
+                relative_error: Some(found.relative_error),
+            })
         };
         match kind {
             DistanceKind::Nearest => {
                 let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
                 Ok(Statistical {
                     distance: self.sure(found.distance, found.lower),
+                    upper: found.distance,
                     relative_error: Some(found.relative_error),
                 })
             }

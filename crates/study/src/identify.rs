@@ -24,6 +24,7 @@ pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 
 use super::classes::MixtureAnswer;
+use super::distances::Statistical;
 use super::remembered::PerPhoton;
 use super::{Study, Surface, Warning, warn};
 use hadar::demand::{self, Ledger};
@@ -158,6 +159,7 @@ impl Study {
         let proved = mixtures.is_none_or(|all| all.distance_lower >= self.required);
         let told_apart = statistical.map(|found| found.reaches(self.required) && proved);
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
+        let bounds = statistical.map(Statistical::bounds);
         let statistical = statistical.map(|found| found.distance);
         let limit = match (kind, &counting) {
             (DistanceKind::Nearest, _) | (_, None) => statistical,
@@ -207,6 +209,7 @@ impl Study {
             photons_required_by: required_by,
             statistical_distance: statistical,
             statistical_distance_nearest: limit,
+            statistical_distance_bounds: bounds,
             told_apart,
             relative_error_statistical,
             statistical_distance_shortcut: shortcut,

@@ -24,6 +24,7 @@ mod camera;
 mod camera_bands;
 mod classes;
 pub mod companion;
+mod condition;
 mod cube_bands;
 mod cube_noise;
 mod cube_unit;
@@ -41,6 +42,7 @@ pub mod range;
 mod remembered;
 pub mod render;
 mod resolve;
+mod rests_on;
 mod rule;
 mod shortfall;
 mod sight;
@@ -53,6 +55,7 @@ pub mod sweep;
 mod warn;
 pub mod warning;
 
+pub use crate::condition::{Condition, ConditionKind, RangeDecides, Sureness};
 pub use crate::proviso::Proviso;
 pub use crate::warning::{Warning, WorstBlackbody};
 pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
@@ -83,6 +86,7 @@ pub use simulate::{
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
     RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    YesNo,
 };
 pub use surface::Surface;
 

@@ -46,6 +46,8 @@ pub struct Study {
     pub(super) tolerance: Option<f64>,
     /// Skies of the library that are no alternatives.
     pub(super) skies: Vec<String>,
+    /// Materials that do not cover the bands and were left out, as was asked for.
+    pub(super) left_out: Vec<String>,
     pub(super) warnings: Vec<Warning>,
     /// What it took to look everything up.
     pub(super) looked_up: Work,

@@ -25,10 +25,4 @@ impl Proviso {
         let proviso = Self { frames: camera.frames, time_s, way_m: time_s * speed_m_s };
         (camera.frames > 1 && speed_m_s > 0.0).then_some(proviso)
     }
-
-    /// Whether it hangs on more: a longer way, or more time for the same.
-    pub(crate) fn is_harder_than(&self, other: &Self) -> bool {
-        let hard = |one: &Self| (one.way_m, one.time_s, one.frames);
-        hard(self) > hard(other)
-    }
 }

@@ -60,16 +60,25 @@ impl Study {
     /// target, and those of the alternatives' are alternatives of their own.
     pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
         let mut scenario = scenario.clone();
-        let mut finder = Finder { scenario: &scenario, library, warnings: Vec::new(), skies: Vec::new() };
+        let mut finder = Finder {
+            scenario: &scenario,
+            library,
+            warnings: Vec::new(),
+            skies: Vec::new(),
+            left_out: Vec::new(),
+        };
         finder.check_names()?;
         let target =
             finder.group("target.material", &scenario.target.material, scenario.target.extrapolate)?;
         let (environment, behind) = (finder.environment()?, finder.behind()?);
-        let camera =
+        let mut camera =
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let asked =
             camera_bands::asked(&scenario.bands.source, camera.as_ref().zip(scenario.camera.as_ref()));
         let bands = bands::at_centres(&asked, &scenario.source)?;
+        if let Some(camera) = &mut camera {
+            camera.sees(&bands);
+        }
         if let (Some(camera), Some(spec)) = (&camera, &scenario.camera) {
             check_detector(&bands, camera, &scenario)?;
             let place = |key: &str| scenario.place(key);
@@ -78,7 +87,7 @@ impl Study {
         }
         let target = finder.covering(target, &bands, scenario.target.extrapolate)?;
         let alternatives = finder.alternatives(&target, &bands)?;
-        let Finder { warnings, skies, .. } = finder;
+        let Finder { warnings, skies, left_out, .. } = finder;
 
         let surfaces = std::iter::once(&target).chain(&alternatives).flat_map(|group| &group.members);
         let surfaces: Vec<&Material> = surfaces.map(|(material, _)| material.as_ref()).collect();
@@ -139,6 +148,7 @@ impl Study {
             tolerance: None,
             required,
             skies,
+            left_out,
             warnings,
             looked_up: library.work(),
             remembered: None,

@@ -42,7 +42,7 @@ use self::depth::DepthClause;
 use self::resolution::Resolution;
 use self::temperature::TemperatureClause;
 use super::{Study, Warning};
-use crate::proviso::Proviso;
+use crate::condition::hardest_first;
 use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::material::Library;
@@ -200,7 +200,17 @@ impl RuleStudy {
         let rule = self.rule.clone();
         let warnings =
             idle.map(Warning::NotInForce).into_iter().chain(self.warnings.iter().cloned()).collect();
-        Ok(RuleAnswer { rule, on: asked.on, sentence, cameras, clauses, warnings, stats: ledger.close() })
+        let accepted = asked.accepted.clone();
+        Ok(RuleAnswer {
+            rule,
+            on: asked.on,
+            accepted,
+            sentence,
+            cameras,
+            clauses,
+            warnings,
+            stats: ledger.close(),
+        })
     }
 }
 
@@ -239,7 +249,8 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
                         fails: Vec::new(),
                         undecided: Vec::new(),
                         grade: Grade::Proved,
-                        provided: None,
+                        evidence: Grade::Proved,
+                        conditions: Vec::new(),
                     });
                     let last = cameras.len() - 1;
                     &mut cameras[last]
@@ -248,16 +259,24 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
             if line.margin < camera.margin {
                 (camera.margin, camera.limiting_clause, camera.interval) = (line.margin, name(), interval);
             }
-            // Of all clauses the hardest.
-            let farther = |one: &Proviso| camera.provided.is_none_or(|known| one.is_harder_than(&known));
-            camera.provided = line.provided.filter(farther).or(camera.provided);
-            camera.grade = match (camera.verdict, line.verdict) {
+            for one in line.conditions {
+                // Of all clauses the hardest of a kind.
+                match camera.conditions.iter_mut().find(|known| known.is_like(one)) {
+                    Some(known) if one.rank() < known.rank() => known.clone_from(one),
+                    Some(_) => {}
+                    None => camera.conditions.push(one.clone()),
+                }
+            }
+            let verdicts = (camera.verdict, line.verdict);
+            let weakest = |known: Grade, one: Grade| match verdicts {
                 // One clause that is surely not met is enough; of several the surest counts.
-                (Verdict::Fails, Verdict::Fails) => camera.grade.min(line.grade),
-                (Verdict::Fails, _) => camera.grade,
-                (_, Verdict::Fails) => line.grade,
-                _ => camera.grade.max(line.grade),
+                (Verdict::Fails, Verdict::Fails) => known.min(one),
+                (Verdict::Fails, _) => known,
+                (_, Verdict::Fails) => one,
+                _ => known.max(one),
             };
+            camera.grade = weakest(camera.grade, line.grade);
+            camera.evidence = weakest(camera.evidence, line.evidence);
             camera.verdict = match (camera.verdict, line.verdict) {
                 (Verdict::Fails, _) | (_, Verdict::Fails) => Verdict::Fails,
                 (Verdict::Undecided, _) | (_, Verdict::Undecided) => Verdict::Undecided,
@@ -271,7 +290,10 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
             camera.passes = camera.verdict == Verdict::Meets;
         }
     }
-    cameras.iter_mut().filter(|camera| !camera.passes).for_each(|camera| camera.provided = None);
+    for camera in &mut cameras {
+        camera.conditions.retain(|one| camera.passes || !one.favourable());
+        hardest_first(&mut camera.conditions);
+    }
     cameras
 }
 
@@ -280,11 +302,11 @@ fn who_meets(clauses: &[ClauseAnswer], cameras: &[CameraAnswer]) -> WhoMeets {
     let mut who = WhoMeets::default();
     for camera in cameras {
         match camera.verdict {
-            Verdict::Meets => who.meet.push((camera.name.clone(), camera.provided)),
+            Verdict::Meets => who.meet.push((camera.name.clone(), camera.conditions.clone())),
             Verdict::Undecided => who.undecided.push((camera.name.clone(), camera.interval)),
             Verdict::Fails => who.fail.push(camera.name.clone()),
         }
-        if camera.passes && camera.grade > Grade::Proved {
+        if camera.passes && camera.evidence > Grade::Proved {
             who.unproved.push(camera.name.clone());
         }
     }

@@ -1,8 +1,9 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
-use super::identify::{PairResult, PhotonsRequired};
+use super::identify::{NearestProof, PairResult, PhotonsRequired};
 use super::{Check, ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
-use crate::proviso::Proviso;
+use crate::condition::{Condition, Sureness, hardest_first};
+use crate::rests_on::Reached;
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -22,6 +23,9 @@ pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
+
+/// What a verdict is of.
+const PIXEL: &str = "pixel";
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -97,18 +101,53 @@ pub struct Verdict {
     pub met: Option<bool>,
     /// What it is not met by; empty if it is met or there is no camera.
     pub fails_by: Vec<Shortfall>,
-    /// What a 'yes' hangs on: frames that are added up at the demanded speed. In JSON it completes 'yes, if '.
-    pub provided: Option<Proviso>,
+    /// Yes, no, or that neither is shown; `None` without a camera.
+    pub answer: Option<YesNo>,
+    /// What it is of: one pixel.
+    pub scope: &'static str,
     /// The answer, in JSON a sentence.
     pub sentence: Finding,
     /// Statistical distance that the camera reaches against the limiting alternative.
     pub statistical_distance: Option<f64>,
     /// The limit of it, whichever distance decides: that of the nearest.
     pub statistical_distance_nearest: Option<f64>,
+    /// What the distance is at least: proved.
+    pub lower: Option<f64>,
+    /// What it is at most: a state that was found shows it.
+    pub upper: Option<f64>,
     /// Statistical distance demanded.
     pub required_distance: f64,
-    /// That reached over that demanded.
+    /// The least over that demanded.
     pub margin: Option<f64>,
+    /// What a 'yes' rests on, hardest first; of a 'no' what was taken on the unfavourable side.
+    pub conditions: Vec<Condition>,
+    /// Codes of conditions that whoever asks accepts.
+    pub accepted: Vec<String>,
+    /// How sure it is; `None` without a camera.
+    pub grade: Option<Sureness>,
+}
+
+hadar::named! {
+    /// A verdict.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum YesNo {
+        /// The requirement is met, under the conditions that are listed.
+        Yes = "yes",
+        /// It is not.
+        No = "no",
+        /// What is proved does not reach it, what was found does.
+        Undecided = "undecided",
+    }
+    /// The name in JSON.
+    name
+}
+
+impl Verdict {
+    /// Conditions that are favourable and not among the accepted codes: with one of them, a 'yes' is none that a program may rely on.
+    pub fn open(&self) -> impl Iterator<Item = &Condition> {
+        Condition::open(&self.conditions).filter(|one| !self.accepted.contains(&one.code()))
+    }
 }
 
 /// What there is to be said of a camera, target and alternative.
@@ -130,8 +169,10 @@ pub struct Finding {
     pub placeholders: Option<[f64; 2]>,
     /// Where target or alternative is a class, what its members say together.
     pub classes: Option<Box<ClassAnswer>>,
-    /// What a 'yes' hangs on.
-    pub provided: Option<Proviso>,
+    /// What a 'yes' rests on, hardest first.
+    pub conditions: Vec<Condition>,
+    /// Pixels on the target, where it is more than one.
+    pub pixels: Option<f64>,
 }
 
 /// What was found.
@@ -301,7 +342,9 @@ impl Study {
         if sensitivity.is_some() {
             scenario.sensitivity.get_or_insert_default();
         }
-        let verdict = own.verdict(pair, index, &requirement, own.spoiled(camera.as_ref()));
+        let brightest = camera.as_ref().map_or(0.0, |camera| own.brightest_member(&camera.camera));
+        let reached = Reached { pair, sensitivity: sensitivity.as_ref(), brightest };
+        let verdict = own.verdict(&reached, index, &requirement, own.spoiled(camera.as_ref()))?;
         Ok(Sizing {
             scenario,
             verdict,
@@ -320,14 +363,19 @@ impl Study {
         })
     }
 
-    /// Whether the camera meets the requirement, ending at the first proof; `None` without a camera, when nothing is met.
+    /// Whether the camera misses the requirement, ending at the first proof; `None` without a camera, and where it meets it: what a 'yes'
+    /// rests on takes the whole answer.
     ///
     /// # Errors
     /// As [`Study::told_apart`].
-    pub fn verdict_alone(&self) -> Result<Option<VerdictAlone>> {
+    pub fn no_alone(&self) -> Result<Option<VerdictAlone>> {
         let Some(camera) = &self.camera else { return Ok(None) };
         let check = self.check(Skipping::On)?;
-        let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
+        let result = self.camera_result(self.photon_radiance());
+        let spoiled = self.spoiled(result.as_ref());
+        if check.identifiable && spoiled.is_empty() {
+            return Ok(None);
+        }
         let alternative = match (&check.not_told_from, self.alternatives.as_slice()) {
             (Some(name), _) => Some(name.clone()),
             (None, [only]) => Some(only.name.clone()),
@@ -340,6 +388,10 @@ impl Study {
             reached: None,
             limit: None,
         };
+        let brightest = self.brightest_member(camera);
+        let mut conditions = self.unstated(camera, brightest);
+        conditions.retain(|one| !one.favourable());
+        hardest_first(&mut conditions);
         let sentence = Finding {
             camera: camera.name.clone(),
             target: self.target.name.clone(),
@@ -349,22 +401,25 @@ impl Study {
             placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
             classes: index.and_then(|index| self.classes.get(index)).cloned().map(Box::new),
             alternative,
-            provided: self.proviso(),
+            conditions: conditions.clone(),
+            pixels: self.pixels_on_target(camera),
         };
-        let met = check.identifiable && spoiled.is_empty();
+        let by_distance = (!check.identifiable).then_some(Shortfall::Distance);
         let verdict = Verdict {
-            met: Some(met),
-            provided: sentence.provided.filter(|_| met),
-            fails_by: (!check.identifiable)
-                .then_some(Shortfall::Distance)
-                .into_iter()
-                .chain(spoiled)
-                .collect(),
+            met: Some(false),
+            fails_by: by_distance.into_iter().chain(spoiled).collect(),
+            answer: Some(YesNo::No),
+            scope: PIXEL,
             sentence,
             statistical_distance: None,
             statistical_distance_nearest: None,
+            lower: None,
+            upper: None,
             required_distance: self.required,
             margin: None,
+            conditions,
+            accepted: Vec::new(),
+            grade: Some(Sureness::Proved),
         };
         let Check { scenario, not_told_from, stats, .. } = check;
         Ok(Some(VerdictAlone { scenario, verdict, not_told_from, stats }))
@@ -481,54 +536,87 @@ impl Study {
 
     fn verdict(
         &self,
-        pair: &PairResult,
+        reached: &Reached<'_>,
         index: usize,
         requirement: &RequirementResult,
         spoiled: Vec<Shortfall>,
-    ) -> Verdict {
-        let (reached, limit) = (pair.statistical_distance, pair.statistical_distance_nearest);
+    ) -> Result<Verdict> {
+        let pair = reached.pair;
+        let (distance, limit) = (pair.statistical_distance, pair.statistical_distance_nearest);
         let mixtures = self.classes.get(index).and_then(|answer| answer.mixtures.as_ref());
         let proved = mixtures.map(|found| found.distance_lower);
         let far_enough = pair.told_apart;
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
+        let bounds = pair.statistical_distance_bounds;
+        let lower = bounds.map(|[lower, _]| proved.map_or(lower, |proved| lower.min(proved)));
+        let upper = bounds.map(|[_, upper]| mixtures.map_or(upper, |found| upper.min(found.distance)));
+        let answer = far_enough.map(|enough| match upper {
+            _ if enough && spoiled.is_empty() => YesNo::Yes,
+            Some(upper) if !enough && spoiled.is_empty() && upper >= self.required => YesNo::Undecided,
+            _ => YesNo::No,
+        });
+        let conditions = match &self.camera {
+            Some(camera) => self.conditions(camera, met == Some(true), reached)?,
+            None => Vec::new(),
+        };
         let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
         fails_by.extend(&spoiled);
         let few = self.too_few_bands().filter(|_| far_enough != Some(true));
-        let answer = match (reached, requirement.photons, pair.status) {
+        let found = match (distance, requirement.photons, pair.status) {
             (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
             (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
             (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
             (None, Some(photons), _) => Answer::Takes { photons, limit: requirement.photons_by.nearest },
             (Some(_), Some(_), _) => {
-                Answer::Judged { enough: far_enough == Some(true), spoiled, reached, limit }
+                Answer::Judged { enough: far_enough == Some(true), spoiled, reached: upper, limit }
             }
         };
+        let proved =
+            pair.proof == NearestProof::Proved && self.scenario.requirement.by == DistanceKind::Nearest;
+        let grade = answer.map(|_| match proved && !self.unknowns.has_priors() {
+            _ if conditions.iter().any(Condition::favourable) => Sureness::Assumed,
+            true => Sureness::Proved,
+            false => Sureness::Searched,
+        });
         let sentence = Finding {
             camera: self.camera.as_ref().map_or_else(String::new, |camera| camera.name.clone()),
             target: pair.target.clone(),
             alternative: Some(pair.alternative.clone()),
             required: self.required,
             by: self.scenario.requirement.by,
-            answer,
+            answer: found,
             placeholders: self.one_numbers(&pair.alternative),
             classes: self.classes.get(index).cloned().map(Box::new),
-            provided: self.proviso(),
+            conditions: conditions.clone(),
+            pixels: self.camera.as_ref().and_then(|camera| self.pixels_on_target(camera)),
         };
-        Verdict {
+        Ok(Verdict {
             met,
-            provided: sentence.provided.filter(|_| met == Some(true)),
             fails_by,
+            answer,
+            scope: PIXEL,
             sentence,
-            statistical_distance: reached,
+            statistical_distance: distance,
             statistical_distance_nearest: limit,
+            lower,
+            upper,
             required_distance: self.required,
-            margin: reached
-                .map(|reached| proved.map_or(reached, |proved| reached.min(proved)) / self.required),
-        }
+            margin: lower.map(|lower| lower / self.required),
+            conditions,
+            accepted: Vec::new(),
+            grade,
+        })
+    }
+
+    /// Pixels on a target of a known size, where it is more than one.
+    fn pixels_on_target(&self, camera: &Camera) -> Option<f64> {
+        let target = &self.scenario.target;
+        let across = target.size_m? / camera.footprint_m(target.distance_m?);
+        (across > 1.0).then_some(across * across)
     }
 
     /// Emissivities of the target and of an alternative by its name, where each is entered as one number.
-    fn one_numbers(&self, alternative: &str) -> Option<[f64; 2]> {
+    pub(crate) fn one_numbers(&self, alternative: &str) -> Option<[f64; 2]> {
         self.target.placeholders(self.alternative(alternative)?)
     }
 
@@ -541,11 +629,6 @@ impl Study {
         })
     }
 
-    /// Frames that must be registered at the demanded speed.
-    pub(super) fn proviso(&self) -> Option<Proviso> {
-        Proviso::of(self.camera.as_ref()?, self.bands.len(), self.scenario.requirement.speed_m_s?)
-    }
-
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
     fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
         let Some(camera) = camera else { return Vec::new() };
@@ -554,6 +637,9 @@ impl Study {
             (Some(_), None) => spoiled.push(Shortfall::MotionUnknown),
             (_, Some(blur)) if blur >= 1.0 => spoiled.push(Shortfall::MotionBlur),
             _ => {}
+        }
+        if self.scenario.requirement.time_s.is_some_and(|time_s| camera.acquisition_s > time_s) {
+            spoiled.push(Shortfall::DecisionTime);
         }
         // Of a class every member must fit into the well.
         let brightest = self.brightest_member(&camera.camera).max(camera.brightest_reading);

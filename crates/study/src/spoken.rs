@@ -10,7 +10,7 @@ use crate::companion::{Caveat, Unknown};
 use crate::range::DepthFinding;
 use crate::rule::{Certified, Definition, EmissivityError, IdealCamera, Quotable, WhoMeets};
 use crate::warning::Warning;
-use crate::{Finding, Proviso};
+use crate::{Condition, Finding, Sureness};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::cell::Cell;
 
@@ -33,8 +33,8 @@ pub enum Phrase<'a> {
     Finding(&'a Finding),
     /// That the camera which no other surpasses does not tell a pair.
     IdealCamera(&'a IdealCamera),
-    /// What a 'yes' is subject to.
-    Proviso(&'a Proviso),
+    /// What a 'yes' rests on.
+    Condition(&'a Condition),
     /// A rule that can be quoted.
     Quotable(&'a Quotable),
     /// Why a row of practice has no number.
@@ -110,13 +110,22 @@ sentences!(
     WhoMeets,
 );
 
-/// Never null: that would be a 'yes' that is subject to nothing.
-impl Serialize for Proviso {
+impl Serialize for Condition {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match VOICE.get() {
-            Some(_) => serialize(Phrase::Proviso(self), serializer),
-            None => serializer.serialize_str(Self::CODE),
-        }
+        let mut object = serializer.serialize_struct("Condition", 6)?;
+        object.serialize_field("code", &self.code())?;
+        object.serialize_field("kind", self.kind().name())?;
+        object.serialize_field("favourable", &self.favourable())?;
+        object.serialize_field("figure", &self.figure())?;
+        object.serialize_field("value", &self.value())?;
+        object.serialize_field("sentence", &Spoken(Phrase::Condition(self)))?;
+        object.end()
+    }
+}
+
+impl Serialize for Sureness {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 

@@ -50,7 +50,7 @@ macro_rules! every_figure {
             /// Where the figures are from, and what is known to be wrong with them.
             provenance: Vec<String>,
             /// Figures that no document states, and what stands for them.
-            assumed: Vec<String>,
+            assumed: Vec<Assumed>,
         }
         /// Exposure of one frame, s.
         exposure_s: Option<f64>,
@@ -290,10 +290,13 @@ macro_rules! every_figure {
         /// Temperature of the blackbody at which photons and γ are quoted, K.
         => f64;
 
-        /// The spectral range of the detector, cm⁻¹. Documents only.
+        /// The spectral range of the detector, cm⁻¹, lower end first.
         spectral_range_cm1: Option<[f64; 2]>,
         /// The spectral range of the detector, cm⁻¹, in which NETD and photons are quoted.
-        => [f64; 2];
+        => [f64; 2],
+        row("spectral_range", "spectral range", Kind::Span(slot!(spectral_range_cm1)), "[\"8 um\", \"14 um\"]",
+            "Range in which the detector sees, over which NETD and photons are quoted; where it is not stated a 'yes' hangs on it.",
+            "integral of NETD x dN/dT (Table S2)").elsewhere();
     } };
 }
 

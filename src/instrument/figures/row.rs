@@ -47,6 +47,8 @@ pub enum Kind {
     Flag(Slot<bool>),
     /// When the bands are exposed.
     Readout(Slot<Readout>),
+    /// A range of wavenumbers, cm⁻¹.
+    Span(Slot<[f64; 2]>),
     /// A file.
     File(Slot<PathBuf>),
     /// The name of a known camera.
@@ -96,6 +98,11 @@ pub struct Row {
     pub enters: &'static str,
 }
 
+/// Whether two values of a figure differ by no more than the rounding of a conversion of units.
+fn is_rounding(a: f64, b: f64) -> bool {
+    (a - b).abs() <= ROUNDING * a.abs().max(b.abs())
+}
+
 /// The same expression for a slot of any type.
 macro_rules! with_slot {
     ($kind:expr, $slot:ident => $body:expr) => {
@@ -105,6 +112,7 @@ macro_rules! with_slot {
             Kind::Count($slot) => $body,
             Kind::Flag($slot) => $body,
             Kind::Readout($slot) => $body,
+            Kind::Span($slot) => $body,
             Kind::File($slot) => $body,
             Kind::Name($slot) => $body,
         }
@@ -162,7 +170,11 @@ impl Row {
     #[must_use]
     pub fn is_same(&self, a: &CameraSpec, b: &CameraSpec) -> bool {
         match (self.number(a), self.number(b)) {
-            (Some(a), Some(b)) => (a - b).abs() <= ROUNDING * a.abs().max(b.abs()),
+            (Some(a), Some(b)) => is_rounding(a, b),
+            _ if matches!(self.kind, Kind::Span(_)) => match (a.spectral_range_cm1, b.spectral_range_cm1) {
+                (Some([a, b]), Some([c, d])) => is_rounding(a, c) && is_rounding(b, d),
+                (a, b) => a == b,
+            },
             _ => with_slot!(self.kind, slot => (slot.of)(a) == (slot.of)(b)),
         }
     }
@@ -211,6 +223,7 @@ impl Row {
                 let names = Readout::ALL.map(|readout| format!("\"{}\"", readout.name()));
                 names.join(", ")
             }
+            Kind::Span(_) => "two wavelengths or wavenumbers".into(),
             Kind::File(_) => "file of rows".into(),
             Kind::Name(_) => "name of a known camera".into(),
         }

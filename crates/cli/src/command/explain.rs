@@ -42,6 +42,8 @@ struct Explained {
     keys: Vec<ExplainedKey>,
     /// The warning of this code.
     warning: Option<ExplainedCode>,
+    /// The condition of a verdict of this code.
+    condition: Option<ExplainedCode>,
     /// Keys of answers that are called so.
     results: Vec<ResultKey>,
     /// The command of this name.
@@ -75,12 +77,14 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         word: word.to_owned(),
         keys: places.iter().map(ExplainedKey::from).collect(),
         warning: explain::code(word).map(ExplainedCode::from),
+        condition: explain::conditions().find(|one| one.code == word.trim_matches(['[', ']'])),
         results: explain::result(word),
         command: command(word, cli),
     };
     if explained.keys.is_empty()
         && explained.results.is_empty()
         && explained.warning.is_none()
+        && explained.condition.is_none()
         && explained.command.is_none()
     {
         return Err(unknown(word, cli));
@@ -147,7 +151,10 @@ fn text(explained: &Explained, places: &[Place]) -> String {
         let _ = writeln!(text, "  flags      hadar {name} --help\n");
     }
     if let Some(warning) = explained.warning {
-        of_warning(warning, &mut text);
+        of_code("warning", warning, &mut text);
+    }
+    if let Some(condition) = explained.condition {
+        of_code("condition", condition, &mut text);
     }
     if places.len() > IN_FULL {
         let _ = writeln!(
@@ -183,14 +190,16 @@ fn reference_text(reference: &Reference) -> String {
     let mut text = String::from("KEYS OF FILES\n\n");
     keys::all().iter().for_each(|place| in_full(place, &mut text));
     text.push_str("WARNINGS\n\n");
-    reference.warnings.iter().for_each(|one| of_warning(*one, &mut text));
+    reference.warnings.iter().for_each(|one| of_code("warning", *one, &mut text));
+    text.push_str("CONDITIONS OF A VERDICT\n\n");
+    reference.conditions.iter().for_each(|one| of_code("condition", *one, &mut text));
     text.push_str("KEYS OF THE JSON\n\n");
     reference.results.iter().for_each(|one| of_result(*one, &mut text));
     text
 }
 
-fn of_warning(ExplainedCode { code, meaning, remedy }: ExplainedCode, text: &mut String) {
-    let _ = writeln!(text, "warning [{code}]\n  means      {meaning}\n  do         {remedy}\n");
+fn of_code(what: &str, ExplainedCode { code, meaning, remedy }: ExplainedCode, text: &mut String) {
+    let _ = writeln!(text, "{what} [{code}]\n  means      {meaning}\n  do         {remedy}\n");
 }
 
 fn of_result(ResultKey { key, of, meaning }: ResultKey, text: &mut String) {

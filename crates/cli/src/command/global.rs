@@ -18,7 +18,7 @@ use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text::{self, with_settings};
 use hadar_scenario::{Scenario, Setting, Written};
 use hadar_study::warning::Warning;
-use hadar_study::{OwnCameras, Study};
+use hadar_study::{Condition, OwnCameras, Study};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Write as _;
@@ -341,6 +341,15 @@ fn yes(places: Places<'_>, id: &str) -> bool {
 /// A value given to --set.
 fn setting(text: &str) -> std::result::Result<Setting, String> {
     Setting::parse(text, "--set").map_err(|error| error.to_string())
+}
+
+/// The code of a condition given to a flag.
+pub(super) fn condition(text: &str) -> std::result::Result<String, String> {
+    let codes = Condition::codes();
+    if codes.iter().any(|code| code == text) {
+        return Ok(text.to_owned());
+    }
+    Err(Error::unknown_name("condition", text, codes.iter().map(String::as_str)).to_string())
 }
 
 /// A number given to a flag.

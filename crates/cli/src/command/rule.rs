@@ -1,6 +1,6 @@
 //! `hadar rule`: which cameras meet a rule.
 
-use super::global::Global;
+use super::global::{Global, condition};
 use super::several;
 use clap::Args;
 use hadar::demand::Work;
@@ -11,7 +11,7 @@ use hadar_report::rule;
 use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::sweep::Question;
-use hadar_study::{Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
+use hadar_study::{Condition, Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
 use serde_json::Value;
 use std::fs::File;
 use std::io::Read as _;
@@ -47,6 +47,9 @@ pub(super) struct RuleArgs {
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
     #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "on"])]
     verify: Option<PathBuf>,
+    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
+    accept: Vec<String>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
     on: Option<Date>,
@@ -93,7 +96,13 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
         false if args.check && global.out.is_none() => Extent::Verdicts,
         false => Extent::Everything,
     };
-    let asked = RuleAsked { extent, skipping: global.skipping(), seed: global.seed, on: args.on };
+    let asked = RuleAsked {
+        extent,
+        skipping: global.skipping(),
+        seed: global.seed,
+        on: args.on,
+        accepted: args.accept.clone(),
+    };
     let bar = global.progress("pairs");
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
     bar.finish();
@@ -172,7 +181,9 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");
-    let answer = study.answer(&RuleAsked { on, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
+    let accepted: Vec<String> = serde_json::from_value(of(&before, "accepted")).unwrap_or_default();
+    let answer =
+        study.answer(&RuleAsked { on, accepted, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
     bar.finish();
     let now = rule::record(&study, &answer, &global.provenance()?)?;
     let off = rule::agreement(&before, &now).map_err(|error| error.in_file(certificate))?;
@@ -251,7 +262,11 @@ fn sources(rule_read: &Rule, global: &Global) -> Result<u8> {
 }
 
 fn code(args: &RuleArgs, answer: &RuleAnswer) -> u8 {
-    let mut met = answer.cameras.iter().map(|camera| camera.passes);
+    let is_open = |one: &Condition| !args.accept.contains(&one.code());
+    let mut met = answer
+        .cameras
+        .iter()
+        .map(|camera| camera.passes && !Condition::open(&camera.conditions).any(is_open));
     let enough = if args.any { met.any(|passes| passes) } else { met.all(|passes| passes) };
     if args.check && !enough { 3 } else { 0 }
 }

@@ -1,6 +1,6 @@
 //! `hadar size`: the verdict on a camera.
 
-use super::global::{By, Global};
+use super::global::{By, Global, condition};
 use super::several;
 use clap::Args;
 use hadar::demand::Skipping;
@@ -18,9 +18,13 @@ pub(super) struct SizeArgs {
     /// Scenario files (TOML), `-` for standard input; of several one table, a row for each
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
-    /// Exit with code 3 if the requirement is not met; without --out the answer alone, by the cheapest proofs
+    /// Exit with code 3 unless the requirement is met under no condition but those of --accept; without --out a 'no' alone, by the
+    /// cheapest proofs
     #[arg(long)]
     check: bool,
+    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition)]
+    accept: Vec<String>,
     /// The distance that decides, instead of the scenario's
     #[arg(long)]
     by: Option<By>,
@@ -35,7 +39,7 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
     if args.check
         && global.out.is_none()
         && global.skipping() == Skipping::On
-        && let Some(result) = study.verdict_alone()?
+        && let Some(result) = study.no_alone()?
     {
         global.answer(&result, &result.verdict.sentence.say(), &result.stats)?;
         return Ok(code(args, &result.verdict));
@@ -43,6 +47,7 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
     // Curves are for files and programs: nobody reads them off a terminal.
     let mut result =
         if global.out.is_some() || global.json { study.size_with_curves() } else { study.size() }?;
+    result.verdict.accepted.clone_from(&args.accept);
     let text = size::text(&result, &study);
     result.stats.add(&global.report(&text, |out| size::bundle(&study, &result, out))?);
     global.answer(&result, &text, &result.stats)?;
@@ -53,5 +58,6 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
 }
 
 fn code(args: &SizeArgs, verdict: &Verdict) -> u8 {
-    if args.check && verdict.met != Some(true) { 3 } else { 0 }
+    let met = verdict.met == Some(true) && verdict.open().next().is_none();
+    if args.check && !met { 3 } else { 0 }
 }

@@ -4,7 +4,7 @@ use crate::support::folder::Folder;
 use crate::support::rules::{NIGHT, answered, close, library, measured, only};
 use hadar_scenario::Rule;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{CameraVerdict, RuleAnswer, RuleStudy};
+use hadar_study::{CameraVerdict, Condition, RuleAnswer, RuleStudy};
 
 /// The figures of the issue: 36.1 m, 1.83 s, 110 frames of 60 Hz; in three bands one after the other a third of them.
 #[test]
@@ -407,7 +407,14 @@ fn what_a_yes_hangs_on_is_of_the_hardest_clause() {
     for speeds in [["1 m/s", "10 m/s"], ["10 m/s", "1 m/s"]] {
         let demands = speeds.map(clause).concat();
         let answer = answered(&format!("{scene}distance = [\"15 m\", \"15 m\"]\n{demands}{camera}"));
-        let proviso = answer.cameras[0].provided.unwrap();
+        let proviso = answer.cameras[0]
+            .conditions
+            .iter()
+            .find_map(|one| match one {
+                Condition::RegisteredFrames(proviso) => Some(*proviso),
+                _ => None,
+            })
+            .unwrap();
         assert_eq!(proviso.frames, 60);
         assert!(close(proviso.way_m, 10.0 * proviso.time_s, 1e-12), "{proviso:?}");
     }

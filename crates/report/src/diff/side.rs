@@ -194,13 +194,15 @@ impl Side {
 
 /// What an answer decides, as its JSON has it.
 fn decided(answer: &Map<String, Value>) -> Option<Vec<Value>> {
-    let of = |decision: &Value, provided: Option<&Value>| {
-        let subject = provided.is_some_and(|provided| !provided.is_null());
-        (!decision.is_null()).then(|| vec![decision.clone(), subject.into()])
+    let of = |decision: &Value, conditions: Option<&Value>| {
+        let all = conditions.and_then(Value::as_array).into_iter().flatten();
+        let codes: Vec<Value> =
+            all.filter(|one| one["favourable"] == true).map(|one| one["code"].clone()).collect();
+        (!decision.is_null()).then(|| vec![decision.clone(), codes.into()])
     };
     let verdict = answer.get("verdict");
     if let Some(met) = verdict.and_then(|verdict| verdict.get("met")) {
-        return of(met, verdict.and_then(|verdict| verdict.get("provided")));
+        return of(met, verdict.and_then(|verdict| verdict.get("conditions")));
     }
     if let Some(yes) = answer.get("identifiability").and_then(|found| found.get("identifiable")) {
         return of(yes, None);
@@ -209,7 +211,7 @@ fn decided(answer: &Map<String, Value>) -> Option<Vec<Value>> {
     let found: Option<Vec<Vec<Value>>> = cameras
         .iter()
         .map(|camera| {
-            let mut found = of(camera.get("verdict")?, camera.get("provided"))?;
+            let mut found = of(camera.get("verdict")?, camera.get("conditions"))?;
             found.push(camera.get("name")?.clone());
             Some(found)
         })

@@ -13,7 +13,7 @@ use crate::words::Say;
 use crate::words::rule::{measure, together};
 use hadar::error::{Error, Result};
 use hadar_scenario::rule::Verdict;
-use hadar_study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
+use hadar_study::{ClauseAnswer, Condition, Found, Grade, Line, RuleAnswer, RuleStudy};
 use serde_json::{Value, json};
 
 /// Its name in a report.
@@ -40,7 +40,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
             "interval": camera.interval,
             "limiting_clause": camera.limiting_clause,
             "evidence": camera.grade.name(),
-            "provided": camera.provided.map(|proviso| proviso.say()),
+            "conditions": json::value(&camera.conditions).unwrap_or_default(),
         })
     });
     let set = &study.rule().scenario.source.settings;
@@ -48,6 +48,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
         "hadar": VERSION,
         "schema": SCHEMA,
         "on": answer.on.map(|day| day.to_string()),
+        "accepted": answer.accepted,
         "rule": {
             "file": file,
             "path": path,
@@ -119,7 +120,7 @@ fn of_line(clause: &ClauseAnswer, index: usize, line: &Line<'_>) -> Result<Value
         "margin_proved": proved,
         "uncertainty": json::value(&line.uncertainty)?,
         "evidence": line.grade.name(),
-        "provided": line.provided.map(|proviso| proviso.say()),
+        "conditions": json::value(&line.conditions)?,
         "limiting_scene": scene,
     }))
 }
@@ -144,11 +145,16 @@ pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificat
             })
             .collect()
     };
-    let passed = of(&|line| line.verdict == Verdict::Meets && line.grade == Grade::Proved);
+    // What rests on something that nobody stated or checked is no pass, unless whoever asks accepts it.
+    let surely = |line: &Line<'_>| {
+        Condition::open(line.conditions).all(|one| answer.accepted.contains(&one.code()))
+            && matches!(line.evidence, Grade::Proved)
+    };
+    let passed = of(&|line| line.verdict == Verdict::Meets && surely(line));
     let failed = of(&|line| line.verdict == Verdict::Fails);
     let warned = of(&|line| match line.verdict {
         Verdict::Undecided => true,
-        Verdict::Meets => line.grade != Grade::Proved,
+        Verdict::Meets => !surely(line),
         Verdict::Fails => false,
     });
     let result = match (failed.is_empty(), warned.is_empty()) {

@@ -12,6 +12,7 @@ pub(crate) use rows::{alone, in_scene};
 use crate::cameras::Sheet;
 use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::{celsius, quantity, significant};
+use crate::words::Say;
 use hadar::instrument::equivalents::blackbody_microflick;
 use hadar::instrument::figures::{CameraSpec, Kind, Line, Row, StatedNoise, TABLE};
 use hadar::instrument::presets::Preset;
@@ -41,7 +42,7 @@ pub fn text(sheet: &Sheet) -> String {
     out.push_str(&figures(sheet));
     let worked = sheet.worked.as_ref();
     let assumed = worked.map_or(&[][..], |worked| &worked.camera.assumed);
-    section(&mut out, "Assumed", assumed);
+    section(&mut out, "Assumed", &assumed.iter().map(Say::say).collect::<Vec<_>>());
     if let Some(worked) = worked {
         out.push_str(&one_exposure(&worked.figures));
         out.push_str(&equivalents(&worked.equivalents));

@@ -1,13 +1,277 @@
-//! What a 'yes' is subject to.
+//! What a verdict rests on. A favourable condition completes 'yes, if ', another says what was taken.
 
 use super::Say;
-use hadar::words::{length, quantity};
-use hadar_study::Proviso;
+use super::text::numbers::{celsius, in_a_row, listed};
+use hadar::instrument::Assumed;
+use hadar::words::{length, quantity, share, significant};
+use hadar_study::{Condition, Proviso, RangeDecides};
+use std::fmt::Write as _;
 
-/// It completes 'yes, if '.
+/// Physics ends there; a range that reaches it is no range, K.
+const NO_END_K: [f64; 2] = [0.2, 9e5];
+
+impl Say for Assumed {
+    fn say(&self) -> String {
+        format!("{}: not stated; {} is taken", self.figure, self.taken)
+    }
+}
+
 impl Say for Proviso {
     fn say(&self) -> String {
         let (time, way) = (quantity(self.time_s, "s"), length(self.way_m));
         format!("its {} frames can be registered ({time}, a way of {way})", self.frames)
+    }
+}
+
+impl Say for RangeDecides {
+    fn say(&self) -> String {
+        let [low, high] = self.stated;
+        match self.figure {
+            "alternatives.temperature" => {
+                let ends = [low, high].map(celsius);
+                let end = |k: f64, word: &str| {
+                    if k <= NO_END_K[0] || k >= NO_END_K[1] {
+                        format!("{word} however far")
+                    } else {
+                        format!("{word} to {}", celsius(k))
+                    }
+                };
+                let holds = match (self.holds[0] < low, self.holds[1] > high) {
+                    (false, false) => "beyond either end the answer changes".to_owned(),
+                    (below, above) => {
+                        let down = if below { end(self.holds[0], "down") } else { "not below".into() };
+                        let up = if above { end(self.holds[1], "up") } else { "not above".into() };
+                        format!("the answer holds {down} and {up}")
+                    }
+                };
+                format!("no alternative is colder than {} or warmer than {} ({holds})", ends[0], ends[1])
+            }
+            _ => format!(
+                "the lighting of the alternatives stays between {low} and {high} (the answer holds from {} to {})",
+                significant(self.holds[0], 3),
+                significant(self.holds[1], 3)
+            ),
+        }
+    }
+}
+
+/// What holds of a camera whose figure nobody stated.
+fn holds(figure: &Assumed, counts: Option<f64>) -> String {
+    let taken = &figure.taken;
+    let said = match figure.figure {
+        "exposure" => format!("its exposure is {taken}"),
+        "optics_efficiency" => "its optics lose nothing".into(),
+        "quantum_efficiency" => "all photons on its detector are counted".into(),
+        "netd_temperature" => format!("its NETD is of a blackbody of {taken}"),
+        "netd_f_number" => format!("its NETD is that behind {taken}"),
+        "spectral_range" => format!("its detector sees {taken} and no more"),
+        "flicker_fraction" => "all of its noise averages out over the exposures".into(),
+        "readout" => "all bands are read in one exposure".into(),
+        "frame_rate" => "exposures follow each other without a pause".into(),
+        "full_well" => match counts {
+            Some(counts) => format!("{} counts do not fill a pixel", significant(counts, 2)),
+            None => "no pixel is full".into(),
+        },
+        "dark_rate" => "it counts nothing in the dark".into(),
+        "read_noise" => "reading it adds no noise".into(),
+        "quantisation_bits" => "its converter adds no noise".into(),
+        other => format!("{other} is {taken}"),
+    };
+    format!("{said} ({} is not stated)", figure.figure)
+}
+
+impl Say for Condition {
+    fn say(&self) -> String {
+        match self {
+            Self::Range(range) => range.say(),
+            Self::RegisteredFrames(proviso) => proviso.say(),
+            Self::StillScene { time_s } => format!("nothing moves for {}", quantity(*time_s, "s")),
+            Self::Constants { emissivities: [one, other] } => format!(
+                "real surfaces are as the one number of each says ({one} and {other}), which no surface was measured to be"
+            ),
+            Self::Emissivities { error, share_met } => format!(
+                "the emissivities are known better than to {error} rms ({} of draws with such errors meet the requirement)",
+                share(*share_met)
+            ),
+            Self::Assumed { figure, counts } if figure.favourable => holds(figure, *counts),
+            Self::Assumed { figure, .. } => figure.say(),
+            Self::NoLimit => "the paper's local distance is believed, which is no limit".into(),
+            Self::Bunching { occupancy } => format!(
+                "the bunching of thermal photons is left out ({} photons per mode)",
+                significant(*occupancy, 2)
+            ),
+            Self::FillsPixel { footprint_m: Some(footprint_m) } => {
+                format!("the target fills a pixel, which sees {} there", length(*footprint_m))
+            }
+            Self::FillsPixel { footprint_m: None } => "the target fills a pixel at its distance".into(),
+            Self::NoFilterLight => {
+                "the filters neither shine nor throw light back (sensor_temperature is not stated)".into()
+            }
+            Self::NoAir => "the air on the path takes nothing away".into(),
+            Self::NoSurroundings => "nothing around the target lights it".into(),
+            Self::Calibrated { known, .. } => {
+                let known: Vec<&str> = known
+                    .iter()
+                    .map(|one| match one {
+                        hadar::fisher::Nuisance::EnvironmentTemperature => "temperature of the surroundings",
+                        other => other.name(),
+                    })
+                    .collect();
+                format!("{} {} known", in_a_row(&known, "and"), if known.len() == 1 { "is" } else { "are" })
+            }
+            Self::LeftOut { materials } => {
+                format!("what was left out is never met ({})", listed(materials))
+            }
+            Self::Setting { key, value, of_rule: true } => {
+                format!("the rule said {key} = {value}, which it does not")
+            }
+            Self::Setting { key, value, .. } => format!("{key} = {value} in the place of the file's"),
+        }
+    }
+}
+
+/// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
+pub(crate) const EXPLAINED: [[&str; 3]; 14] = [
+    [
+        "range",
+        "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
+        "Widen the range to all that may happen, or make sure that nothing is beyond it.",
+    ],
+    [
+        "registered-frames",
+        "Frames are added up while something moves at the demanded speed: they must be laid over each other first.",
+        "Take fewer frames, or make sure that they can be registered.",
+    ],
+    [
+        "still-scene",
+        "No speed is stated: nothing may move by a pixel until all bands of all frames are read.",
+        "Write requirement.speed, and requirement.time for how long it may take.",
+    ],
+    [
+        "constant-emissivities",
+        "Both of the pair that decides are entered as one number: nothing is known of what tells real surfaces apart.",
+        "Measure their spectra, or name materials of which one is known.",
+    ],
+    [
+        "emissivities",
+        "Errors of the emissivities as they usually are would undo the answer.",
+        "Measure these emissivities, and state sensitivity.emissivity_error.",
+    ],
+    [
+        "no-limit",
+        "A local distance decides, which is no limit and can err either way.",
+        "Leave out requirement.by.",
+    ],
+    [
+        "photon-bunching",
+        "The bunching of thermal photons would decide, and is left out.",
+        "Write camera.photon_bunching = true.",
+    ],
+    [
+        "fills-pixel",
+        "The size of the target or its distance is not stated: it is taken to fill a pixel.",
+        "Write target.size with a [background], and target.distance.",
+    ],
+    [
+        "no-filter-light",
+        "The light that filters send and throw back onto the sensor is left out.",
+        "Write camera.sensor_temperature.",
+    ],
+    ["no-air", "There is no air on the path.", "Write [atmosphere] with model = \"us-standard\"."],
+    [
+        "no-surroundings",
+        "Nothing around the target lights it.",
+        "Write [[environment]] with what is around the target.",
+    ],
+    [
+        "calibrated",
+        "What is not among the unknowns is known: the gain of the camera, the temperatures of the surroundings.",
+        "Write unknown.nuisances, with \"gain\" and \"environment-temperature\" where they are not known.",
+    ],
+    [
+        "materials-left-out",
+        "Alternatives that do not cover the bands were left out, as was asked for.",
+        "Choose bands that they cover, or make sure that they are never met.",
+    ],
+    [
+        "setting",
+        "A value stands in the place of that of the file; of a rule that is another rule.",
+        "Write it into the file.",
+    ],
+];
+
+/// A 'yes' with the hardest of its conditions, and how many more there are.
+pub(crate) fn yes(conditions: &[Condition]) -> String {
+    let mut open = Condition::open(conditions);
+    match (open.next(), open.count()) {
+        (None, _) => "yes".into(),
+        (Some(one), 0) => format!("yes, if {}", one.say()),
+        (Some(one), 1) => format!("yes, if {}, and on 1 more condition", one.say()),
+        (Some(one), more) => format!("yes, if {}, and on {more} more conditions", one.say()),
+    }
+}
+
+/// All conditions in a paragraph of their own; nothing without.
+pub(crate) fn paragraph(conditions: &[Condition]) -> String {
+    if conditions.is_empty() {
+        return String::new();
+    }
+    let mut out = String::new();
+    let open: Vec<&Condition> = Condition::open(conditions).collect();
+    if !open.is_empty() {
+        out += "Yes, if all of this holds\n";
+        for one in &open {
+            let _ = writeln!(out, "  [{}] {}", one.code(), one.say());
+        }
+    }
+    let rest: Vec<&Condition> = conditions.iter().filter(|one| !one.favourable()).collect();
+    if !rest.is_empty() {
+        out += if open.is_empty() { "It rests on\n" } else { "It rests on as well\n" };
+        for one in rest {
+            let _ = writeln!(out, "  [{}] {}", one.code(), one.say());
+        }
+    }
+    out + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_yes_names_the_hardest_and_counts_the_rest() {
+        assert_eq!(yes(&[]), "yes");
+        let still = Condition::StillScene { time_s: 88.0 };
+        assert_eq!(yes(std::slice::from_ref(&still)), "yes, if nothing moves for 88.0 s");
+        let set = Condition::Setting { key: "camera.frames".into(), value: "256".into(), of_rule: false };
+        let all = [still, Condition::NoAir, Condition::NoSurroundings, set];
+        assert_eq!(yes(&all), "yes, if nothing moves for 88.0 s, and on 2 more conditions");
+        let said = paragraph(&all);
+        assert_eq!(said.matches("\n  [").count(), 4, "{said}");
+        assert!(said.contains("It rests on as well\n  [setting] camera.frames = 256"), "{said}");
+    }
+
+    #[test]
+    fn every_code_is_explained() {
+        let figures = Assumed::FIGURES.iter().map(|figure| figure.replace('_', "-"));
+        let mut explained: Vec<String> =
+            EXPLAINED.iter().map(|row| row[0].to_owned()).chain(figures).collect();
+        let mut codes = Condition::codes();
+        codes.sort();
+        explained.sort();
+        assert_eq!(codes, explained);
+    }
+
+    #[test]
+    fn a_range_says_how_far_the_answer_holds() {
+        let kelvin = |ends: [f64; 2]| ends.map(|celsius| celsius + 273.15);
+        let range = |holds| RangeDecides {
+            figure: "alternatives.temperature",
+            stated: kelvin([0.0, 40.0]),
+            holds: kelvin(holds),
+        };
+        let said = range([-273.0, 44.0]).say();
+        assert!(said.ends_with("(the answer holds down however far and up to 44 degC)"), "{said}");
+        assert!(range([0.0, 40.0]).say().ends_with("(beyond either end the answer changes)"));
     }
 }

@@ -23,8 +23,8 @@ use hadar::ranging::depth::Demand;
 use hadar::words::{self, length, quantity, significant};
 use hadar_scenario::{Units, interval};
 use hadar_study::{
-    Certified, Definition, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Proviso, Quotable,
-    StopResult, WhoMeets,
+    Certified, Condition, Definition, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof,
+    Quotable, StopResult, WhoMeets,
 };
 
 impl Say for WhoMeets {
@@ -69,9 +69,9 @@ fn which(who: &WhoMeets) -> String {
     let meet: Vec<String> = who
         .meet
         .iter()
-        .map(|(name, proviso)| match proviso {
+        .map(|(name, conditions)| match Condition::open(conditions).next() {
             None => name.clone(),
-            Some(Proviso { frames, .. }) => format!("{name} (if its {frames} frames can be registered)"),
+            Some(hardest) => format!("{name} (if {})", hardest.say()),
         })
         .collect();
     let others: Vec<String> =
@@ -289,7 +289,7 @@ mod tests {
     /// A yes that rests on a search alone is not read as one that is proved.
     #[test]
     fn a_yes_that_is_not_proved_says_so() {
-        let proved = WhoMeets { meet: vec![("a".into(), None), ("b".into(), None)], ..WhoMeets::default() };
+        let proved = WhoMeets { meet: vec![("a".into(), Vec::new()), ("b".into(), Vec::new())], ..WhoMeets::default() };
         assert_eq!(proved.say(), "All 2 cameras meet the rule: a, b.");
         let searched = WhoMeets { unproved: vec!["b".into()], ..proved };
         let said =

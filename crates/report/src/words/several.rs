@@ -3,6 +3,9 @@
 /// A verdict that hangs on something, which the answer itself says.
 pub(crate) const YES_IF: &str = "yes, if";
 
+/// A verdict that what is known does not settle.
+pub(crate) const UNDECIDED: &str = "undecided";
+
 /// The verdict of a rule that does not hold on the day.
 pub(crate) const NOT_IN_FORCE: &str = "no, not in force";
 

@@ -6,10 +6,10 @@ mod text;
 
 pub use text::text;
 
-use super::Say;
 use super::probability::{demanded, reliability};
 use super::shortfall::clauses;
 use super::text::numbers::in_a_row;
+use super::{Say, conditions};
 use hadar::fisher::Nuisance;
 use hadar::words::significant;
 use hadar_scenario::DistanceKind;
@@ -62,7 +62,18 @@ fn not_proved_of_mixtures(finding: &Finding, alternative: &str, found: &MixtureA
 
 /// A 'yes', with what it is subject to.
 fn yes(finding: &Finding) -> String {
-    finding.provided.map_or_else(|| "Yes".into(), |proviso| format!("Yes, if {}", proviso.say()))
+    conditions::yes(&finding.conditions).replacen('y', "Y", 1)
+}
+
+/// Of a pixel, where the target has more: what all of them together would tell, if nothing is common to their noise.
+fn of_pixels(finding: &Finding, reached: f64) -> String {
+    finding.pixels.map_or_else(String::new, |pixels| {
+        format!(
+            "; all {} pixels on it together {}, if they are alike and share no noise",
+            significant(pixels, 3),
+            reliability(reached * pixels.sqrt())
+        )
+    })
 }
 
 /// What was found of one pair of spectra.
@@ -105,7 +116,11 @@ fn answered(finding: &Finding) -> String {
             };
             let end = match reached {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
-                Some(reached) => format!("; it reaches {} at most.", reliability(*reached)),
+                Some(reached) => {
+                    let one = if finding.pixels.is_some() { "a pixel" } else { "it" };
+                    let all = of_pixels(finding, *reached);
+                    format!("; {one} reaches {} at most{all}.", reliability(*reached))
+                }
                 None => ".".into(),
             };
             format!("{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability{end}")
@@ -187,7 +202,7 @@ fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hadar_study::{Proviso, Shortfall};
+    use hadar_study::{Condition, Proviso, Shortfall};
 
     fn finding(answer: Answer) -> Finding {
         Finding {
@@ -199,7 +214,8 @@ mod tests {
             answer,
             placeholders: None,
             classes: None,
-            provided: None,
+            conditions: Vec::new(),
+            pixels: None,
         }
     }
 
@@ -214,8 +230,8 @@ mod tests {
             yes.say(),
             "Yes: ours can tell skin from aluminium with 84.1 % reliability; it reaches 97.7 % at most."
         );
-        let provided = Some(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 });
-        let said = Finding { provided, placeholders: Some([0.95, 0.9]), ..yes }.say();
+        let conditions = vec![Condition::RegisteredFrames(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 })];
+        let said = Finding { conditions, placeholders: Some([0.95, 0.9]), ..yes }.say();
         assert!(
             said.starts_with("Yes, if its 4 frames can be registered (62.0 ms, a way of 83 cm): "),
             "{said}"

@@ -146,6 +146,7 @@ impl Key {
             figures::Kind::Count(_) => COUNT,
             figures::Kind::Flag(_) => Value::Flag,
             figures::Kind::Readout(_) => Value::Choice(&READOUTS),
+            figures::Kind::Span(_) => Value::Pair(&Value::Spectral),
             figures::Kind::File(_) => Value::File,
             figures::Kind::Name(_) => Value::Text,
         };

@@ -1,7 +1,9 @@
 //! Tables of a task: what is there, what it must be told apart from, what is unknown, what is demanded.
 
 use super::key::Silent::{Is, Means, Refused};
-use super::key::{A_SHARE, KELVIN, Key, LENGTH, MATERIALS, More, POSITIVE, SPEED, Table, Value, WAVENUMBER};
+use super::key::{
+    A_SHARE, KELVIN, Key, LENGTH, MATERIALS, More, POSITIVE, SPEED, TIME, Table, Value, WAVENUMBER,
+};
 use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::units::Dimension;
 
@@ -328,6 +330,14 @@ const REQUIREMENT_KEYS: &[Key] = &[
         "\"10 m/s\"",
         "Speed of the vehicle that carries the camera.",
         "motion blur in pixels (SII E, Fig. 3d)",
+    ),
+    Key::row(
+        "time",
+        TIME,
+        Means("as long as it takes, which a 'yes' then hangs on"),
+        "\"0.5 s\"",
+        "Time within which all bands of all frames must be read.",
+        "frames x bands x exposure, at the frame rate",
     ),
 ];
 /// `[requirement]` of a task.

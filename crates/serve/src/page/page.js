@@ -141,8 +141,8 @@ function show({ scenario, form, answer, error }, { scenario: before, edits, full
   at("answer").classList.remove("passing");
   if (at("sentence").textContent !== answer.sentence) at("sentence").textContent = answer.sentence;
   // A 'yes' that hangs on something does not look like one.
-  at("sentence").className = answer.met === null || answer.provided ? "" : answer.met ? "yes" : "no";
-  const said = { true: answer.provided ? "Yes, if: " : "Yes: ", false: "No: ", null: "" };
+  at("sentence").className = answer.met === null || (answer.met && answer.conditional) ? "" : answer.met ? "yes" : "no";
+  const said = { true: answer.conditional ? "Yes, if: " : "Yes: ", false: "No: ", null: "" };
   document.title = `${said[answer.met]}hadar`;
   at("solved").hidden = answer.solved.length === 0;
   at("solved-heading").textContent = answer.met

@@ -152,6 +152,8 @@ pub struct PairResult {
     pub statistical_distance: Option<f64>,
     /// The same by the nearest distance: the limit, whichever decides.
     pub statistical_distance_nearest: Option<f64>,
+    /// What that of the chosen distance is at least, as proved, and at most, as a state that was found shows.
+    pub statistical_distance_bounds: Option<[f64; 2]>,
     /// Whether that of the chosen distance reaches the requirement.
     pub told_apart: Option<bool>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.

@@ -14,6 +14,8 @@ pub(super) struct Finder<'a> {
     pub(super) warnings: Vec<Warning>,
     /// Skies of the library that were left out of the alternatives.
     pub(super) skies: Vec<String>,
+    /// Materials that do not cover the bands and were left out.
+    pub(super) left_out: Vec<String>,
 }
 
 impl<'a> Finder<'a> {
@@ -159,8 +161,7 @@ impl<'a> Finder<'a> {
             };
             return Err(Error::malformed(found, instead).at(self.scenario.place(&group.key)));
         }
-        let skipped = names.iter().map(|name| Warning::MaterialSkipped { material: (*name).to_owned() });
-        self.warnings.extend(skipped);
+        self.leave_out(&names);
         let total: f64 = kept.iter().map(|(_, weight)| weight).sum();
         let share = |weight: f64| if total > 0.0 { weight / total } else { 1.0 / kept.len() as f64 };
         let weights: Vec<f64> = kept.iter().map(|(_, weight)| share(*weight)).collect();
@@ -242,10 +243,16 @@ impl<'a> Finder<'a> {
             };
             return Err(Error::malformed(found, instead).at(self.scenario.place("alternatives")));
         }
-        for name in names {
-            self.warnings.push(Warning::MaterialSkipped { material: name.to_owned() });
-        }
+        self.leave_out(&names);
         Ok(kept)
+    }
+
+    /// Materials that do not cover the bands.
+    fn leave_out(&mut self, names: &[&str]) {
+        for name in names {
+            self.left_out.push((*name).to_owned());
+            self.warnings.push(Warning::MaterialSkipped { material: (*name).to_owned() });
+        }
     }
 }
 

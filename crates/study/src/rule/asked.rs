@@ -4,7 +4,7 @@ use hadar::demand::Skipping;
 use hadar_scenario::Date;
 
 /// What is asked of a rule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RuleAsked {
     /// How much of an answer.
     pub extent: Extent,
@@ -14,6 +14,8 @@ pub struct RuleAsked {
     pub seed: u64,
     /// The day that is asked about.
     pub on: Option<Date>,
+    /// Codes of conditions that are accepted ([`crate::Condition::code`]).
+    pub accepted: Vec<String>,
 }
 
 /// How much of an answer is asked for.

@@ -6,7 +6,7 @@ use super::results::{
 };
 use super::uncertainty::MarginUncertainty;
 use crate::companion::Companion;
-use crate::proviso::Proviso;
+use crate::condition::Condition;
 use crate::{Shortfall, Warning};
 use hadar::demand::Work;
 use hadar::ranging::depth::Demand;
@@ -25,6 +25,8 @@ pub struct RuleAnswer {
     pub rule: Rule,
     /// The day that was asked about.
     pub on: Option<Date>,
+    /// Codes of conditions that whoever asks accepts.
+    pub accepted: Vec<String>,
     /// Which cameras do, in JSON a sentence.
     pub sentence: WhoMeets,
     /// Every camera, in the order of the rule.
@@ -59,8 +61,10 @@ pub struct CameraAnswer {
     pub undecided: Vec<String>,
     /// The weakest evidence that its verdict rests on.
     pub grade: Grade,
-    /// What meeting the rule hangs on.
-    pub provided: Option<Proviso>,
+    /// The same where all conditions hold.
+    pub evidence: Grade,
+    /// What meeting the rule rests on, hardest first.
+    pub conditions: Vec<Condition>,
 }
 
 /// A clause before all cameras.
@@ -192,12 +196,16 @@ pub struct MeasuredVerdict {
     pub value: Option<f64>,
     /// How much better than demanded: the value over the demand of what must be large, the demand over the value of an error.
     pub margin: f64,
-    /// How that is known.
+    /// How that is known: the weakest of what it rests on.
     pub grade: Grade,
+    /// How it is known where all conditions hold.
+    pub evidence: Grade,
     /// Where it is the least.
     pub limiting: MeasuredScene,
     /// How the vehicle comes nearer, if that is said.
     pub approach: Option<ApproachResult>,
+    /// What meeting it rests on, hardest first.
+    pub conditions: Vec<Condition>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
 }
@@ -227,16 +235,18 @@ pub struct Line<'a> {
     pub verdict: Verdict,
     /// Least margin.
     pub margin: f64,
-    /// Evidence.
+    /// Evidence: the weakest of what it rests on.
     pub grade: Grade,
+    /// Evidence where all conditions hold.
+    pub evidence: Grade,
     /// What it does not meet.
     pub fails_by: &'a [Shortfall],
     /// What it may or may not meet.
     pub undecided_by: &'a [Shortfall],
     /// How well the margin is known.
     pub uncertainty: Option<&'a MarginUncertainty>,
-    /// What meeting it hangs on.
-    pub provided: Option<Proviso>,
+    /// What meeting it rests on, hardest first.
+    pub conditions: &'a [Condition],
     /// How the vehicle comes nearer.
     pub approach: Option<&'a ApproachResult>,
     /// What the reader must know.
@@ -272,10 +282,11 @@ impl CameraVerdict {
             verdict: self.verdict,
             margin: self.margin,
             grade: self.grade,
+            evidence: self.evidence,
             fails_by: &self.fails_by,
             undecided_by: &self.undecided_by,
             uncertainty: self.uncertainty.as_ref(),
-            provided: self.provided,
+            conditions: &self.conditions,
             approach: self.approach.as_ref(),
             warnings: &self.warnings,
         }
@@ -291,10 +302,11 @@ impl MeasuredVerdict {
             verdict: self.verdict,
             margin: self.margin,
             grade: self.grade,
+            evidence: self.evidence,
             fails_by: &self.fails_by,
             undecided_by: &self.undecided_by,
             uncertainty: self.uncertainty.as_ref(),
-            provided: None,
+            conditions: &self.conditions,
             approach: self.approach.as_ref(),
             warnings: &self.warnings,
         }
@@ -320,6 +332,7 @@ impl Serialize for RuleAnswer {
             map.serialize_entry("on", &day.to_string())?;
             map.serialize_entry("in_force", &self.sentence.idle.is_none())?;
         }
+        map.serialize_entry("accepted", &self.accepted)?;
         map.serialize_entry("sentence", &self.sentence)?;
         match (self.only(), self.clauses.first()) {
             (Some(only), Some(clause)) => {

@@ -12,13 +12,14 @@ use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
 use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::rests_on::{of_figures, of_measured};
 use crate::warning::by_code;
 use crate::{Shortfall, Warning};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_scenario::range::{Demand, RangeScenario, Subject};
 use hadar_scenario::rule::{Clause, DepthDemand, DepthObject, StopSpec, Verdict};
-use hadar_scenario::{BandsSpec, Rule};
+use hadar_scenario::{BandsSpec, Rule, Setting};
 use hadar_simulate::render::StreetSpec;
 
 /// Ends of distances nearer to each other than by this factor have none between them.
@@ -29,6 +30,8 @@ const ALIKE: f64 = 1.05;
 pub(super) struct DepthClause {
     demand: DepthDemand,
     cameras: Vec<Before>,
+    /// What is set in the place of the rule's values.
+    set: Vec<Setting>,
 }
 
 #[derive(Debug)]
@@ -40,6 +43,8 @@ struct Before {
     spoiled: Vec<Shortfall>,
     /// Whether the rule has air, which the street has not.
     air: bool,
+    bands: usize,
+    speed_m_s: Option<f64>,
 }
 
 /// What is found from one distance.
@@ -73,6 +78,7 @@ impl DepthClause {
                 None => Moving { distance_m: distances_m.first().copied(), ..moving },
             });
             let spoiled = spoiled(moving, stop, &named.camera, bands);
+            let (count, speed_m_s) = (bands, moving.map(|moving| moving.speed_m_s));
             let air = scenario.atmosphere.is_some();
             let bands = BandsSpec { source: scenario.bands.source.clone(), ..BandsSpec::default() };
             let mut range = RangeScenario {
@@ -91,10 +97,10 @@ impl DepthClause {
                 Ok((distance_m, RangeStudy::new(&range, library)?))
             };
             let studies = distances_m.into_iter().map(from).collect::<Result<_>>()?;
-            Ok(Before { named: named.clone(), studies, approach, spoiled, air })
+            Ok(Before { named: named.clone(), studies, approach, spoiled, air, bands: count, speed_m_s })
         };
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
-        Ok(Self { demand: demand.clone(), cameras })
+        Ok(Self { demand: demand.clone(), cameras, set: rule.scenario.source.settings.clone() })
     }
 
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
@@ -185,10 +191,15 @@ impl DepthClause {
             (true, true) => (Verdict::Undecided, vec![Shortfall::DepthError]),
             (true, false) => (Verdict::Meets, Vec::new()),
         };
+        let passes = verdict == Verdict::Meets;
+        let (camera, bands) = (&before.named.camera, before.bands);
+        let figures = of_figures(camera, bands, None);
+        let conditions = of_measured(figures, (camera, bands), before.speed_m_s, &self.set, passes);
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),
             verdict,
-            passes: verdict == Verdict::Meets,
+            passes,
+            conditions,
             fails_by,
             undecided_by,
             uncertainty: None,
@@ -196,6 +207,7 @@ impl DepthClause {
             margin,
             // The street is one scene, and nobody's: a picture with other texture has another bound.
             grade: Grade::Assumed,
+            evidence: Grade::Assumed,
             limiting: MeasuredScene {
                 distance_m: Some(distance_m),
                 target: Some(self.demand.object.name().to_owned()),
@@ -239,7 +251,18 @@ mod tests {
         let library = Library::embedded().unwrap();
         let clause = DepthClause::new(&rule, &rule.clauses[0], demand, &[], &library).unwrap();
         let named = super::super::cameras::of(&rule).unwrap().remove(0);
-        (clause, Before { named, studies: Vec::new(), approach: None, spoiled: Vec::new(), air: false })
+        (
+            clause,
+            Before {
+                named,
+                studies: Vec::new(),
+                approach: None,
+                spoiled: Vec::new(),
+                air: false,
+                bands: 1,
+                speed_m_s: None,
+            },
+        )
     }
 
     proptest! {

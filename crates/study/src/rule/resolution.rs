@@ -11,6 +11,7 @@ use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, Measure
 use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use crate::Shortfall;
+use crate::rests_on::of_measured;
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
 use hadar_scenario::Rule;
@@ -99,17 +100,24 @@ impl Resolution {
             &|camera| Ok(self.reached(camera, bands).1 / self.pixels),
         )?;
         let Judged { verdict, fails_by, undecided_by } = judged;
+        let passes = verdict == Verdict::Meets;
+        let evidence = Grade::Proved.guarded(verdict, uncertainty.as_ref());
+        let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
+        let set = &self.rule.scenario.source.settings;
+        let conditions = of_measured(Vec::new(), (&named.camera, bands), speed_m_s, set, passes);
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,
-            passes: verdict == Verdict::Meets,
+            passes,
             fails_by,
             undecided_by,
-            grade: Grade::Proved.guarded(verdict, uncertainty.as_ref()),
+            grade: evidence.under(&conditions),
+            evidence,
             uncertainty,
             value: Some(value),
             margin: value / self.pixels,
             limiting: MeasuredScene { distance_m: Some(distance_m), ..MeasuredScene::default() },
+            conditions,
             approach: self.approach(&named.camera, bands).map(|approach| approach.result),
             warnings: super::approach::contradiction(&named.camera).into_iter().collect(),
         })

@@ -2,7 +2,7 @@
 
 use super::not_in_force::NotInForce;
 use super::uncertainty::MarginUncertainty;
-use crate::proviso::Proviso;
+use crate::condition::Condition;
 use crate::size::Solutions;
 use crate::{ClassSide, NearestState, Shortfall, Warning};
 use hadar::instrument::Readout;
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WhoMeets {
     /// Those that do, each with what it hangs on.
-    pub meet: Vec<(String, Option<Proviso>)>,
+    pub meet: Vec<(String, Vec<Condition>)>,
     /// Those of them of which it is not proved.
     pub unproved: Vec<String>,
     /// Those of which it cannot be said, their figures being uncertain, with the interval of their least margin.
@@ -109,8 +109,10 @@ pub struct CameraVerdict {
     pub name: String,
     /// What comes of it.
     pub verdict: Verdict,
-    /// How that is known.
+    /// How that is known: the weakest of what it rests on.
     pub grade: Grade,
+    /// How it is known where all conditions hold.
+    pub evidence: Grade,
     /// Whether it meets the rule.
     pub passes: bool,
     /// What it does not meet.
@@ -119,8 +121,8 @@ pub struct CameraVerdict {
     pub undecided_by: Vec<Shortfall>,
     /// How well its margin is known; `None` where no uncertainty is stated.
     pub uncertainty: Option<MarginUncertainty>,
-    /// What meeting it hangs on; in JSON what completes 'yes, if '.
-    pub provided: Option<Proviso>,
+    /// What meeting it rests on, hardest first; of a 'no' what was taken on the unfavourable side.
+    pub conditions: Vec<Condition>,
     /// Number of bands.
     pub bands: usize,
     /// How they are read.
@@ -379,6 +381,11 @@ hadar::named! {
 }
 
 impl Grade {
+    /// The same of what rests on such conditions too.
+    pub(super) fn under(self, conditions: &[Condition]) -> Self {
+        if Condition::open(conditions).next().is_some() { self.max(Self::Assumed) } else { self }
+    }
+
     /// That of a line with such a verdict, if its margin is guarded: what is promised then rests on draws.
     pub(super) fn guarded(self, verdict: Verdict, uncertainty: Option<&MarginUncertainty>) -> Self {
         let drawn = uncertainty.is_some_and(|found| found.low < found.high);

@@ -10,7 +10,9 @@ use super::approach::{contradiction, spoiled};
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
+use crate::condition::{Condition, hardest_first};
 use crate::proviso::Proviso;
+use crate::rests_on::Circumstances;
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
@@ -56,8 +58,6 @@ struct Image {
 
 /// What the reader of a verdict must know beside it.
 struct Noted {
-    /// What a 'yes' is subject to.
-    provided: Option<Proviso>,
     /// Whether the camera is said to meet the requirement without a proof.
     unproved: bool,
     /// Whether the noise is that of a brighter scene than the limiting one.
@@ -144,14 +144,13 @@ impl TellApart {
                 fixes = Some(self.fixes(candidate, &at, camera, surface)?);
             }
         }
-        let provided = self.proviso(candidate);
-        let warnings = self.remarks(candidate, &Noted { provided, unproved, noisier, fragile }, &at, surface);
+        let conditions = self.conditions(candidate, passes, &image, limiting.placeholders);
+        let warnings = self.remarks(candidate, &Noted { unproved, noisier, fragile }, &at, surface);
         let bands = at.bands.len();
         Ok(CameraVerdict {
             name: candidate.named.name.clone(),
             passes,
             fails_by,
-            provided: provided.filter(|_| passes),
             bands,
             readout: at.camera.as_ref().map_or(Readout::Simultaneous, |camera| camera.readout),
             sweep_s: at.camera.as_ref().map_or(0.0, |camera| camera.sweep_s(bands)),
@@ -170,12 +169,36 @@ impl TellApart {
             verdict,
             undecided_by,
             uncertainty,
-            grade,
+            grade: grade.under(&conditions),
+            evidence: grade,
+            conditions,
             warnings,
         })
     }
 
-    /// What a 'yes' hangs on.
+    /// What a 'yes' rests on; of a 'no' what was taken on the unfavourable side.
+    fn conditions(
+        &self,
+        candidate: &Candidate,
+        met: bool,
+        image: &Image,
+        constants: Option<[f64; 2]>,
+    ) -> Vec<Condition> {
+        let Some((near, camera)) =
+            candidate.near.first().and_then(|near| Some((near, near.camera.as_ref()?)))
+        else {
+            return Vec::new();
+        };
+        let farthest_m = candidate.distance_m.map(|[_, most]| most);
+        let asked = Circumstances { speed_m_s: self.pace_m_s(), distance_m: farthest_m, of_rule: true };
+        let mut found = near.of_camera(camera, image.reading);
+        found.extend(near.of_scene(camera, asked));
+        found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
+        found.retain(|one| met || !one.favourable());
+        hardest_first(&mut found);
+        found
+    }
+
     fn proviso(&self, candidate: &Candidate) -> Option<Proviso> {
         let near = candidate.near.first()?;
         Proviso::of(near.camera.as_ref()?, near.bands.len(), self.pace_m_s()?)
@@ -242,13 +265,13 @@ impl TellApart {
     }
 
     /// What is to be said of a camera before any scene is searched.
-    fn warnings_of(&self, candidate: &Candidate, provided: Option<Proviso>) -> Vec<Warning> {
+    fn warnings_of(&self, candidate: &Candidate) -> Vec<Warning> {
         let Some(near) = candidate.near.first() else { return Vec::new() };
         let Some(camera) = &near.camera else { return Vec::new() };
         let state =
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
-        warnings.extend(provided.map(Warning::FramesInMotion));
+        warnings.extend(self.proviso(candidate).map(Warning::FramesInMotion));
         let farthest_m = candidate.distance_m.map(|[_, most]| most);
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
@@ -262,7 +285,7 @@ impl TellApart {
 
     /// What is to be said of a camera, made of what was found of it.
     fn remarks(&self, candidate: &Candidate, noted: &Noted, at: &Study, surface: &Surface) -> Vec<Warning> {
-        let mut warnings = self.warnings_of(candidate, noted.provided);
+        let mut warnings = self.warnings_of(candidate);
         warnings.extend(noted.unproved.then_some(Warning::NotProved));
         warnings.extend(noted.noisier.then_some(Warning::BrightestNoise));
         warnings.extend(at.placeholders(surface));

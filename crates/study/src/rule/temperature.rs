@@ -12,6 +12,7 @@ use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
 use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use super::{apart, cameras};
+use crate::rests_on::{of_figures, of_measured};
 use crate::{Shortfall, Study};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -162,6 +163,14 @@ impl TemperatureClause {
         // One scene in which it cannot be shows that it fails.
         let grade = if verdict != Verdict::Fails || !own_noise { Grade::Searched } else { Grade::Proved };
         let grade = grade.guarded(verdict, uncertainty.as_ref());
+        let brightest = before.sighted.first().and_then(|sighted| {
+            let study = Study { camera: Some(named.camera.clone()), ..sighted.study.clone() };
+            study.camera_result(study.photon_radiance()).map(|seen| seen.brightest_reading)
+        });
+        let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
+        let set = &self.rule.scenario.source.settings;
+        let figures = of_figures(&named.camera, bands, brightest);
+        let conditions = of_measured(figures, (&named.camera, bands), speed_m_s, set, passes);
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,
@@ -171,8 +180,10 @@ impl TemperatureClause {
             uncertainty,
             value,
             margin,
-            grade,
+            grade: grade.under(&conditions),
+            evidence: grade,
             limiting,
+            conditions,
             approach: before.approach.as_ref().map(|approach| approach.result),
             warnings,
         })

@@ -2,7 +2,7 @@
 
 use super::super::identify::PairResult;
 use super::super::size::CameraResult;
-use super::super::{Study, Warning};
+use super::super::{Proviso, Study, Warning};
 use hadar::instrument::{Camera, CameraSpec};
 use hadar::policy::caps::longest_wavelength_m;
 use hadar_scenario::Source;
@@ -38,7 +38,7 @@ impl Study {
         let found = [
             shortcut(pair),
             self.motion(result),
-            self.proviso().map(Warning::FramesInMotion),
+            self.proviso(camera).map(Warning::FramesInMotion),
             full_well(result),
             self.small_target(camera),
             self.size_unknown(camera, self.scenario.target.distance_m),
@@ -49,6 +49,10 @@ impl Study {
             assumed(camera),
         ];
         found.into_iter().flatten().collect()
+    }
+
+    fn proviso(&self, camera: &Camera) -> Option<Proviso> {
+        Proviso::of(camera, self.bands.len(), self.scenario.requirement.speed_m_s?)
     }
 
     fn motion(&self, result: &CameraResult) -> Option<Warning> {

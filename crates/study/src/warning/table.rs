@@ -3,7 +3,7 @@
 use crate::proviso::Proviso;
 use crate::rule::NotInForce;
 use crate::warning::WorstBlackbody;
-use hadar::instrument::Readout;
+use hadar::instrument::{Assumed, Readout};
 use hadar::scene::Parameter;
 use hadar_simulate::classifier::Method;
 
@@ -234,9 +234,9 @@ warnings! {
     /// Photons of the brightest band of the brightest pixel of a scene.
     PixelFull { counts: f64, full_well: f64 } as FullWell;
     /// One of them.
-    CameraFigureAssumed { figure: String } = "camera-figure-assumed";
-    /// Figures that no document states, each in the words of the camera's entry.
-    CameraFiguresAssumed { camera: String, figures: Vec<String> } as CameraFigureAssumed;
+    CameraFigureAssumed { figure: Assumed } = "camera-figure-assumed";
+    /// Figures that no document states.
+    CameraFiguresAssumed { camera: String, figures: Vec<Assumed> } as CameraFigureAssumed;
 
     /// A matrix of distances with priors.
     MatrixPriors = "matrix-priors";

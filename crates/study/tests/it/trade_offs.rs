@@ -5,7 +5,7 @@ use hadar::policy::elasticity::Lever;
 use hadar::policy::trade_off::POINTS;
 use hadar::policy::{CapCode, Quantity, Solution};
 use hadar_scenario::Scenario;
-use hadar_study::{Answer, Shortfall, Sizing, Study, Warning};
+use hadar_study::{Answer, Condition, Shortfall, Sizing, Study, Warning};
 use std::sync::OnceLock;
 
 const SCENE: &str = r#"
@@ -313,26 +313,33 @@ fn assumptions_that_fail_are_warned_of() {
 #[test]
 fn a_yes_says_what_it_hangs_on_at_a_speed() {
     let easy = SCENE.replace("distance = 1.0", "distance = 0.01");
-    let both = |text: &str| {
-        let study = study(text);
-        [study.size().unwrap().verdict, study.verdict_alone().unwrap().unwrap().verdict]
+    let of = |text: &str| study(text).size().unwrap().verdict;
+    // The answer that ends at the first proof is a 'no' alone.
+    let alone = |text: &str| study(text).no_alone().unwrap().map(|result| result.verdict);
+    let frames = easy.replace("netd =", "frames = 4\nframe_rate = \"60 Hz\"\nnetd =");
+    let verdict = of(&frames);
+    assert!(verdict.met == Some(true) && verdict.sentence.conditions == verdict.conditions);
+    let Condition::RegisteredFrames(proviso) = verdict.conditions[0] else {
+        panic!("{:?}", verdict.conditions)
     };
-    for verdict in both(&easy.replace("netd =", "frames = 4\nframe_rate = \"60 Hz\"\nnetd =")) {
-        assert!(verdict.met == Some(true) && verdict.sentence.provided == verdict.provided);
-        let provided = verdict.provided.unwrap();
-        assert_eq!(provided.frames, 4);
-        assert!((provided.time_s / 0.062 - 1.0).abs() < 1e-12, "{provided:?}");
-        assert!((provided.way_m / 0.831_494_4 - 1.0).abs() < 1e-9, "{provided:?}");
-    }
+    assert_eq!(proviso.frames, 4);
+    assert!((proviso.time_s / 0.062 - 1.0).abs() < 1e-12, "{proviso:?}");
+    assert!((proviso.way_m / 0.831_494_4 - 1.0).abs() < 1e-9, "{proviso:?}");
+    assert_eq!(alone(&frames), None);
     let at_rest = easy.replace("speed = \"30 mph\"\n", "").replace("netd =", "frames = 4\nnetd =");
-    for verdict in both(&easy).into_iter().chain(both(&at_rest)) {
-        assert!(verdict.met == Some(true) && verdict.provided.is_none());
+    for (text, still) in [(&easy, false), (&at_rest, true)] {
+        let verdict = of(text);
+        assert_eq!(verdict.met, Some(true));
+        let is_still = |one: &Condition| matches!(one, Condition::StillScene { .. });
+        assert_eq!(verdict.conditions.iter().any(is_still), still, "{:?}", verdict.conditions);
+        assert!(!verdict.conditions.iter().any(|one| matches!(one, Condition::RegisteredFrames(_))));
     }
     let nowhere =
         easy.replace("distance = \"30 m\"\nsize = \"0.3 m\"\n[background]\ntemperature = \"15 degC\"\n", "");
-    for verdict in both(&nowhere) {
+    for verdict in [of(&nowhere), alone(&nowhere).unwrap()] {
         let spoiled = vec![Shortfall::MotionUnknown];
         assert!(matches!(&verdict.sentence.answer, Answer::Judged { spoiled: own, .. } if *own == spoiled));
         assert_eq!((verdict.met, verdict.fails_by), (Some(false), vec![Shortfall::MotionUnknown]));
+        assert!(verdict.conditions.iter().all(|one| !one.favourable()));
     }
 }

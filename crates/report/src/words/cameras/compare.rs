@@ -5,6 +5,7 @@ use super::rows::{Row, alone, in_scene};
 use crate::cameras::{Sheet, SideBySide};
 use crate::text::footing::RESTS_ON;
 use crate::text::numbers::significant;
+use crate::words::Say;
 use hadar::instrument::{Comparison, Readout};
 use std::fmt::Write as _;
 
@@ -131,7 +132,7 @@ pub(crate) fn caveats(both: &SideBySide) -> Vec<String> {
     for sheet in [&both.a, &both.b] {
         let name = &sheet.preset.name;
         for assumed in sheet.worked.iter().flat_map(|worked| &worked.camera.assumed) {
-            all.push(format!("{name}: {assumed}"));
+            all.push(format!("{name}: {}", assumed.say()));
         }
         if sheet.worked.is_none() {
             let keys = &sheet.missing.0;

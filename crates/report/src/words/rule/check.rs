@@ -3,11 +3,11 @@
 use super::measured::{guarded, measure, measured_scene, undecided};
 use super::text::{fails_by, idle, without_placeholders};
 use crate::text::significant;
-use crate::words::Say;
+use crate::words::conditions;
 use crate::words::shortfall::in_words;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
+use hadar_study::{CameraVerdict, Condition, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
 use std::fmt::Write as _;
 
 /// A line for every camera; of a rule with clauses, a line for each of them below it.
@@ -77,16 +77,17 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
         let guarded = guarded(camera.uncertainty.as_ref());
         let known = match camera.lower_bound {
             Some(bound) if bound >= required => {
-                format!("{}: at least {} everywhere{guarded}", camera.grade.name(), times(bound))
+                format!("{}: at least {} everywhere{guarded}", camera.evidence.name(), times(bound))
             }
             _ => {
                 let least = times(low * required);
                 format!("met, but searched and not proved: {least} where it is least{guarded}")
             }
         };
-        let proviso =
-            camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {}", proviso.say()));
-        known + &proviso
+        match Condition::open(&camera.conditions).next() {
+            None => known,
+            Some(_) => format!("{known}; {}", conditions::yes(&camera.conditions)),
+        }
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;
         let margin = format!("{} times the demand: ", significant(camera.margin, 3));

@@ -7,11 +7,11 @@ use crate::text::columns::aligned;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use crate::words::Say;
-use crate::words::companion;
 use crate::words::probability::{demanded, reliability};
 use crate::words::shortfall::in_words;
 use crate::words::size::rows::in_unit;
 use crate::words::warnings::say_the_same;
+use crate::words::{companion, conditions};
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
@@ -75,11 +75,10 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
 fn overview(answer: &RuleAnswer) -> String {
     let mut rows = vec![["camera", "margin", "limited by", "evidence", "meets the rule"].map(str::to_owned)];
     rows.extend(answer.cameras.iter().map(|camera| {
-        let verdict = match (camera.verdict, &camera.provided) {
-            (Verdict::Meets, None) => "yes".to_owned(),
-            (Verdict::Meets, Some(proviso)) => format!("yes, if {}", proviso.say()),
-            (Verdict::Undecided, _) => format!("undecided: {}", camera.undecided.join(", ")),
-            (Verdict::Fails, _) => format!("no: {}", camera.fails.join(", ")),
+        let verdict = match camera.verdict {
+            Verdict::Meets => conditions::yes(&camera.conditions),
+            Verdict::Undecided => format!("undecided: {}", camera.undecided.join(", ")),
+            Verdict::Fails => format!("no: {}", camera.fails.join(", ")),
         };
         [
             camera.name.clone(),
@@ -148,11 +147,10 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
 
 /// Yes, no or undecided, and why.
 pub(crate) fn meets(camera: &CameraVerdict) -> String {
-    let said = match (camera.verdict, &camera.provided) {
-        (Verdict::Meets, None) => "yes".into(),
-        (Verdict::Meets, Some(proviso)) => format!("yes, if {}", proviso.say()),
-        (Verdict::Undecided, _) => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
-        (Verdict::Fails, _) => format!("no: {}", fails_by(camera)),
+    let said = match camera.verdict {
+        Verdict::Meets => conditions::yes(&camera.conditions),
+        Verdict::Undecided => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
+        Verdict::Fails => format!("no: {}", fails_by(camera)),
     };
     said + &without_placeholders(camera)
 }

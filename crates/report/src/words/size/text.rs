@@ -6,7 +6,7 @@ use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::words::Say;
 use crate::words::probability::demanded_probability;
-use crate::words::{classes, companion};
+use crate::words::{classes, companion, conditions};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_study::{PairResult, Sizing, Study};
@@ -22,6 +22,7 @@ const DROWNED: f64 = 2.0;
 pub fn text(result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}\n", result.verdict.sentence.say());
+    out.push_str(&conditions::paragraph(&result.verdict.conditions));
     let limiting = rows::limiting(result);
     if let Some(pair) = limiting {
         out.push_str(&readings(pair, result, study));

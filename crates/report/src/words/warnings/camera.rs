@@ -1,6 +1,7 @@
 //! Cameras: readout, motion, view, what is around the target.
 
 use super::block::{short, words};
+use crate::words::Say;
 use hadar::instrument::Readout;
 use hadar::words::{length, quantity, significant};
 
@@ -148,9 +149,9 @@ words! {
     CameraFigureAssumed {
         meaning: "No document states a figure of the camera: it was assumed.",
         remedy: "Measure it or ask the maker, and write it under [camera].",
-        CameraFigureAssumed { figure } => figure,
+        CameraFigureAssumed { figure } => figure.say(),
         CameraFiguresAssumed { camera, figures } => {
-            format!("no document states all of {camera}: {}", figures.join("; "))
+            format!("no document states all of {camera}: {}", figures.iter().map(Say::say).collect::<Vec<_>>().join("; "))
         },
     }
 }

@@ -1,0 +1,262 @@
+//! The conditions of a verdict on a camera in a scene ([`Condition`]), made of the same data as the answer.
+
+use crate::condition::{Condition, RangeDecides, hardest_first};
+use crate::proviso::Proviso;
+use crate::size::Sensitivity;
+use crate::{PairResult, Study};
+use hadar::demand::Skipping;
+use hadar::error::Result;
+use hadar::fisher::Nuisance;
+use hadar::identifiability::nearest::StateRange;
+use hadar::instrument::{Assumed, Camera};
+use hadar::planck;
+use hadar_scenario::{DistanceKind, Setting};
+
+/// Share of draws of the emissivities that settles a question.
+const SETTLED: f64 = 0.95;
+/// To what an end of a range of temperatures is found beyond which the answer changes, K, and of lighting.
+const TEMPERATURE_STEP_K: f64 = 0.25;
+const LIGHTING_STEP: f64 = 1e-3;
+/// Relative difference between times that is rounding.
+const SAME: f64 = 1e-9;
+
+/// What the camera and the scene are asked about.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Circumstances {
+    /// Speed of the vehicle, m s⁻¹, if one is demanded.
+    pub(crate) speed_m_s: Option<f64>,
+    /// The farthest target, m, where that is known.
+    pub(crate) distance_m: Option<f64>,
+    /// Whether a rule asks, whose own text then stands above what is set over it.
+    pub(crate) of_rule: bool,
+}
+
+/// What of a verdict its conditions depend on.
+pub(crate) struct Reached<'a> {
+    /// The pair that decides.
+    pub(crate) pair: &'a PairResult,
+    /// What the verdict hangs on, where it was asked for.
+    pub(crate) sensitivity: Option<&'a Sensitivity>,
+    /// Counts of the fullest reading.
+    pub(crate) brightest: f64,
+}
+
+impl Study {
+    /// What a 'yes' rests on; of a 'no' what was taken on the unfavourable side.
+    pub(crate) fn conditions(
+        &self,
+        camera: &Camera,
+        met: bool,
+        reached: &Reached<'_>,
+    ) -> Result<Vec<Condition>> {
+        let mut found = self.unstated(camera, reached.brightest);
+        let pair = reached.pair;
+        found.extend(
+            self.one_numbers(&pair.alternative).map(|emissivities| Condition::Constants { emissivities }),
+        );
+        if let Some(errors) = reached.sensitivity.map(|found| &found.emissivity)
+            && errors.share_met < SETTLED
+            && errors.distance > 0.0
+        {
+            let (error, share_met) = (errors.error, errors.share_met);
+            found.push(Condition::Emissivities { error, share_met });
+        }
+        if let (false, Some([lower, _])) = (camera.photon_bunching, pair.statistical_distance_bounds) {
+            let hottest = self.state.environment_k.iter().copied().fold(self.state.temperature_k, f64::max);
+            // Each mode adds no more than occupancy to the variance of the photons.
+            let occupancy = planck::occupancy(self.bands.range_cm1().0, hottest);
+            if lower < self.required * (1.0 + occupancy).sqrt() {
+                found.push(Condition::Bunching { occupancy });
+            }
+        }
+        if met && self.scenario.requirement.by == DistanceKind::Nearest {
+            found.extend(self.ranges_that_decide()?);
+        }
+        found.retain(|one| met || !one.favourable());
+        hardest_first(&mut found);
+        Ok(found)
+    }
+
+    /// What nobody stated of camera and scene.
+    pub(crate) fn unstated(&self, camera: &Camera, brightest: f64) -> Vec<Condition> {
+        let mut found = self.of_camera(camera, brightest);
+        let speed_m_s = self.scenario.requirement.speed_m_s;
+        let distance_m = self.scenario.target.distance_m;
+        found.extend(self.of_scene(camera, Circumstances { speed_m_s, distance_m, of_rule: false }));
+        found
+    }
+
+    /// Figures of the camera that nobody stated and that count here.
+    pub(crate) fn of_camera(&self, camera: &Camera, brightest: f64) -> Vec<Condition> {
+        let mut found = of_figures(camera, self.bands.len(), Some(brightest));
+        let filters = self.open_bands.bands().iter().any(|band| band.name.is_some());
+        if filters && camera.sensor_temperature_k.is_none() {
+            found.push(Condition::NoFilterLight);
+        }
+        found
+    }
+
+    /// What nobody stated of the scene, and what must hold in it meanwhile.
+    pub(crate) fn of_scene(&self, camera: &Camera, asked: Circumstances) -> Vec<Condition> {
+        let scenario = &self.scenario;
+        let mut found: Vec<Condition> =
+            meanwhile(camera, self.bands.len(), asked.speed_m_s).into_iter().collect();
+        if scenario.requirement.by != DistanceKind::Nearest {
+            found.push(Condition::NoLimit);
+        }
+        if scenario.target.size_m.is_none() {
+            let footprint_m = asked.distance_m.map(|z| camera.footprint_m(z));
+            found.push(Condition::FillsPixel { footprint_m });
+        }
+        if scenario.atmosphere.is_none() {
+            found.push(Condition::NoAir);
+        }
+        if self.surroundings.objects().is_empty() {
+            found.push(Condition::NoSurroundings);
+        }
+        let known = [Nuisance::Gain, Nuisance::EnvironmentTemperature];
+        let is_there = |one: &Nuisance| {
+            *one != Nuisance::EnvironmentTemperature || !self.surroundings.objects().is_empty()
+        };
+        let known: Vec<Nuisance> =
+            known.into_iter().filter(|one| !self.is_unknown(*one)).filter(is_there).collect();
+        if !known.is_empty() {
+            found.push(Condition::Calibrated { known });
+        }
+        if !self.left_out.is_empty() {
+            found.push(Condition::LeftOut { materials: self.left_out.clone() });
+        }
+        found.extend(settings(&scenario.source.settings, asked.of_rule));
+        found
+    }
+
+    /// Ranges of the alternatives' states that the scenario sets and without which the answer would be another.
+    fn ranges_that_decide(&self) -> Result<Vec<Condition>> {
+        let (own, physical) = (self.range, StateRange::default());
+        let mut found = Vec::new();
+        let temperature = |range: [f64; 2]| StateRange { temperature_k: range, ..own };
+        let lighting = |range: [f64; 2]| StateRange { lighting: range, ..own };
+        let asked: [(&'static str, [f64; 2], [f64; 2], f64, &dyn Fn([f64; 2]) -> StateRange); 2] = [
+            (
+                "alternatives.temperature",
+                own.temperature_k,
+                physical.temperature_k,
+                TEMPERATURE_STEP_K,
+                &temperature,
+            ),
+            ("alternatives.lighting", own.lighting, physical.lighting, LIGHTING_STEP, &lighting),
+        ];
+        for (figure, stated, widest, step, with) in asked {
+            if stated == widest || self.holds_in(with(widest))? {
+                continue;
+            }
+            let mut holds = stated;
+            for end in 0..2 {
+                let at = |value: f64| {
+                    let mut range = stated;
+                    range[end] = value;
+                    range
+                };
+                let holds_to = |value: f64| self.holds_in(with(at(value)));
+                holds[end] = farthest(stated[end], widest[end], step, holds_to)?;
+            }
+            found.push(Condition::Range(RangeDecides { figure, stated, holds }));
+        }
+        Ok(found)
+    }
+
+    /// Whether every alternative is told apart where its states are of such a range.
+    fn holds_in(&self, range: StateRange) -> Result<bool> {
+        let wider = Self { range, remembered: None, ..self.clone() };
+        Ok(wider.of_worst_members(Skipping::On)?.check(Skipping::On)?.identifiable)
+    }
+}
+
+/// Figures of a camera of so many bands that nobody stated and that count.
+pub(crate) fn of_figures(camera: &Camera, bands: usize, brightest: Option<f64>) -> Vec<Condition> {
+    let exposures = camera.readout.exposures(bands) as f64 * f64::from(camera.frames);
+    // Flicker grows faster with the time than all other noise.
+    let longer = camera.integration_s() > camera.noise_exposure_s * (1.0 + SAME);
+    let counts = |figure: &&Assumed| match figure.figure {
+        "flicker_fraction" => longer,
+        "readout" => bands > 1,
+        "frame_rate" => exposures > 1.0,
+        _ => true,
+    };
+    let assumed = camera.assumed.iter().filter(counts).map(|figure| {
+        let counts = brightest.filter(|_| figure.figure == "full_well");
+        Condition::Assumed { figure: figure.clone(), counts }
+    });
+    assumed.collect()
+}
+
+/// What must hold while all bands of all frames are read.
+fn meanwhile(camera: &Camera, bands: usize, speed_m_s: Option<f64>) -> Option<Condition> {
+    match speed_m_s {
+        None => Some(Condition::StillScene { time_s: camera.acquisition_s(bands) }),
+        Some(speed_m_s) => Proviso::of(camera, bands, speed_m_s).map(Condition::RegisteredFrames),
+    }
+}
+
+/// What is set in the place of a file's values.
+fn settings(set: &[Setting], of_rule: bool) -> impl Iterator<Item = Condition> {
+    set.iter().map(move |one| {
+        let (key, value) = (one.key.clone(), one.value.clone());
+        Condition::Setting { key, value, of_rule }
+    })
+}
+
+/// What meeting a clause of a rule rests on that demands a number: `figures` where counts decide it, and the rest.
+pub(crate) fn of_measured(
+    figures: Vec<Condition>,
+    (camera, bands): (&Camera, usize),
+    speed_m_s: Option<f64>,
+    set: &[Setting],
+    met: bool,
+) -> Vec<Condition> {
+    let mut found = figures;
+    found.extend(meanwhile(camera, bands, speed_m_s));
+    found.extend(settings(set, true));
+    found.retain(|one| met || !one.favourable());
+    hardest_first(&mut found);
+    found
+}
+
+/// How far from `near` towards `far` it holds, to within a step; it holds at `near`.
+fn farthest(near: f64, far: f64, step: f64, holds: impl Fn(f64) -> Result<bool>) -> Result<f64> {
+    if near == far || holds(far)? {
+        return Ok(far);
+    }
+    let direction = (far - near).signum();
+    let (mut good, mut width) = (0.0, step);
+    let reach = (far - near).abs();
+    // Steps that double until it holds no more, then the one in between is halved.
+    let mut bad = loop {
+        let next = (good + width).min(reach);
+        if next >= reach || !holds(near + direction * next)? {
+            break next;
+        }
+        (good, width) = (next, 2.0 * width);
+    };
+    while bad - good > step {
+        let middle = 0.5 * (good + bad);
+        if holds(near + direction * middle)? { good = middle } else { bad = middle }
+    }
+    Ok(near + direction * good)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_farthest_end_is_found_on_either_side() {
+        let below = |limit: f64| move |value: f64| Ok(value <= limit);
+        let found = farthest(300.0, 1e6, 0.25, below(333.3)).unwrap();
+        assert!(found <= 333.3 && found > 333.3 - 0.25, "{found}");
+        assert_eq!(farthest(300.0, 1e6, 0.25, below(2e6)).unwrap(), 1e6);
+        assert_eq!(farthest(300.0, 1e6, 0.25, below(300.1)).unwrap(), 300.0);
+        let found = farthest(300.0, 0.1, 0.25, |value| Ok(value >= 250.0)).unwrap();
+        assert!((250.0..250.25).contains(&found), "{found}");
+    }
+}
