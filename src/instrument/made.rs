@@ -35,6 +35,8 @@ impl Assumed {
         "quantum_efficiency",
         "netd_temperature",
         "netd_f_number",
+        "netd_pixel",
+        "noise_exposure",
         "spectral_range",
         "flicker_fraction",
         "readout",
@@ -164,6 +166,10 @@ impl Preset {
         if figures.full_well.is_none() {
             assumed.push(Assumed::favourable("full_well", "never full"));
         }
+        if figures.noise_exposure_s.is_none() && is_noisy {
+            let frame = format!("{:.4} ms, that of a frame", 1e3 * exposure_s);
+            assumed.push(Assumed::favourable("noise_exposure", frame));
+        }
         let rest = [
             ("dark_rate", figures.dark_rate_per_s.is_none()),
             ("read_noise", figures.read_noise_counts.is_none()),
@@ -278,6 +284,10 @@ fn noise_of(
             }
             if at.is_none() {
                 assumed.push(Assumed::favourable("netd_f_number", format!("f/{f_number}")));
+            }
+            if of.is_none() {
+                let pixel = format!("{:.4} um, its own", 1e6 * pixel_m);
+                assumed.push(Assumed::favourable("netd_pixel", pixel));
             }
             NoiseSpec::Netd {
                 netd_k,

@@ -22,7 +22,7 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The number of the form of every JSON that is printed or written. It rises when a key goes or changes its meaning; keys may be
 /// added without.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// A result as a program reads it: its keys behind the version of this program, the number of its form, what is said of the
 /// library and what stands in the place of the file's own values, where there is something to say.

@@ -77,6 +77,19 @@ impl Study {
         Ok(found)
     }
 
+    /// The same of an answer that ends at the first proof, and knows no distance.
+    pub(crate) fn conditions_of_check(&self, camera: &Camera, met: bool) -> Result<Vec<Condition>> {
+        let mut found = self.unstated(camera, self.brightest_member(camera));
+        let pairs = self.alternatives.iter().filter_map(|other| self.target.placeholders(other));
+        found.extend(pairs.take(1).map(|emissivities| Condition::Constants { emissivities }));
+        if met && self.scenario.requirement.by == DistanceKind::Nearest {
+            found.extend(self.ranges_that_decide()?);
+        }
+        found.retain(|one| met || !one.favourable());
+        hardest_first(&mut found);
+        Ok(found)
+    }
+
     /// What nobody stated of camera and scene.
     pub(crate) fn unstated(&self, camera: &Camera, brightest: f64) -> Vec<Condition> {
         let mut found = self.of_camera(camera, brightest);

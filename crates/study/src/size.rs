@@ -509,7 +509,7 @@ impl Study {
     }
 
     /// Counts of the fullest reading that any member of the target's class gives.
-    fn brightest_member(&self, camera: &Camera) -> f64 {
+    pub(crate) fn brightest_member(&self, camera: &Camera) -> f64 {
         let reading = |surface: &Surface| {
             let signal = self.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
             camera.brightest_reading(&self.bands, &signal, &self.view_of(camera))

@@ -1,13 +1,13 @@
 //! `hadar identify`: distances from the target to every alternative, all against all, bands, simulated decisions.
 
-use super::global::{By, Global, plain_number};
+use super::global::{By, Global, condition, plain_number};
 use super::progress::Bar;
 use super::several;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::identify;
 use hadar_study::sweep::Question;
-use hadar_study::{Asked, Law, Study, Trial, Watch};
+use hadar_study::{Asked, Condition, Law, Study, Trial, Watch};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -59,9 +59,12 @@ pub(super) struct IdentifyArgs {
     /// Photons at which the hardest pair is told apart on average over the priors of the scenario
     #[arg(long)]
     average: bool,
-    /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
+    /// Answer only whether the camera tells the target from every alternative; exit with code 3 unless it does under no condition but those of --accept
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact", "average"])]
     check: bool,
+    /// With --check: codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, requires = "check")]
+    accept: Vec<String>,
 }
 
 pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
@@ -74,7 +77,7 @@ fn one(scenario: &Path, args: &IdentifyArgs, global: &Global) -> Result<u8> {
         study = study.proving(share)?;
     }
     if args.check {
-        return only_check(&study, global);
+        return only_check(&study, &args.accept, global);
     }
     let chosen = args.bands.is_some() || args.filters.is_some();
     let asked = Asked {
@@ -120,9 +123,11 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
 }
 
 /// The answer to one question, at the first proof.
-fn only_check(study: &Study, global: &Global) -> Result<u8> {
+fn only_check(study: &Study, accepted: &[String], global: &Global) -> Result<u8> {
     global.writes_nothing("--check, which answers yes or no,")?;
-    let result = study.check(global.skipping())?;
+    let mut result = study.check_with_conditions(global.skipping())?;
+    result.accepted = accepted.to_vec();
     global.answer(&result, &identify::check(&result, study), &result.stats)?;
-    Ok(if result.identifiable { 0 } else { 3 })
+    let is_open = Condition::open(&result.conditions).any(|one| !accepted.contains(&one.code()));
+    Ok(if result.identifiable && !is_open { 0 } else { 3 })
 }

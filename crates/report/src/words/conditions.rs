@@ -64,6 +64,8 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "quantum_efficiency" => "all photons on its detector are counted".into(),
         "netd_temperature" => format!("its NETD is of a blackbody of {taken}"),
         "netd_f_number" => format!("its NETD is that behind {taken}"),
+        "netd_pixel" => format!("its NETD is that of a pixel of {taken}"),
+        "noise_exposure" => format!("its noise is that of an exposure of {taken}"),
         "spectral_range" => format!("its detector sees {taken} and no more"),
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),
         "readout" => "all bands are read in one exposure".into(),
@@ -213,10 +215,15 @@ pub(crate) fn yes(conditions: &[Condition]) -> String {
 
 /// All conditions in a paragraph of their own; nothing without.
 pub(crate) fn paragraph(conditions: &[Condition]) -> String {
+    paragraph_of("", conditions)
+}
+
+/// The same of a camera among several.
+pub(crate) fn paragraph_of(camera: &str, conditions: &[Condition]) -> String {
     if conditions.is_empty() {
         return String::new();
     }
-    let mut out = String::new();
+    let mut out = if camera.is_empty() { String::new() } else { format!("{camera}: ") };
     let open: Vec<&Condition> = Condition::open(conditions).collect();
     if !open.is_empty() {
         out += "Yes, if all of this holds\n";

@@ -13,7 +13,7 @@ use self::terms::{camera, does_not_tell, no_limit};
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
-use crate::words::{Say, classes, probability as words};
+use crate::words::{Say, classes, conditions, probability as words};
 use hadar::order;
 use hadar_study::{Answers, Check, Identification, Study};
 use std::fmt::Write as _;
@@ -172,7 +172,13 @@ pub fn check(result: &Check, study: &Study) -> String {
                 all => format!("all {} alternatives", all.len()),
             };
             let by = no_limit(study);
-            format!("Yes: {camera} tells {target} from {all} with {reliability} reliability{by}.\n")
+            let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
+            let verdict =
+                format!("{yes}: {camera} tells {target} from {all} with {reliability} reliability{by}.\n");
+            match conditions::paragraph(&result.conditions) {
+                none if none.is_empty() => verdict,
+                all => format!("{verdict}\n{}\n", all.trim_end()),
+            }
         }
     }
 }

@@ -289,7 +289,10 @@ mod tests {
     /// A yes that rests on a search alone is not read as one that is proved.
     #[test]
     fn a_yes_that_is_not_proved_says_so() {
-        let proved = WhoMeets { meet: vec![("a".into(), Vec::new()), ("b".into(), Vec::new())], ..WhoMeets::default() };
+        let proved = WhoMeets {
+            meet: vec![("a".into(), Vec::new()), ("b".into(), Vec::new())],
+            ..WhoMeets::default()
+        };
         assert_eq!(proved.say(), "All 2 cameras meet the rule: a, b.");
         let searched = WhoMeets { unproved: vec!["b".into()], ..proved };
         let said =

@@ -215,8 +215,22 @@ impl Study {
             identifiable: failed.is_none(),
             not_told_from: failed.map(|index| self.alternatives[index].name.clone()),
             failed,
+            conditions: Vec::new(),
+            accepted: Vec::new(),
             stats: ledger.close(),
         })
+    }
+
+    /// The same with what it rests on.
+    ///
+    /// # Errors
+    /// As [`Study::check`].
+    pub fn check_with_conditions(&self, skipping: Skipping) -> Result<Check> {
+        let mut check = self.check(skipping)?;
+        if let Some(camera) = &self.camera {
+            check.conditions = self.conditions_of_check(camera, check.identifiable)?;
+        }
+        Ok(check)
     }
 
     fn needed_counting(&self) -> Result<Counting> {

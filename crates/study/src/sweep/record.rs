@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 
 /// What an answer says of how it was asked and found, and not of the scene.
 const LEFT_OUT: [&str; 4] = ["scenario", "stats", "warnings", "seconds"];
+/// Lists of what has a code: the codes of a list are a column.
+const CODED: [&str; 2] = ["warnings", "conditions"];
 
 /// The values of a row by the names of their columns, such as `verdict.margin`.
 pub type Record = BTreeMap<String, Cell>;
@@ -18,12 +20,7 @@ pub(super) fn record(answer: &Value, items: &[String]) -> Record {
         for (key, value) in map.iter().filter(|(key, _)| !LEFT_OUT.contains(&key.as_str())) {
             flatten(key, value, &mut record);
         }
-        if let Some(Value::Array(warnings)) = map.get("warnings") {
-            let mut codes: Vec<&str> =
-                warnings.iter().filter_map(|warning| warning.get("code")?.as_str()).collect();
-            codes.dedup();
-            record.insert("warnings".to_owned(), Cell::Text(codes.join(" ")));
-        }
+        codes("", map, &mut record);
     }
     for item in items {
         if let Some(value) = at(answer, item) {
@@ -39,11 +36,23 @@ fn flatten(name: &str, value: &Value, record: &mut Record) {
             for (key, value) in map.iter().filter(|(key, _)| !LEFT_OUT.contains(&key.as_str())) {
                 flatten(&format!("{name}.{key}"), value, record);
             }
+            codes(&format!("{name}."), map, record);
         }
         value => {
             if let Some(cell) = Cell::of_json(value) {
                 record.insert(name.to_owned(), cell);
             }
+        }
+    }
+}
+
+/// The codes of the lists of a part of an answer.
+fn codes(part: &str, map: &serde_json::Map<String, Value>, record: &mut Record) {
+    for key in CODED {
+        if let Some(Value::Array(all)) = map.get(key) {
+            let mut codes: Vec<&str> = all.iter().filter_map(|one| one.get("code")?.as_str()).collect();
+            codes.dedup();
+            record.insert(format!("{part}{key}"), Cell::Text(codes.join(" ")));
         }
     }
 }

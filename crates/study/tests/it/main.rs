@@ -3,6 +3,7 @@
 mod air_ranging;
 mod camera_bands;
 mod companion;
+mod conditions;
 mod fuzz_readers;
 mod keys;
 mod published;

@@ -65,6 +65,15 @@ pub(crate) fn page(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenan
          reaches it may, if its software comes near the limit\n\
          - figures of cameras are those of the documents named with them; nothing was measured here\n\n",
     );
+    for camera in answer.cameras.iter().filter(|camera| !camera.conditions.is_empty()) {
+        let _ = writeln!(out, "## What the verdict on {} rests on\n", camera.name);
+        for one in &camera.conditions {
+            let kind = if one.favourable() { "only if " } else { "" };
+            let accepted = if answer.accepted.contains(&one.code()) { " (accepted)" } else { "" };
+            let _ = writeln!(out, "- [{}] {kind}{}{accepted}", one.code(), one.say());
+        }
+        out.push('\n');
+    }
     let warned = text::together(answer);
     if !warned.is_empty() {
         out.push_str("## Warnings\n\n");

@@ -3,8 +3,8 @@
 use super::stop::{approach, metres};
 use crate::text::columns::aligned;
 use crate::text::numbers::{numbers, quantity, significant};
-use crate::words::Say;
 use crate::words::shortfall::in_words;
+use crate::words::{Say, conditions};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
@@ -50,7 +50,7 @@ pub(super) fn of_measured(measured: &MeasuredAnswer, units: Units) -> String {
 /// Yes, no or undecided, and why.
 pub(super) fn measured_meets(camera: &MeasuredVerdict) -> String {
     match camera.verdict {
-        Verdict::Meets => "yes".into(),
+        Verdict::Meets => conditions::yes(&camera.conditions),
         Verdict::Undecided => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
         Verdict::Fails => format!("no: {}", in_words(&camera.fails_by)),
     }

@@ -55,6 +55,9 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
             Some(format!("  {name}{}", clause.apart()?.requirement.quotable.say()))
         })
         .collect();
+    for camera in &answer.cameras {
+        out.push_str(&conditions::paragraph_of(&camera.name, &camera.conditions));
+    }
     if !quotables.is_empty() {
         let _ = writeln!(out, "The rule in a sentence\n{}\n", quotables.join("\n"));
     }

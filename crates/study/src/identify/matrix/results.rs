@@ -1,5 +1,6 @@
 //! All against all as data.
 
+use crate::Condition;
 use hadar::demand::Work;
 use hadar::identifiability::multi::Passes;
 use hadar::order;
@@ -108,6 +109,10 @@ pub struct Check {
     /// Its place among the alternatives.
     #[serde(skip)]
     pub failed: Option<usize>,
+    /// What a 'yes' rests on, hardest first; of a 'no' what was taken on the unfavourable side. Empty where they were not asked for.
+    pub conditions: Vec<Condition>,
+    /// Codes of conditions that whoever asks accepts.
+    pub accepted: Vec<String>,
     /// What was computed for it and what was not.
     pub stats: Work,
 }

@@ -1,0 +1,229 @@
+//! A verdict is as sure as what it rests on: a figure that nobody states never helps without being said.
+
+use hadar::instrument::presets;
+use hadar::material::Library;
+use hadar_scenario::Scenario;
+use hadar_study::{Condition, Study, Sureness, Verdict, YesNo};
+use std::fmt::Write as _;
+use std::sync::OnceLock;
+
+/// A scene and a camera of which all is stated, as rows of table, key and value.
+const STATED: &[[&str; 3]] = &[
+    ["target", "material", "\"skin\""],
+    ["target", "temperature", "\"33 degC\""],
+    ["target", "distance", "\"30 m\""],
+    ["target", "size", "\"0.25 m\""],
+    ["background", "temperature", "\"5 degC\""],
+    ["[environment]", "temperature", "\"5 degC\""],
+    ["[environment]", "lighting", "0.6"],
+    ["atmosphere", "model", "\"us-standard\""],
+    ["alternatives", "materials", "[\"pmma\"]"],
+    ["alternatives", "temperature", "[\"0 degC\", \"50 degC\"]"],
+    ["bands", "ranges", "[[\"8 um\", \"9 um\"], [\"9 um\", \"10.5 um\"], [\"10.5 um\", \"13 um\"]]"],
+    ["unknown", "nuisances", "[\"temperature\", \"lighting\"]"],
+    ["camera", "exposure", "\"10 ms\""],
+    ["camera", "frame_rate", "\"60 Hz\""],
+    ["camera", "pixel", "\"12 um\""],
+    ["camera", "f_number", "1.0"],
+    ["camera", "focal_length", "\"24 mm\""],
+    ["camera", "optics_efficiency", "0.85"],
+    ["camera", "quantum_efficiency", "0.7"],
+    ["camera", "noise_electrons", "20000"],
+    ["camera", "noise_exposure", "\"10 ms\""],
+    ["camera", "flicker_fraction", "0.1"],
+    ["camera", "dark_rate", "\"1e6 1/s\""],
+    ["camera", "read_noise", "100"],
+    ["camera", "full_well", "2e11"],
+    ["camera", "quantisation_bits", "20"],
+    ["camera", "readout", "\"sequential\""],
+    ["camera", "frames", "4"],
+    ["camera", "field_of_view", "\"18 deg\""],
+    ["camera", "pixels", "640"],
+    ["camera", "spectral_range", "[\"8 um\", \"14 um\"]"],
+    ["requirement", "distance", "0.02"],
+    ["requirement", "speed", "\"1 km/h\""],
+    ["requirement", "time", "\"1 s\""],
+];
+
+/// Other values that keys may have.
+const OTHERS: &[(&str, &str, &[&str])] = &[
+    ("target", "size", &["\"0.02 m\"", "\"0.01 m\""]),
+    ("target", "distance", &["\"3 m\"", "\"300 m\""]),
+    ("atmosphere", "model", &["\"tropical\""]),
+    ("[environment]", "lighting", &["0.1", "1.0"]),
+    (
+        "unknown",
+        "nuisances",
+        &["[]", "[\"temperature\", \"lighting\", \"gain\", \"environment-temperature\"]"],
+    ),
+    ("camera", "frame_rate", &["\"10 Hz\"", "\"100 Hz\""]),
+    ("camera", "optics_efficiency", &["0.1", "1.0"]),
+    ("camera", "quantum_efficiency", &["0.1", "1.0"]),
+    ("camera", "noise_exposure", &["\"1 ms\"", "\"100 ms\""]),
+    ("camera", "flicker_fraction", &["0.0", "0.5", "1.0"]),
+    ("camera", "dark_rate", &["\"0 1/s\"", "\"1e12 1/s\""]),
+    ("camera", "read_noise", &["0", "1e6"]),
+    ("camera", "full_well", &["1e4", "1e12"]),
+    ("camera", "quantisation_bits", &["4", "24"]),
+    ("camera", "readout", &["\"simultaneous\"", "\"fourier-transform\"", "\"dispersive\""]),
+    ("camera", "frames", &["1", "16"]),
+    ("camera", "field_of_view", &["\"10 deg\"", "\"60 deg\""]),
+    ("camera", "pixels", &["80", "1280"]),
+    ("camera", "spectral_range", &["[\"7 um\", \"13.5 um\"]", "[\"3 um\", \"5 um\"]"]),
+    ("camera", "exposure", &["\"1 ms\"", "\"16 ms\""]),
+    ("requirement", "speed", &["\"1 m/s\"", "\"200 km/h\""]),
+    ("requirement", "time", &["\"1 ms\"", "\"10 s\""]),
+    ("alternatives", "temperature", &["[\"-100 degC\", \"900 degC\"]", "[\"32 degC\", \"34 degC\"]"]),
+];
+
+fn library() -> &'static Library {
+    static LIBRARY: OnceLock<Library> = OnceLock::new();
+    LIBRARY.get_or_init(|| Library::embedded().unwrap())
+}
+
+/// The rows as text.
+fn text(rows: &[[&str; 3]]) -> String {
+    let (mut out, mut table) = (String::new(), "");
+    for [of, key, value] in rows {
+        if *of != table {
+            table = of;
+            let _ = writeln!(out, "[{of}]");
+        }
+        let _ = writeln!(out, "{key} = {value}");
+    }
+    out
+}
+
+fn without(rows: &[[&'static str; 3]], table: &str, key: &str) -> Vec<[&'static str; 3]> {
+    rows.iter().filter(|[of, name, _]| (*of, *name) != (table, key)).copied().collect()
+}
+
+fn with(rows: &[[&'static str; 3]], table: &str, key: &str, value: &'static str) -> Vec<[&'static str; 3]> {
+    let set = |row: &[&'static str; 3]| {
+        if (row[0], row[1]) == (table, key) { [row[0], row[1], value] } else { *row }
+    };
+    rows.iter().map(set).collect()
+}
+
+fn verdict(text: &str) -> Result<Verdict, String> {
+    let study = Scenario::from_toml(text, None).and_then(|scenario| Study::new(&scenario, library()));
+    study.and_then(|study| study.size()).map(|found| found.verdict).map_err(|error| error.to_string())
+}
+
+/// What a verdict is worth: its margin, nothing where it is no 'yes'.
+fn worth(verdict: &Result<Verdict, String>) -> f64 {
+    match verdict {
+        Ok(verdict) if verdict.answer == Some(YesNo::Yes) => verdict.margin.unwrap_or(0.0),
+        _ => 0.0,
+    }
+}
+
+fn figures(verdict: &Verdict) -> Vec<String> {
+    verdict.conditions.iter().filter(|one| one.favourable()).filter_map(Condition::figure).collect()
+}
+
+/// What one key stands for among the figures of conditions: a table that is made of it, or what asks about the same.
+fn about(table: &str, key: &str) -> Vec<String> {
+    let table = table.trim_matches(['[', ']']);
+    let mut all = vec![format!("{table}.{key}"), table.to_owned()];
+    match key {
+        // A speed and the time of frames and bands: nothing may move meanwhile.
+        "speed" | "time" => all.extend(["requirement.speed", "camera.frames"].map(str::to_owned)),
+        _ => {}
+    }
+    all
+}
+
+/// Deleting a key gives no better verdict than each value of it would, unless a favourable condition says so.
+#[test]
+fn what_is_not_stated_never_helps_in_silence() {
+    let whole = verdict(&text(STATED)).unwrap();
+    assert_eq!(whole.answer, Some(YesNo::Yes), "{whole:?}");
+    let mut tried = 0;
+    for (table, key, values) in OTHERS {
+        let deleted = verdict(&text(&without(STATED, table, key)));
+        // Asked for.
+        let Ok(found) = &deleted else { continue };
+        let said = figures(found);
+        let is_said = about(table, key).iter().any(|figure| said.contains(figure));
+        for value in *values {
+            tried += 1;
+            let stated = verdict(&text(&with(STATED, table, key, value)));
+            let (with, less) = (worth(&stated), worth(&deleted));
+            assert!(
+                is_said || less <= with * (1.0 + 1e-9),
+                "{table}.{key}: {less} without it, {with} with {value}; said: {said:?}; {stated:?}"
+            );
+        }
+    }
+    println!("{tried} pairs of a deletion and a value");
+    assert!(tried > 30, "{tried}");
+}
+
+/// Of any two keys deleted together, the verdict is no better than with one of them deleted, unless it is said.
+#[test]
+fn two_deletions_are_said_too() {
+    for (index, (table, key, _)) in OTHERS.iter().enumerate() {
+        let one = without(STATED, table, key);
+        let Ok(first) = verdict(&text(&one)) else { continue };
+        for (other, name, _) in OTHERS.iter().skip(index + 1).step_by(3) {
+            let Ok(both) = verdict(&text(&without(&one, other, name))) else { continue };
+            let said = figures(&both);
+            let better = worth(&Ok(both)) > worth(&Ok(first.clone())) * (1.0 + 1e-9);
+            let is_said = about(other, name).iter().any(|figure| said.contains(figure));
+            assert!(!better || is_said, "{table}.{key} and {other}.{name}: {said:?}");
+        }
+    }
+}
+
+/// Of every known camera: what its entry does not state is asked for, or a 'yes' says it, and is graded so.
+#[test]
+fn a_yes_of_a_known_camera_lists_what_its_entry_leaves_open() {
+    let scene: Vec<[&'static str; 3]> = STATED.iter().filter(|row| row[0] != "camera").copied().collect();
+    let mut judged = 0;
+    for preset in presets::all().unwrap() {
+        let camera = format!("{}[camera]\npreset = {:?}\n", text(&scene), preset.name);
+        let Ok(found) = verdict(&camera.replace("distance = 0.02", "distance = 1e-6")) else { continue };
+        judged += 1;
+        if found.answer != Some(YesNo::Yes) {
+            continue;
+        }
+        let said = figures(&found);
+        let open = [
+            ("full_well", preset.figures.full_well.is_none()),
+            ("spectral_range", preset.figures.spectral_range_cm1.is_none()),
+        ];
+        for (figure, is_open) in open {
+            let key = format!("camera.{figure}");
+            assert_eq!(said.contains(&key), is_open, "{}: {key} in {said:?}", preset.name);
+        }
+        assert_eq!(found.grade == Some(Sureness::Assumed), !said.is_empty(), "{}", preset.name);
+        assert!(found.lower <= found.upper, "{}", preset.name);
+    }
+    assert!(judged > 3, "{judged}");
+}
+
+/// One band: at 60 degC instead of 40 the alternative looks like the target.
+#[test]
+fn a_range_that_decides_is_said_with_how_far_it_holds() {
+    let rows = STATED.iter().map(|row| match (row[0], row[1]) {
+        ("bands", "ranges") => ["bands", "ranges", "[[\"8 um\", \"13 um\"]]"],
+        ("alternatives", "materials") => ["alternatives", "materials", "[\"aluminium\"]"],
+        ("alternatives", "temperature") => ["alternatives", "temperature", "[\"0 degC\", \"40 degC\"]"],
+        ("[environment]", "lighting") => ["[environment]", "lighting", "1.0"],
+        _ => *row,
+    });
+    let rows: Vec<[&'static str; 3]> = rows.collect();
+    let found = verdict(&text(&rows)).unwrap();
+    assert_eq!(found.answer, Some(YesNo::Yes), "{found:?}");
+    let Condition::Range(range) = &found.conditions[0] else { panic!("{:?}", found.conditions) };
+    assert_eq!(range.figure, "alternatives.temperature");
+    let at = |hottest_k: f64| {
+        let value = format!("[\"0 degC\", \"{hottest_k} K\"]");
+        let rows = with(&rows, "alternatives", "temperature", String::leak(value));
+        verdict(&text(&rows)).unwrap().answer
+    };
+    // It holds so far, and no farther.
+    assert_eq!(at(range.holds[1]), Some(YesNo::Yes));
+    assert_ne!(at(range.holds[1] + 0.5), Some(YesNo::Yes));
+}
