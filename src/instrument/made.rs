@@ -245,7 +245,7 @@ impl Preset {
         if optics_efficiency.is_none() {
             assumed.push(match stated {
                 Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
-                    Assumed::worst("optics_efficiency", "1, the noise being stated through the same optics")
+                    Assumed::worst("optics_efficiency", "1 (the noise is stated through the same optics)")
                 }
                 _ => Assumed::favourable("optics_efficiency", "1"),
             });

@@ -125,6 +125,13 @@ pub fn conditions() -> impl Iterator<Item = ExplainedCode> {
     EXPLAINED.iter().map(|[code, meaning, remedy]| ExplainedCode { code, meaning, remedy })
 }
 
+/// The condition of a verdict of that code.
+#[must_use]
+pub fn condition(word: &str) -> Option<ExplainedCode> {
+    let name = word.trim_matches(['[', ']']);
+    conditions().find(|one| one.code == name)
+}
+
 /// All keys of answers.
 pub fn results() -> impl Iterator<Item = ResultKey> {
     RESULTS.lines().chain(NAMED.lines()).filter_map(|line| {

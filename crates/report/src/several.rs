@@ -33,6 +33,7 @@ const fn columns(question: Question) -> &'static [(&'static str, &'static [&'sta
     match question {
         Question::Identify => &[
             ("verdict", &["/identifiability/identifiable", "/identifiable"]),
+            ("if", &["/conditions"]),
             ("told from", &["/identifiability/told_from"]),
             ("nearest", &["/limiting", "/not_told_from"]),
             ("distance", &["/identifiability/distance_minimum"]),
@@ -41,6 +42,7 @@ const fn columns(question: Question) -> &'static [(&'static str, &'static [&'sta
         ],
         Question::Rule => &[
             ("verdict", &[]),
+            ("if", &["/cameras/0/conditions"]),
             ("meet it", &[]),
             ("best", &["/cameras/0/name"]),
             ("margin", &["/cameras/0/margin"]),
@@ -89,6 +91,11 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
             format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
         }
         // A 'yes' that hangs on something is none by itself.
+        (Question::Identify, "verdict")
+            if found(paths) == Some(true.into()) && hangs(&answer["conditions"]) =>
+        {
+            YES_IF.into()
+        }
         (_, "verdict") if answer["verdict"]["answer"] == "yes" && hangs(&answer["verdict"]["conditions"]) => {
             YES_IF.into()
         }

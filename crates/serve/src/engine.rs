@@ -18,7 +18,7 @@ use hadar_report::words::probability::probability;
 use hadar_report::words::warnings::of_code;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
-use hadar_study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
+use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Sizing, Study};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -93,6 +93,8 @@ struct Answer {
     numbers: Vec<rows::Row>,
     solved: Vec<rows::Solved>,
     pairs: Vec<Pair>,
+    /// What the verdict rests on.
+    conditions: Vec<Said>,
     warnings: Vec<Said>,
     /// Names and drawings (SVG).
     pictures: Vec<(String, String)>,
@@ -114,12 +116,12 @@ struct Pair {
     told_apart: Option<bool>,
 }
 
-/// A warning as it is shown.
+/// A warning or a condition as it is shown.
 #[derive(Debug, Serialize)]
 struct Said {
-    code: &'static str,
+    code: String,
     message: String,
-    remedy: &'static str,
+    remedy: String,
 }
 
 impl Engine {
@@ -187,6 +189,7 @@ impl Engine {
             numbers: rows::of_camera(&result, &study),
             solved: rows::solved(&result, study.units()),
             pairs: result.pairs.iter().map(pair_shown).collect(),
+            conditions: result.verdict.conditions.iter().map(rests_on).collect(),
             warnings: result.warnings.iter().map(said).collect(),
             pictures: size::followed(&study, &result, curve.as_ref())?.drawings()?,
             trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
@@ -267,7 +270,13 @@ fn pair_shown(pair: &PairResult) -> Pair {
 
 fn said(warning: &Warning) -> Said {
     let code = warning.code();
-    Said { code: code.name(), message: warning.say(), remedy: of_code(code).remedy }
+    Said { code: code.name().into(), message: warning.say(), remedy: of_code(code).remedy.into() }
+}
+
+fn rests_on(condition: &Condition) -> Said {
+    let message =
+        if condition.favourable() { format!("only if {}", condition.say()) } else { condition.say() };
+    Said { code: condition.code(), message, remedy: condition.figure().unwrap_or_default() }
 }
 
 /// An error with its place apart.

@@ -27,8 +27,10 @@ pub(crate) fn page(word: &str) -> Option<String> {
         }
         body.push_str("</dl>\n");
     }
-    if let Some(told) = explain::code(word).map(ExplainedCode::from) {
-        let _ = writeln!(body, "<h2>Warning [{}]</h2>\n<p>{}</p>\n<dl>", told.code, escaped(told.meaning));
+    let codes =
+        [("Warning", explain::code(word).map(ExplainedCode::from)), ("Condition", explain::condition(word))];
+    for (what, told) in codes.into_iter().filter_map(|(what, told)| Some((what, told?))) {
+        let _ = writeln!(body, "<h2>{what} [{}]</h2>\n<p>{}</p>\n<dl>", told.code, escaped(told.meaning));
         row(&mut body, "do", told.remedy);
         body.push_str("</dl>\n");
     }

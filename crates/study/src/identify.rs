@@ -68,9 +68,24 @@ impl Study {
             pairs,
             limiting,
             classes: self.classes.clone(),
+            conditions: Vec::new(),
             warnings,
             stats: ledger.close(),
         })
+    }
+
+    /// The same with what a 'yes' of its camera rests on.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub fn identify_with_conditions(&self) -> Result<Identification> {
+        let mut found = self.identify()?;
+        if let Some(camera) = &self.camera {
+            let told = found.identifiability.told_from.is_some_and(|told| told > 0);
+            let all = found.identifiability.identifiable == Some(true);
+            found.conditions = self.conditions_of_check(camera, told, all)?;
+        }
+        Ok(found)
     }
 
     /// The pair that is hardest to tell apart. It is found by its place: two alternatives may have the same name.

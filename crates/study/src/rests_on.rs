@@ -78,11 +78,17 @@ impl Study {
     }
 
     /// The same of an answer that ends at the first proof, and knows no distance.
-    pub(crate) fn conditions_of_check(&self, camera: &Camera, met: bool) -> Result<Vec<Condition>> {
+    /// `met` of some alternative at least, `all` of all of them.
+    pub(crate) fn conditions_of_check(
+        &self,
+        camera: &Camera,
+        met: bool,
+        all: bool,
+    ) -> Result<Vec<Condition>> {
         let mut found = self.unstated(camera, self.brightest_member(camera));
         let pairs = self.alternatives.iter().filter_map(|other| self.target.placeholders(other));
         found.extend(pairs.take(1).map(|emissivities| Condition::Constants { emissivities }));
-        if met && self.scenario.requirement.by == DistanceKind::Nearest {
+        if all && self.scenario.requirement.by == DistanceKind::Nearest {
             found.extend(self.ranges_that_decide()?);
         }
         found.retain(|one| met || !one.favourable());

@@ -77,7 +77,7 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         word: word.to_owned(),
         keys: places.iter().map(ExplainedKey::from).collect(),
         warning: explain::code(word).map(ExplainedCode::from),
-        condition: explain::conditions().find(|one| one.code == word.trim_matches(['[', ']'])),
+        condition: explain::condition(word),
         results: explain::result(word),
         command: command(word, cli),
     };

@@ -226,7 +226,7 @@ pub(crate) fn paragraph_of(camera: &str, conditions: &[Condition]) -> String {
     let mut out = if camera.is_empty() { String::new() } else { format!("{camera}: ") };
     let open: Vec<&Condition> = Condition::open(conditions).collect();
     if !open.is_empty() {
-        out += "Yes, if all of this holds\n";
+        out += "A yes holds only if\n";
         for one in &open {
             let _ = writeln!(out, "  [{}] {}", one.code(), one.say());
         }

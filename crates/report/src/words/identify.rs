@@ -44,6 +44,7 @@ pub fn text(answers: &Answers, study: &Study) -> String {
     if let Some(found) = &answers.exact {
         out.push_str(&exact(found, study));
     }
+    out.push_str(&conditions::paragraph(&answers.identification.conditions));
     out + &footing(&answers.identification, study)
 }
 
@@ -94,10 +95,11 @@ fn verdict(result: &Identification, study: &Study) -> String {
     }
     if let Some(told) = result.identifiability.told_from {
         let name = camera(study);
+        let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
         let sentence = match (all, told) {
-            (1, 1) => format!("Yes: {name} tells {target} from {alternative}"),
+            (1, 1) => format!("{yes}: {name} tells {target} from {alternative}"),
             (1, _) => format!("No: {name} {} {target} from {alternative}", does_not_tell(study)),
-            (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
+            (_, told) if told == all => format!("{yes}: {name} tells {target} from all {all} alternatives"),
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };

@@ -152,6 +152,8 @@ function show({ scenario, form, answer, error }, { scenario: before, edits, full
   at("numbers").hidden = answer.numbers.length === 0;
   at("number-rows").replaceChildren(...answer.numbers.map((one) => row(one, [cell(one.value, "number")])));
   at("pair-rows").replaceChildren(...answer.pairs.map(pairRow));
+  at("conditions").hidden = answer.conditions.length === 0;
+  at("condition-rows").replaceChildren(...answer.conditions.map(warningItem));
   at("warnings").hidden = answer.warnings.length === 0;
   at("warning-rows").replaceChildren(...answer.warnings.map(warningItem));
   showPictures(answer);

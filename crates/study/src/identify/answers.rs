@@ -83,7 +83,7 @@ impl Study {
         number_of("--filters", filters, self.bands.len())?;
         let ledger = Ledger::open();
         let section = Thing::Sections;
-        let mut identification = self.identify()?;
+        let mut identification = self.identify_with_conditions()?;
         demand::add(&identification.stats);
         demand::computed(section, 1);
         let limiting = self.alternative(&identification.limiting);

@@ -228,7 +228,7 @@ impl Study {
     pub fn check_with_conditions(&self, skipping: Skipping) -> Result<Check> {
         let mut check = self.check(skipping)?;
         if let Some(camera) = &self.camera {
-            check.conditions = self.conditions_of_check(camera, check.identifiable)?;
+            check.conditions = self.conditions_of_check(camera, check.identifiable, check.identifiable)?;
         }
         Ok(check)
     }

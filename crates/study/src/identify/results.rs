@@ -1,6 +1,6 @@
 //! What is known of every pair, and of the target against all alternatives, as data.
 
-use super::super::{ClassAnswer, PriorAverage, Warning};
+use super::super::{ClassAnswer, Condition, PriorAverage, Warning};
 use hadar::demand::Work;
 use hadar::identifiability::Status;
 use hadar::identifiability::detection::ErrorBracket;
@@ -26,6 +26,8 @@ pub struct Identification {
     /// What the members of classes say together, alternative by alternative; empty without classes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub classes: Vec<ClassAnswer>,
+    /// What it rests on that the camera tells an alternative, hardest first; empty where it was not asked for.
+    pub conditions: Vec<Condition>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What it took. Searches within an average over priors, a choice of bands or a simulated decision are part of that

@@ -166,7 +166,7 @@ impl Question {
                 self.told(&found, &found.stats, asking)
             }
             Self::Identify => {
-                let found = study(written, asking)?.identify()?;
+                let found = study(written, asking)?.identify_with_conditions()?;
                 self.told(&found, &found.stats, asking)
             }
             Self::Simulate => {

@@ -24,9 +24,9 @@ pub fn check(answer: &RuleAnswer) -> String {
     let mut out = idle;
     for (index, camera) in answer.cameras.iter().enumerate() {
         let met = match camera.verdict {
-            Verdict::Meets => "met",
-            Verdict::Undecided => "undecided",
-            Verdict::Fails => "not met",
+            Verdict::Meets => conditions::yes(&camera.conditions),
+            Verdict::Undecided => "undecided".into(),
+            Verdict::Fails => "not met".into(),
         };
         let _ = writeln!(out, "{}: {met} ({})", camera.name, camera.grade.name());
         for clause in &answer.clauses {
@@ -86,7 +86,7 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
         };
         match Condition::open(&camera.conditions).next() {
             None => known,
-            Some(_) => format!("{known}; {}", conditions::yes(&camera.conditions)),
+            Some(_) => format!("{}: {known}", conditions::yes(&camera.conditions)),
         }
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;
