@@ -1,6 +1,6 @@
 //! The classes of the library: their members, and which of these have no spectrum.
 
-use super::Global;
+use super::super::global::Global;
 use hadar::error::Result;
 use hadar::material::{Basis, Library, LibraryClass, MaterialRef, Summary};
 use std::collections::BTreeMap;
