@@ -6,6 +6,7 @@ import pickle
 import shutil
 import subprocess
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -130,6 +131,12 @@ def test_threads_and_skipping_change_nothing():
     assert len(set(answers)) == 1
     full = hadar.identify(SMALL, skipping=False, matrix=True)
     assert full.matrix == hadar.identify(SMALL, matrix=True).matrix
+
+
+def test_one_thread_answers_all_who_ask():
+    alone = hadar.size(SMALL, threads=2).to_json()
+    with ThreadPoolExecutor(4) as asking:
+        assert set(asking.map(lambda _: hadar.size(SMALL, threads=1).to_json(), range(8))) == {alone}
 
 
 def test_own_spectra_are_read_and_warned_about(tmp_path):

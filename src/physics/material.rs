@@ -28,7 +28,7 @@ mod provenance;
 mod table;
 mod write;
 
-pub use class::{ClassSpec, ENDINGS, MaterialRef, Spread, is_spectra};
+pub use class::{ClassSpec, ENDINGS, LibraryClass, MaterialRef, Spread, is_spectra};
 pub use dielectric::OpticalConstants;
 pub use library::Library;
 #[cfg(feature = "library")]

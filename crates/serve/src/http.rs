@@ -154,6 +154,10 @@ async fn compute(shared: Arc<Shared>, path: String, body: Bytes) -> Reply {
     let Ok(Ok(working)) = timeout(LONGEST_ANSWER, Arc::clone(&shared.working).acquire_owned()).await else {
         return busy();
     };
+    // Where the system gives no other thread, this one has the parallel work to do, and nobody may wait for it here.
+    if rayon::current_thread_index().is_some() {
+        return route::post(&path, &body, &shared.engine);
+    }
     let own = Arc::clone(&shared);
     let computed = tokio::task::spawn_blocking(move || {
         // Kept until the work is done, whether or not anybody still waits for it.

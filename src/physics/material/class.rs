@@ -79,6 +79,17 @@ impl Spread {
     }
 }
 
+/// A class that a library has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LibraryClass {
+    /// What it is made of.
+    pub spec: ClassSpec,
+    /// What it is, in one line; empty where its manifest does not say.
+    pub description: String,
+    /// Other words for it. Whoever writes one of them in the place of a material is told this class's name.
+    pub also: Vec<String>,
+}
+
 /// What a class is made of, before anything is read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassSpec {

@@ -8,7 +8,7 @@
 mod manifests;
 
 use super::Material;
-use super::class::ClassSpec;
+use super::class::{ClassSpec, LibraryClass};
 #[cfg(feature = "library")]
 use super::manifest::Deferred;
 use crate::demand::{Reason, Thing, Work};
@@ -31,7 +31,7 @@ use std::sync::Arc;
 pub struct Library {
     materials: BTreeMap<String, Stored>,
     ambiguous: BTreeMap<String, Vec<String>>,
-    classes: BTreeMap<String, ClassSpec>,
+    classes: BTreeMap<String, LibraryClass>,
     warnings: Vec<String>,
     strict: bool,
 }
@@ -100,7 +100,8 @@ impl Library {
     /// The material of a name.
     ///
     /// # Errors
-    /// An unknown name, with the nearest ones; a name that several files define, with the qualified names.
+    /// An unknown name, with the nearest ones or the class that is meant; a class; a name that several files define, with the
+    /// qualified names.
     pub fn get(&self, name: &str) -> Result<&Material> {
         if let Some(qualified) = self.ambiguous.get(name) {
             return Err(Error::malformed(
@@ -110,18 +111,36 @@ impl Library {
         }
         match self.materials.get(name) {
             Some(stored) => stored.material(),
-            None => Err(Error::unknown_name("material", name, self.names())),
+            None => Err(self.is_no_material(name)),
         }
+    }
+
+    /// What to write in the place of a name that no material has.
+    fn is_no_material(&self, name: &str) -> Error {
+        if self.class(name).is_some() {
+            let found = format!("`{name}` is a class of several spectra, and one is needed here");
+            return Error::malformed(found, "name a material");
+        }
+        let word = name.to_lowercase();
+        let meant = self.classes.iter().find(|(_, class)| class.also.contains(&word));
+        if let Some((class, LibraryClass { description, .. })) = meant {
+            let said = if description.is_empty() { String::new() } else { format!(" ({description})") };
+            return Error::malformed(
+                format!("there is no material `{name}`"),
+                format!("write `{class}`, the class of the library for it{said}"),
+            );
+        }
+        Error::unknown_name("material", name, self.names().chain(self.classes.keys().map(String::as_str)))
     }
 
     /// The class of a name, if a manifest has one.
     #[must_use]
     pub fn class(&self, name: &str) -> Option<&ClassSpec> {
-        self.classes.get(name)
+        self.classes.get(name).map(|class| &class.spec)
     }
 
     /// All classes by name.
-    pub fn classes(&self) -> impl Iterator<Item = (&str, &ClassSpec)> {
+    pub fn classes(&self) -> impl Iterator<Item = (&str, &LibraryClass)> {
         self.classes.iter().map(|(name, class)| (name.as_str(), class))
     }
 

@@ -29,6 +29,8 @@
 //! weights = [1.0, 2.0, 1.0, 1.0]                            # this and the next may be left out
 //! mixtures = true
 //! covariance = "sample"                                     # or emissivity_error = 0.01, correlation_cm1 = 50.0
+//! description = "…"
+//! also = ["metal"]                                          # words in whose place this class is to be written
 //! ```
 
 mod classes;
@@ -36,7 +38,7 @@ mod deferred;
 
 pub(super) use deferred::Deferred;
 
-use super::class::ClassSpec;
+use super::class::LibraryClass;
 use super::dielectric::Dielectric;
 use super::gaussian::Gaussian;
 use super::model::{Model, Polynomial};
@@ -205,7 +207,7 @@ fn entries(text: &str, path: &Path) -> Result<Vec<Entry>> {
 ///
 /// # Errors
 /// As [`parse`]; a name that is not in kebab-case, covariances that contradict each other or are out of range.
-pub(super) fn classes(text: &str, path: &Path, directory: &Path) -> Result<Vec<(String, ClassSpec)>> {
+pub(super) fn classes(text: &str, path: &Path, directory: &Path) -> Result<Vec<(String, LibraryClass)>> {
     classes::of(manifest(text, path)?.class, path, directory)
 }
 

@@ -1,5 +1,6 @@
 //! `hadar materials`: the library.
 
+mod classes;
 mod files;
 mod import;
 
@@ -8,13 +9,12 @@ use clap::{Args, Subcommand};
 use files::{Columns, SHOWN_CM1};
 use hadar::demand::Thing;
 use hadar::error::{Error, Result};
-use hadar::material::{Library, Material, MaterialRef, Summary};
+use hadar::material::{Library, Material, Summary};
 use hadar_report::bundle::Bundle;
 use hadar_report::json;
 use hadar_report::size::figures;
 use hadar_report::text::significant;
 use hadar_study::Surface;
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -27,11 +27,11 @@ pub(super) struct MaterialsArgs {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// All materials
+    /// All materials and classes
     List,
-    /// One material: what it is, how it is known, its emissivity
+    /// One material: what it is, how it is known, its emissivity; or one class: its members and how each is known
     Show {
-        /// Name of the material, or a file of one
+        /// Name of the material or class, or a file of one material
         name: String,
         #[command(flatten)]
         columns: Columns,
@@ -59,7 +59,10 @@ pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
         Action::List => list(&global.library()?, global)?,
         Action::Show { name, columns } => {
             let library = global.library()?;
-            show(&columns.find(&library, name)?, &library, global)?;
+            match library.classes().find(|(own, _)| own == name) {
+                Some((_, class)) => classes::show(name, class, &library, global)?,
+                None => show(&columns.find(&library, name)?, &library, global)?,
+            }
         }
         Action::Plot { names, columns } => plot(&global.library()?, names, columns, global)?,
         Action::Import { files, columns } => import::run(files, columns, global)?,
@@ -80,24 +83,9 @@ fn list(library: &Library, global: &Global) -> Result<()> {
         "\n{} materials; `hadar materials show NAME` tells source, licence and range",
         summaries.len()
     );
-    let classes: BTreeMap<&str, Vec<String>> =
-        library.classes().map(|(name, class)| (name, class.materials.iter().map(member).collect())).collect();
-    if !classes.is_empty() {
-        out.push_str("\nClasses, which stand wherever a material may in what is to be told apart\n");
-    }
-    for (name, members) in &classes {
-        let _ = writeln!(out, "  {name}: {}", members.join(", "));
-    }
-    let json = serde_json::json!({ "materials": summaries, "classes": classes });
+    out.push_str(&classes::listed(library));
+    let json = serde_json::json!({ "materials": summaries, "classes": classes::members(library) });
     global.answer_with(json, &out, &library.work())
-}
-
-/// What a class names: a material, or where its spectra are.
-fn member(member: &MaterialRef) -> String {
-    match member {
-        MaterialRef::Name(name) => name.clone(),
-        MaterialRef::File(path) => path.display().to_string(),
-    }
 }
 
 /// A material, its emissivity in the paper's bands and what it was taken from.

@@ -1,5 +1,8 @@
 //! The threads of the whole process, started before anything else: those that cannot be had are missed here, with a word,
 //! and not in the middle of the work.
+//!
+//! Whoever waits for parallel work may be a thread of its own, as each question of the page is. So the pool has threads of its own too,
+//! even if it is only one: the first thread of the program does other things and would leave that work undone.
 
 use super::stderr::say;
 use super::terminal::Stream;
@@ -9,7 +12,7 @@ use std::sync::{Arc, Mutex, mpsc};
 pub(super) const MOST: usize = 1024;
 
 /// Starts as many as were asked for, here or by `RAYON_NUM_THREADS`, else one per core. Where the system does not give so
-/// many, the work is done by this one.
+/// many, one does the work; where it gives none, the first thread of the program.
 pub(super) fn start(asked: Option<usize>, quiet: bool) {
     let warn = |text: String| {
         if !quiet {
@@ -35,19 +38,21 @@ pub(super) fn start(asked: Option<usize>, quiet: bool) {
             part.map(rayon::ThreadBuilder::run)
         })
     };
-    let failed = if count == 1 { None } else { (0..count).find_map(|_| thread().err()) };
-    let pool = rayon::ThreadPoolBuilder::new();
-    let started = if count == 1 || failed.is_some() {
-        drop(work);
-        pool.num_threads(1).use_current_thread().build_global()
-    } else {
-        pool.num_threads(count)
-            .spawn_handler(|part| work.send(part).map_err(|_| std::io::Error::other("a thread has ended")))
-            .build_global()
-    };
+    let mut failed = None;
+    let threads = (0..count).map_while(|_| thread().map_err(|reason| failed = Some(reason)).ok()).count();
     if let Some(reason) = failed {
-        warn(format!("{count} threads cannot be started ({reason}); one does the work"));
+        let what = if count == 1 { "a thread" } else { &format!("{count} threads") };
+        warn(format!("{what} cannot be started ({reason}); one does the work"));
     }
+    let pool = rayon::ThreadPoolBuilder::new();
+    let started = match threads {
+        0 => pool.num_threads(1).use_current_thread().build_global(),
+        _ => pool
+            // Those that are left over end with `work`.
+            .num_threads(if threads < count { 1 } else { count })
+            .spawn_handler(|part| work.send(part).map_err(|_| std::io::Error::other("a thread has ended")))
+            .build_global(),
+    };
     if let Err(error) = started {
         warn(format!("{error}"));
     }

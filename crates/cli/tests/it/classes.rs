@@ -174,6 +174,45 @@ fn a_rule_looks_at_every_member() {
     assert!(text.contains("any of 2 spectra of person") || text.contains("person"), "{text}");
 }
 
+/// The classes of the library for a person and a machine need no table, and what of them has no spectrum is said wherever they are.
+#[test]
+fn a_person_and_a_robot_are_in_the_library() {
+    let (_, question) = CLASSES.split_once("[target]").unwrap();
+    let folder = folder(&format!("[target]{question}"));
+    #[track_caller]
+    fn says(text: &str, parts: &[&str]) {
+        parts.iter().for_each(|part| assert!(text.contains(part), "{text}\n{part}"));
+    }
+    let answer = folder.json(&["size", "a.toml"]);
+    let class = &answer["classes"][0];
+    assert_eq!(texts(&class["target"]["one_number"]), ["person/skin", "person/fabric"]);
+    assert!(texts(&class["alternative"]["one_number"]).is_empty());
+    says(
+        answer["verdict"]["sentence"].as_str().unwrap(),
+        &["3 spectra of person (2 entered as one number) and 24 spectra of robot"],
+    );
+    says(
+        &folder.run(&["size", "a.toml"]).stdout,
+        &["entered as one number              person/skin, person/fabric"],
+    );
+    let listed = folder.run(&["materials", "list"]).stdout;
+    says(&listed, &["  person: skin (one number), tissue-blood-proxy, fabric (one number)"]);
+    let shown = folder.run(&["materials", "show", "person"]).stdout;
+    says(&shown, &["human skin, one number for all wavenumbers", "clothing, one number for all wavenumbers"]);
+    let shown = folder.json(&["materials", "show", "robot"]);
+    assert_eq!(texts(&shown["members"]).len(), 24);
+    for (word, class) in [("human", "person"), ("people", "person"), ("vehicle", "robot")] {
+        folder.file("a.toml", &format!("[target]{question}").replace("\"person\"", &format!("{word:?}")));
+        let said = folder.refusal(&["size", "a.toml"]);
+        says(
+            &said,
+            &[&format!(
+                "a.toml:2: target.material: there is no material `{word}`; write `{class}`, the class"
+            )],
+        );
+    }
+}
+
 #[test]
 fn every_mistake_about_classes_is_one_line() {
     let with = |old: &str, new: &str| CLASSES.replace(old, new);

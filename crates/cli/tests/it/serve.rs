@@ -11,9 +11,14 @@ struct Served(Child, String);
 
 impl Served {
     fn with(folder: &Folder, arguments: &[&str]) -> Self {
+        Self::of(folder, arguments, &[])
+    }
+
+    fn of(folder: &Folder, arguments: &[&str], variables: &[(&str, &str)]) -> Self {
         let mut child = Command::new(assert_cmd::cargo::cargo_bin!("hadar"))
             .args(["serve", "--port", "0", "--quiet"])
             .args(arguments)
+            .envs(variables.iter().copied())
             .current_dir(folder.path())
             .stdout(Stdio::piped())
             .spawn()
@@ -71,6 +76,25 @@ fn the_page_gives_the_json_of_the_command() {
     let work = [&mut page, &mut command].map(|json| json["stats"].take());
     assert!(work.iter().all(|stats| !stats.is_null()));
     assert_eq!(page, command);
+}
+
+/// Questions come from threads that are none of the pool's: it has to work for them, even if it is of one thread, or if there is no
+/// thread but the first (a stack that no machine has is a thread that cannot be started).
+#[test]
+fn a_pool_of_one_thread_answers_the_page() {
+    let folder = Folder::with(SCENARIO);
+    let question = json!({ "scenario": SCENARIO, "full": true }).to_string();
+    let answers = |arguments: &[&str], variables: &[(&str, &str)]| {
+        let served = Served::of(&folder, arguments, variables);
+        // A second question finds the pool as the first did.
+        ["/ask", "/json", "/ask"].map(|path| served.asked("POST", path, &question))
+    };
+    let of_two = answers(&["--threads", "2"], &[]);
+    assert_eq!(of_two[0], of_two[2]);
+    assert!(answers(&["--threads", "1"], &[]) == of_two, "one thread");
+    assert!(answers(&[], &[("RAYON_NUM_THREADS", "1")]) == of_two, "one thread of the environment");
+    #[cfg(target_os = "linux")]
+    assert!(answers(&[], &[("RUST_MIN_STACK", "100000000000000")]) == of_two, "no thread but the first");
 }
 
 #[test]

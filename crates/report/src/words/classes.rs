@@ -26,8 +26,17 @@ fn rests(side: &ClassSide) -> String {
     match (side.is_class, side.mean) {
         (false, _) => side.name.clone(),
         (true, true) => format!("the mean of {} spectra of {}", side.spectra, side.name),
-        (true, false) if side.spectra == 1 => format!("1 spectrum of {}", side.name),
-        (true, false) => format!("{} spectra of {}", side.spectra, side.name),
+        (true, false) if side.spectra == 1 => format!("1 spectrum of {}", side.name) + &one_number(side),
+        (true, false) => format!("{} spectra of {}", side.spectra, side.name) + &one_number(side),
+    }
+}
+
+/// Members of a class that have no spectrum, as the rest of a phrase on the class.
+pub(super) fn one_number(side: &ClassSide) -> String {
+    match (side.one_number.len(), side.members.len()) {
+        (0, _) => String::new(),
+        (1, 1) => " (entered as one number)".to_owned(),
+        (entered, _) => format!(" ({entered} entered as one number)"),
     }
 }
 
@@ -56,6 +65,11 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
         let distance = |d: f64| format!("d = {}{unit}", significant(d, 3));
         let [own, other] = &answer.worst;
         line("hardest pair", format!("{own} against {other}, {}", distance(answer.distance)));
+        let sides = [&answer.target, &answer.alternative];
+        let entered: Vec<&str> = sides.iter().flat_map(|side| &side.one_number).map(String::as_str).collect();
+        if !entered.is_empty() && sides.iter().any(|side| side.is_class) {
+            line("entered as one number", entered.join(", "));
+        }
         if let Some(told) = answer.share_of_pairs_told {
             line(
                 if answer.mixtures.is_some() {

@@ -17,6 +17,7 @@ pub use text::text;
 pub(crate) use text::together;
 
 use super::Say;
+use super::classes::one_number;
 use super::probability::demanded;
 use super::text::numbers::in_a_row;
 use hadar::ranging::depth::Demand;
@@ -230,7 +231,7 @@ impl Say for EmissivityError {
 /// Names, those of classes with how many spectra they rest on.
 fn with_spectra(envelope: &EnvelopeResult, names: &[String]) -> Vec<String> {
     let named = |name: &String| match envelope.classes.iter().find(|class| class.name == *name) {
-        Some(class) => format!("any of {} spectra of {name}", class.spectra),
+        Some(class) => format!("any of {} spectra of {name}{}", class.spectra, one_number(class)),
         None => name.clone(),
     };
     names.iter().map(named).collect()

@@ -20,6 +20,8 @@ pub struct ClassSide {
     pub members: Vec<String>,
     /// A share for each; Σ = 1.
     pub weights: Vec<f64>,
+    /// Those of its members that are entered as one number for all wavenumbers: nothing is known of their spectrum.
+    pub one_number: Vec<String>,
 }
 
 /// The worst pair without one of its members.

@@ -79,10 +79,15 @@ impl Members {
             is_class: self.is_class(),
             mixtures: self.mixtures(),
             mean: !self.modes.is_empty(),
-            members: self.surfaces.iter().map(|surface| surface.name.clone()).collect(),
+            members: named(self.surfaces.iter()),
             weights: self.weights.clone(),
+            one_number: named(self.surfaces.iter().filter(|surface| surface.one_number.is_some())),
         }
     }
+}
+
+fn named<'a>(surfaces: impl Iterator<Item = &'a Surface>) -> Vec<String> {
+    surfaces.map(|surface| surface.name.clone()).collect()
 }
 
 /// Σ w_i e_i.

@@ -1,9 +1,9 @@
 //! The classes of a manifest.
 
 use crate::error::{Error, Result};
-use crate::material::class::{ClassSpec, MaterialRef, Spread};
+use crate::material::class::{ClassSpec, LibraryClass, MaterialRef, Spread};
 use crate::material::is_spectra;
-use crate::words::kebab_case;
+use crate::words::{kebab_case, one_line};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,9 +12,10 @@ use std::path::Path;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ClassEntry {
-    /// Said for readers of the manifest.
-    #[serde(rename = "description")]
-    _description: Option<String>,
+    #[serde(default)]
+    description: String,
+    #[serde(default)]
+    also: Vec<String>,
     materials: Vec<String>,
     weights: Option<Vec<f64>>,
     #[serde(default)]
@@ -38,17 +39,18 @@ pub(super) fn of(
     read: BTreeMap<String, ClassEntry>,
     path: &Path,
     directory: &Path,
-) -> Result<Vec<(String, ClassSpec)>> {
+) -> Result<Vec<(String, LibraryClass)>> {
     let of = |(name, entry): (String, ClassEntry)| {
-        let spec = entry.spec(&name, directory);
-        spec.map(|spec| (name.clone(), spec))
+        let class = entry.class(&name, directory);
+        class
+            .map(|class| (name.clone(), class))
             .map_err(|error| error.for_key(format!("class.{name}")).in_file(path))
     };
     read.into_iter().map(of).collect()
 }
 
 impl ClassEntry {
-    fn spec(self, name: &str, directory: &Path) -> Result<ClassSpec> {
+    fn class(self, name: &str, directory: &Path) -> Result<LibraryClass> {
         if name != kebab_case(name) || name.is_empty() {
             let found = format!("the name `{name}` is not in kebab-case");
             return Err(Error::malformed(found, "write small letters, digits and hyphens"));
@@ -57,11 +59,12 @@ impl ClassEntry {
             let is_path = text.contains(['/', '\\']) || is_spectra(&text);
             if is_path { MaterialRef::File(directory.join(text)) } else { MaterialRef::Name(text) }
         };
-        Ok(ClassSpec {
+        let spec = ClassSpec {
             materials: self.materials.into_iter().map(reference).collect(),
             weights: self.weights,
             mixtures: self.mixtures,
             spread: Spread::stated(self.covariance.is_some(), self.emissivity_error, self.correlation_cm1)?,
-        })
+        };
+        Ok(LibraryClass { spec, description: one_line(&self.description), also: self.also })
     }
 }

@@ -4,7 +4,7 @@ use super::{Around, Entry, Model, classes, made, manifest};
 use crate::error::Result;
 use crate::inputs;
 use crate::material::Material;
-use crate::material::class::ClassSpec;
+use crate::material::class::LibraryClass;
 use crate::material::embedded::{self, Embedded};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -15,7 +15,7 @@ pub(in crate::physics::material) struct Deferred {
     text: &'static str,
     path: &'static Path,
     entries: Vec<Entry>,
-    classes: Vec<(String, ClassSpec)>,
+    classes: Vec<(String, LibraryClass)>,
     made: Vec<OnceLock<Material>>,
 }
 
@@ -37,7 +37,7 @@ impl Deferred {
     }
 
     /// The classes by name.
-    pub(in crate::physics::material) fn classes(&self) -> &[(String, ClassSpec)] {
+    pub(in crate::physics::material) fn classes(&self) -> &[(String, LibraryClass)] {
         &self.classes
     }
 
