@@ -88,6 +88,8 @@ pub struct LibraryClass {
     pub description: String,
     /// Other words for it. Whoever writes one of them in the place of a material is told this class's name.
     pub also: Vec<String>,
+    /// What belongs to it and is not in it, since no spectrum is known; empty where nothing is missing.
+    pub without: Vec<String>,
 }
 
 /// What a class is made of, before anything is read.

@@ -139,6 +139,12 @@ impl Library {
         self.classes.get(name).map(|class| &class.spec)
     }
 
+    /// What belongs to the class of that name and is not in it.
+    #[must_use]
+    pub fn without(&self, name: &str) -> &[String] {
+        self.classes.get(name).map_or(&[], |class| &class.without)
+    }
+
     /// All classes by name.
     pub fn classes(&self) -> impl Iterator<Item = (&str, &LibraryClass)> {
         self.classes.iter().map(|(name, class)| (name.as_str(), class))

@@ -130,6 +130,9 @@ impl<'a> Finder<'a> {
                 self.warnings.push(warning);
             }
         }
+        if own.is_none() {
+            self.left_out.extend_from_slice(self.library.without(name));
+        }
         Some((name.clone(), spec.clone()))
     }
 

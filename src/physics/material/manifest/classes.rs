@@ -16,6 +16,8 @@ pub(super) struct ClassEntry {
     description: String,
     #[serde(default)]
     also: Vec<String>,
+    #[serde(default)]
+    without: Vec<String>,
     materials: Vec<String>,
     weights: Option<Vec<f64>>,
     #[serde(default)]
@@ -65,6 +67,6 @@ impl ClassEntry {
             mixtures: self.mixtures,
             spread: Spread::stated(self.covariance.is_some(), self.emissivity_error, self.correlation_cm1)?,
         };
-        Ok(LibraryClass { spec, description: one_line(&self.description), also: self.also })
+        Ok(LibraryClass { spec, description: one_line(&self.description), also: self.also, without: self.without })
     }
 }
