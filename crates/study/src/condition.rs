@@ -93,6 +93,33 @@ pub enum Condition {
         /// Side of what the pixel sees, m, where the distance is known.
         footprint_m: Option<f64>,
     },
+    /// A camera of one band that its entry models as if it read so many at once.
+    Modelled {
+        /// How many.
+        bands: usize,
+    },
+    /// Bands beyond the stated range of the detector, of so many.
+    BeyondRange {
+        /// How many.
+        outside: usize,
+        /// Of how many.
+        bands: usize,
+    },
+    /// Wide bands are taken at their centres.
+    Sampled {
+        /// Width of the widest, cm⁻¹.
+        width_cm1: f64,
+    },
+    /// The target fills a part of one pixel and lies in no other.
+    InOnePixel {
+        /// Share of the pixel.
+        fill: f64,
+    },
+    /// The lens blurs a point over more than a pixel.
+    Diffraction {
+        /// Over how much, m.
+        blur_m: f64,
+    },
     /// Filters neither shine nor throw the sensor's light back.
     NoFilterLight,
     /// The air takes nothing away.
@@ -121,7 +148,7 @@ pub enum Condition {
 }
 
 /// Codes of all conditions but those of camera figures, which are called as their keys are.
-const CODES: [&str; 14] = [
+const CODES: [&str; 19] = [
     "range",
     "registered-frames",
     "still-scene",
@@ -130,6 +157,11 @@ const CODES: [&str; 14] = [
     "no-limit",
     "photon-bunching",
     "fills-pixel",
+    "modelled",
+    "beyond-range",
+    "bands-sampled",
+    "in-one-pixel",
+    "diffraction",
     "no-filter-light",
     "no-air",
     "no-surroundings",
@@ -159,6 +191,11 @@ impl Condition {
             Self::NoLimit => "no-limit",
             Self::Bunching { .. } => "photon-bunching",
             Self::FillsPixel { .. } => "fills-pixel",
+            Self::Modelled { .. } => "modelled",
+            Self::BeyondRange { .. } => "beyond-range",
+            Self::Sampled { .. } => "bands-sampled",
+            Self::InOnePixel { .. } => "in-one-pixel",
+            Self::Diffraction { .. } => "diffraction",
             Self::NoFilterLight => "no-filter-light",
             Self::NoAir => "no-air",
             Self::NoSurroundings => "no-surroundings",
@@ -212,6 +249,11 @@ impl Condition {
             Self::Bunching { .. } => "camera.photon_bunching",
             Self::FillsPixel { footprint_m: None } => "target.distance",
             Self::FillsPixel { .. } => "target.size",
+            Self::Modelled { .. } => "camera.readout",
+            Self::BeyondRange { .. } => "camera.spectral_range",
+            Self::Sampled { .. } => "bands.integrate",
+            Self::InOnePixel { .. } => "target.size",
+            Self::Diffraction { .. } => "camera.pixel",
             Self::NoFilterLight => "camera.sensor_temperature",
             Self::NoAir => "atmosphere",
             Self::NoSurroundings => "environment",
@@ -246,6 +288,11 @@ impl Condition {
                 _ => (8, 0.0),
             },
             Self::Bunching { .. } => (8, 1.0),
+            Self::Modelled { .. } => (1, 1.0),
+            Self::BeyondRange { .. } => (6, 1.0),
+            Self::InOnePixel { .. } => (6, 2.0),
+            Self::Diffraction { .. } => (6, 3.0),
+            Self::Sampled { .. } => (8, 3.0),
             Self::NoFilterLight => (8, 2.0),
             Self::NoAir => (9, 0.0),
             Self::NoSurroundings => (9, 1.0),
@@ -312,6 +359,11 @@ impl Condition {
             Self::Assumed { counts: Some(counts), .. } => Taken::Number(*counts),
             Self::Assumed { figure, .. } => Taken::Text(&figure.taken),
             Self::Bunching { occupancy } => Taken::Number(*occupancy),
+            Self::Modelled { bands } => Taken::Number(*bands as f64),
+            Self::BeyondRange { outside, .. } => Taken::Number(*outside as f64),
+            Self::Sampled { width_cm1 } => Taken::Number(*width_cm1),
+            Self::InOnePixel { fill } => Taken::Number(*fill),
+            Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
             Self::Calibrated { known, .. } => Taken::Texts(known.iter().map(|one| one.name()).collect()),
             Self::LeftOut { materials } => Taken::Texts(materials.iter().map(String::as_str).collect()),

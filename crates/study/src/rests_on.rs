@@ -8,8 +8,9 @@ use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
 use hadar::identifiability::nearest::StateRange;
-use hadar::instrument::{Assumed, Camera};
+use hadar::instrument::{Assumed, Camera, Readout};
 use hadar::planck;
+use hadar::policy::caps::longest_wavelength_m;
 use hadar_scenario::{DistanceKind, Setting};
 
 /// Share of draws of the emissivities that settles a question.
@@ -126,6 +127,22 @@ impl Study {
         if scenario.target.size_m.is_none() {
             let footprint_m = asked.distance_m.map(|z| camera.footprint_m(z));
             found.push(Condition::FillsPixel { footprint_m });
+        }
+        let fill = self.view_of(camera).fill;
+        if fill < 1.0 {
+            found.push(Condition::InOnePixel { fill });
+        }
+        let outside = self.bands_beyond(camera);
+        if outside > 0 {
+            found.push(Condition::BeyondRange { outside, bands: self.bands.len() });
+        }
+        found.extend(self.sampled_cm1().map(|width_cm1| Condition::Sampled { width_cm1 }));
+        let blur_m = longest_wavelength_m(&self.bands) * camera.f_number;
+        if camera.pixel_m < blur_m {
+            found.push(Condition::Diffraction { blur_m });
+        }
+        if camera.spectral_bands == Some(1) && self.bands.len() > 1 && camera.readout != Readout::Sequential {
+            found.push(Condition::Modelled { bands: self.bands.len() });
         }
         if scenario.atmosphere.is_none() {
             found.push(Condition::NoAir);

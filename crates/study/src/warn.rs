@@ -113,10 +113,7 @@ impl Study {
             let included = self.camera.as_ref().is_some_and(|camera| camera.photon_bunching);
             warnings.push(Warning::Bunching { occupancy, wavenumber_cm1: low, included });
         }
-        let width_cm1 = self.open_bands.widths_cm1().into_iter().fold(0.0, f64::max);
-        if self.open_bands.one_node_per_band() && width_cm1 > SAMPLED_CM1 {
-            warnings.push(Warning::BandsSampled { width_cm1 });
-        }
+        warnings.extend(self.sampled_cm1().map(|width_cm1| Warning::BandsSampled { width_cm1 }));
         if self.surroundings.objects().is_empty() {
             warnings.push(Warning::NoSurroundings);
         }
@@ -124,6 +121,12 @@ impl Study {
             warnings.extend(sequential(camera, self.bands.len()));
         }
         warnings
+    }
+
+    /// Width of the widest band, cm⁻¹, where it is too wide to be taken at its centre and is.
+    pub(super) fn sampled_cm1(&self) -> Option<f64> {
+        let width_cm1 = self.open_bands.widths_cm1().into_iter().fold(0.0, f64::max);
+        (self.open_bands.one_node_per_band() && width_cm1 > SAMPLED_CM1).then_some(width_cm1)
     }
 
     /// Where a target of no stated size is taken to fill a pixel that sees more than a person from a distance.

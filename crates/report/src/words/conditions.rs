@@ -106,6 +106,22 @@ impl Say for Condition {
                 format!("the target fills a pixel, which sees {} there", length(*footprint_m))
             }
             Self::FillsPixel { footprint_m: None } => "the target fills a pixel at its distance".into(),
+            Self::Modelled { bands } => {
+                format!("a camera of one band reads {bands} bands at once, as no such camera does")
+            }
+            Self::BeyondRange { outside, bands } => {
+                format!("the figures of the detector hold beyond its range too ({outside} of {bands} bands)")
+            }
+            Self::Sampled { width_cm1 } => {
+                format!("bands up to {} cm^-1 wide are as their centres", significant(*width_cm1, 3))
+            }
+            Self::InOnePixel { fill } => {
+                format!("the target, which fills {} of a pixel, lies in the middle of one", share(*fill))
+            }
+            Self::Diffraction { blur_m } => format!(
+                "what is beside the target does not matter, though the lens blurs a point over {}",
+                quantity(*blur_m, "m")
+            ),
             Self::NoFilterLight => {
                 "the filters neither shine nor throw light back (sensor_temperature is not stated)".into()
             }
@@ -133,7 +149,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 14] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 19] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -173,6 +189,31 @@ pub(crate) const EXPLAINED: [[&str; 3]; 14] = [
         "fills-pixel",
         "The size of the target or its distance is not stated: it is taken to fill a pixel.",
         "Write target.size with a [background], and target.distance.",
+    ],
+    [
+        "modelled",
+        "The camera has one band, and its entry models it as if it read all bands at once, as no such camera does.",
+        "Write camera.readout = \"sequential\" for filters before it, one after the other.",
+    ],
+    [
+        "beyond-range",
+        "Bands lie for the most part beyond the range in which the figures of the detector are stated.",
+        "Narrow the bands, or state a camera.spectral_range that holds them.",
+    ],
+    [
+        "bands-sampled",
+        "Wide bands of a grid or of rows are taken at their centres, which may see what the whole band does not.",
+        "Write bands.integrate = true, or the bands as ranges.",
+    ],
+    [
+        "in-one-pixel",
+        "The target does not fill its pixel, and is taken to lie in one.",
+        "Keep a margin for targets between pixels, or magnify.",
+    ],
+    [
+        "diffraction",
+        "The lens blurs a point over more than a pixel: an edge of the target mixes with what is beside it.",
+        "Lower the f-number or enlarge the pixel.",
     ],
     [
         "no-filter-light",

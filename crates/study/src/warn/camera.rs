@@ -99,11 +99,15 @@ impl Study {
         })
     }
 
-    /// Bands of which more than half is out of the range of the detector; one that is wholly so was refused.
-    pub(crate) fn outside_range(&self, camera: &Camera) -> Option<Warning> {
+    /// How many bands are for more than half out of the range of the detector; one that is wholly so was refused.
+    pub(crate) fn bands_beyond(&self, camera: &Camera) -> usize {
         let [low, high] = camera.spectral_range_cm1;
         let beyond = |from: f64, to: f64| (low - from).max(to - high) > HALF * (to - from);
-        let outside = self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count();
+        self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count()
+    }
+
+    pub(crate) fn outside_range(&self, camera: &Camera) -> Option<Warning> {
+        let outside = self.bands_beyond(camera);
         let (bands, range_cm1) = (self.bands.len(), camera.spectral_range_cm1);
         (outside > 0).then_some(Warning::OutsideDetectorRange { outside, bands, range_cm1 })
     }

@@ -67,6 +67,11 @@ impl ClassEntry {
             mixtures: self.mixtures,
             spread: Spread::stated(self.covariance.is_some(), self.emissivity_error, self.correlation_cm1)?,
         };
-        Ok(LibraryClass { spec, description: one_line(&self.description), also: self.also, without: self.without })
+        Ok(LibraryClass {
+            spec,
+            description: one_line(&self.description),
+            also: self.also,
+            without: self.without,
+        })
     }
 }
