@@ -87,7 +87,17 @@ impl Preset {
         let figures = &self.figures;
         let noise = match &self.noise_table {
             Some(table) => table.clone(),
-            None => noise_of(figures.noise.stated(), [f_number, optics_efficiency, pixel_m], &mut assumed),
+            None => {
+                let own = [f_number, optics_efficiency, pixel_m];
+                let at = self.noise_at.as_deref().map_or(own, |at| {
+                    [
+                        at.f_number.unwrap_or(f_number),
+                        at.optics_efficiency.taken(),
+                        at.pixel_m.unwrap_or(pixel_m),
+                    ]
+                });
+                noise_of(figures.noise.stated(), at, &mut assumed)
+            }
         };
         let spectral_range_cm1 = figures.spectral_range_cm1.unwrap_or_else(|| {
             let [low, high] = PAPER_RANGE_CM1;
@@ -127,7 +137,7 @@ impl Preset {
             f_number,
             focal_length_m,
             optics_efficiency,
-            noise_exposure_s: figures.noise_exposure_s.unwrap_or(exposure_s),
+            noise_exposure_s: self.noise_exposure_s().unwrap_or(exposure_s),
             flicker_fraction,
             readout,
             frames,
@@ -135,6 +145,27 @@ impl Preset {
             spectral_range_cm1,
             ..Camera::as_stated(figures, own)
         })
+    }
+
+    /// The exposure of which the noise is, s: as it is stated, or that of the camera that it is stated of, a frame where that is silent.
+    fn noise_exposure_s(&self) -> Option<f64> {
+        let at = self.noise_at.as_deref().unwrap_or(&self.figures);
+        self.figures.noise_exposure_s.or(at.exposure_s).or(at.frame_rate_hz.map(f64::recip))
+    }
+
+    /// The noise with all of its conditions, those that are not stated as they are taken.
+    #[must_use]
+    pub fn noise_in_full(&self) -> (NoiseFigures, Option<f64>) {
+        let at = self.noise_at.as_deref().unwrap_or(&self.figures);
+        let mut noise = self.figures.noise.clone();
+        if noise.netd_k.is_some() {
+            noise.netd_temperature_k.get_or_insert(REFERENCE_K);
+            noise.netd_f_number = noise.netd_f_number.or(at.f_number);
+            noise.netd_optics_efficiency =
+                noise.netd_optics_efficiency.or(Some(at.optics_efficiency.taken()));
+            noise.netd_pixel_m = noise.netd_pixel_m.or(at.pixel_m);
+        }
+        (noise, self.noise_exposure_s())
     }
 
     /// The figures without which there is no camera: the frame is taken for an exposure that is not stated, 1 for an efficiency of the optics.
@@ -188,7 +219,7 @@ struct Required {
     optics_efficiency: f64,
 }
 
-/// The noise that is stated; an NETD without its conditions is one of this camera.
+/// The noise that is stated; conditions that an NETD does not state are these.
 fn noise_of(
     stated: Option<StatedNoise>,
     [f_number, optics_efficiency, pixel_m]: [f64; 3],

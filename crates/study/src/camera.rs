@@ -2,12 +2,13 @@
 
 use hadar::error::{Error, Place, Result};
 use hadar::grid::Grid;
-use hadar::instrument::figures::{Kind, Part, TABLE};
+use hadar::instrument::figures::{Kind, NoiseFigures, Part, TABLE};
 use hadar::instrument::presets::{self, Preset};
 use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, REFERENCE_K};
 use hadar_formats::file::text_of_file;
-use hadar_scenario::{CameraSpec, Efficiency, Source};
+use hadar_scenario::{CameraSpec, Source};
 use std::path::Path;
+use std::sync::Arc;
 
 /// The preset with what the scenario overrides; without a preset everything must be said.
 pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
@@ -23,7 +24,7 @@ pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
 pub(super) fn known(spec: &CameraSpec) -> Result<Option<Preset>> {
     match (&spec.own, &spec.preset) {
         (Some(own), name) => {
-            let stated = overridden(own, known(own)?.unwrap_or_default())?;
+            let stated = laid(own, known(own)?.unwrap_or_default())?;
             Ok(Some(Preset { name: name.clone().unwrap_or_default(), ..stated }))
         }
         (None, Some(name)) => presets::find(name).map(Some),
@@ -59,7 +60,31 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
 pub(super) fn stated_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
     let preset = known(spec).map_err(|error| error.at(place("preset")))?;
     check_conditions(spec, preset.as_ref(), place)?;
-    overridden(spec, preset.unwrap_or_default())
+    laid(spec, preset.unwrap_or_default())
+}
+
+/// The camera of a spec with the noise of the camera as `filed` states it: what moves figures of a camera states no other noise. The
+/// noise is written out with all of its conditions where it would be another one without.
+#[must_use]
+pub fn with_noise_kept(spec: &CameraSpec, filed: &CameraSpec) -> CameraSpec {
+    let alone = CameraSpec { filed: None, ..spec.clone() };
+    let moved = CameraSpec { filed: Some(Arc::new(filed.clone())), ..alone.clone() };
+    let in_full = |spec: &CameraSpec| {
+        let stated = laid(spec, known(spec)?.unwrap_or_default())?;
+        Ok::<_, Error>((stated.noise_in_full(), stated.noise_table))
+    };
+    match (in_full(&moved), in_full(&alone)) {
+        (Ok((own, table)), Ok(other)) if (&own, &table) != (&other.0, &other.1) && !own.0.is_none => {
+            let (noise, noise_exposure_s) = own;
+            CameraSpec { noise, noise_exposure_s, ..alone }
+        }
+        _ => alone,
+    }
+}
+
+/// The same for a spec that knows its file.
+pub(super) fn with_filed_noise(spec: &CameraSpec) -> CameraSpec {
+    spec.filed.as_deref().map_or_else(|| spec.clone(), |filed| with_noise_kept(spec, filed))
 }
 
 /// A camera whose figures make one; a mistake is told where its key stands.
@@ -75,71 +100,74 @@ pub(super) fn checked_at(camera: Camera, place: &dyn Fn(&str) -> Place) -> Resul
     })
 }
 
-/// Conditions of a noise that is not stated, and a noise without the condition it cannot do without.
+/// Conditions of a noise that is not stated, a noise without the condition it cannot do without, and one with half of its conditions.
 fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&str) -> Place) -> Result<()> {
-    for row in TABLE.iter().filter(|row| row.part == Part::Condition(&["netd"])) {
-        if row.is_given(spec) && spec.noise.netd_k.is_none() {
-            let found = format!("{} without a netd", row.key);
-            return Err(Error::malformed(found, "write netd = \"50 mK\" beside it").at(place(row.key)));
-        }
+    let refuse =
+        |key: &str, found: String, instead: &str| Err(Error::malformed(found, instead).at(place(key)));
+    let of_netd = || TABLE.iter().filter(|row| row.part == Part::Condition(&["netd"]) && row.is_given(spec));
+    let is_of_kind = preset.is_some_and(|preset| preset.figures.noise.is_of_kind(&spec.noise));
+    if let Some(row) = of_netd().next()
+        && spec.noise.netd_k.is_none()
+    {
+        return refuse(row.key, format!("{} without a netd", row.key), "write netd = \"50 mK\" beside it");
     }
     if spec.noise_exposure_s.is_some() && !spec.states_noise() {
         let instead = "write netd, detectivity or noise_electrons beside it";
-        return Err(Error::malformed("noise_exposure without a noise", instead).at(place("noise_exposure")));
+        return refuse("noise_exposure", "noise_exposure without a noise".into(), instead);
+    }
+    // Of a noise like the preset's those of the preset hold.
+    if spec.noise.netd_k.is_some() && !is_of_kind {
+        let stated = of_netd().next().map(|row| row.key).or(spec.noise_exposure_s.map(|_| "noise_exposure"));
+        let needed = [
+            ("netd_temperature", "\"30 degC\"", spec.noise.netd_temperature_k),
+            ("netd_f_number", "1.0", spec.noise.netd_f_number),
+        ];
+        if let Some(key) = stated
+            && let Some((missing, example, _)) = needed.iter().find(|(_, _, given)| given.is_none())
+        {
+            let found = format!("a netd with {key} and without {missing}, half of what it is stated for");
+            return refuse(
+                key,
+                found,
+                &format!("write {missing} = {example} beside it, or no condition at all"),
+            );
+        }
     }
     let of_bandwidth = [("detectivity", spec.noise.detectivity_cm_hz05_w), ("nep", spec.noise.nep_w_hz05)];
     match of_bandwidth.iter().find(|(_, given)| given.is_some()) {
         None if spec.noise.bandwidth_hz.is_some() => {
             let instead = "write detectivity = \"4.7e10 cm Hz^0.5/W\" or nep beside it";
-            let error = Error::malformed("noise_bandwidth without a detectivity or nep", instead);
-            Err(error.at(place("noise_bandwidth")))
+            refuse("noise_bandwidth", "noise_bandwidth without a detectivity or nep".into(), instead)
         }
         // A preset that states such a noise states its conditions too.
         Some((key, _))
-            if spec.noise.bandwidth_hz.is_none()
-                && spec.noise_exposure_s.is_none()
-                && !preset.is_some_and(|preset| preset.figures.noise.is_of_bandwidth()) =>
+            if spec.noise.bandwidth_hz.is_none() && spec.noise_exposure_s.is_none() && !is_of_kind =>
         {
             let instead =
                 "write noise_bandwidth = \"175 kHz\", or noise_exposure = \"2.86 us\" for 1/(2 x 2.86 us)";
-            Err(Error::malformed(format!("{key} without a bandwidth"), instead).at(place(key)))
+            refuse(key, format!("{key} without a bandwidth"), instead)
         }
         _ => Ok(()),
     }
 }
 
-/// Noise that comes with a preset is stated under the preset's conditions.
-fn under_own_conditions(figures: &mut CameraSpec) {
-    if figures.noise.netd_k.is_some() {
-        let noise = &mut figures.noise;
-        noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
-        noise.netd_optics_efficiency =
-            noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
-        noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
-    }
-}
-
-/// The same camera with its preset's noise as one of its own, under the preset's conditions, so that it can be changed alone.
-pub(super) fn with_own_noise(spec: &CameraSpec) -> CameraSpec {
-    let preset = known(spec).ok().flatten();
-    match preset {
-        Some(Preset { mut figures, .. }) if !spec.states_noise() => {
-            under_own_conditions(&mut figures);
-            let noise_exposure_s = figures.noise_exposure_s.or(figures.exposure_s);
-            CameraSpec { noise: figures.noise, noise_exposure_s, ..spec.clone() }
-        }
-        _ => spec.clone(),
-    }
+/// What is stated of a camera over a known one. Where figures were moved over a file, the camera of the file is the one whose noise it is.
+fn laid(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
+    let file = spec.filed.as_deref().map(|filed| overridden(filed, preset.clone(), None)).transpose()?;
+    overridden(spec, preset, file.as_ref())
 }
 
 /// The preset with the scenario's figures laid over it.
-fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
+///
+/// A noise is one figure with its conditions. It keeps them, stated or those of the camera that states it, whatever lies over that
+/// camera; the same kind of noise without conditions is another value of it; any other is a noise of its own.
+fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Result<Preset> {
+    let beneath = file.unwrap_or(&preset);
+    let own_noise = beneath.figures.noise.clone();
+    let own_exposure_s = beneath.figures.noise_exposure_s;
+    let own_at = beneath.noise_at.clone().unwrap_or_else(|| Box::new(beneath.figures.clone()));
     let mut stated = preset;
     let figures = &mut stated.figures;
-    let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
-    let conditions = figures.noise.is_of_bandwidth();
-    let own_bandwidth = figures.noise.bandwidth_hz;
-    under_own_conditions(figures);
     if spec.preset.is_none() {
         // There is no key for it; a camera of one's own is taken to see what it is asked to.
         figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);
@@ -152,30 +180,34 @@ fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
             stated.efficiency_curves.push(curve);
         }
     }
+    let is_of_kind = spec.noise.is_of_kind(&own_noise);
     if !spec.states_noise() {
-        // Noise that comes with the preset is stated at the preset's exposure.
-        figures.noise_exposure_s = own_noise_exposure.or(figures.exposure_s);
+        (figures.noise, figures.noise_exposure_s) = (own_noise, own_exposure_s);
+        stated.noise_at = Some(own_at);
         return Ok(stated);
     }
     let mut noise = spec.noise.clone();
-    if noise.netd_k.is_some() {
-        // Without a word on it the NETD is of the reference temperature, through the camera's own optics.
-        let reference_k = figures.reference_temperature_k.unwrap_or(REFERENCE_K);
-        noise.netd_temperature_k.get_or_insert(reference_k);
-        noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
-    }
-    // Noise of the scenario's own is stated at the camera's exposure, one of the preset's kind at the preset's.
-    let exposure_s =
-        if noise.is_of_bandwidth() && conditions { own_noise_exposure } else { figures.exposure_s };
-    if noise.is_of_bandwidth() && spec.noise_exposure_s.is_none() {
-        noise.bandwidth_hz = noise.bandwidth_hz.or(own_bandwidth);
-    }
     if let Some(path) = &noise.table {
         let rows = column(path, "sigma_counts", "read the noise")?;
         stated.noise_table = Some(NoiseSpec::table(rows).map_err(|error| error.in_file(path))?);
+    } else {
+        stated.noise_table = None;
     }
-    figures.noise_exposure_s = spec.noise_exposure_s.or(exposure_s);
-    figures.noise = noise;
+    if is_of_kind {
+        let own_bandwidth = own_noise.bandwidth_hz.filter(|_| spec.noise_exposure_s.is_none());
+        figures.noise = noise.under(&NoiseFigures { bandwidth_hz: own_bandwidth, ..own_noise });
+        figures.noise_exposure_s = spec.noise_exposure_s.or(own_exposure_s);
+        stated.noise_at = Some(own_at);
+        return Ok(stated);
+    }
+    if noise.netd_k.is_some() {
+        // Without a word on it the NETD is of the reference temperature, through the camera's own optics.
+        noise.netd_temperature_k.get_or_insert(figures.reference_temperature_k.unwrap_or(REFERENCE_K));
+        let at = file.map_or(&*figures, |file| &file.figures);
+        noise.netd_f_number = noise.netd_f_number.or(at.f_number).or(figures.f_number);
+    }
+    stated.noise_at = file.map(|file| Box::new(file.figures.clone()));
+    (figures.noise, figures.noise_exposure_s) = (noise, spec.noise_exposure_s);
     Ok(stated)
 }
 
@@ -201,7 +233,7 @@ mod tests {
     use super::*;
     use hadar::instrument::Readout;
     use hadar::instrument::figures::{self, Row};
-    use hadar_scenario::Scenario;
+    use hadar_scenario::{Efficiency, Scenario};
 
     #[test]
     fn a_preset_that_was_changed_says_in_what() {

@@ -16,7 +16,7 @@ pub struct NoiseFigures {
     pub netd_temperature_k: Option<f64>,
     /// f-number at which the NETD is stated.
     pub netd_f_number: Option<f64>,
-    /// Optics efficiency with which the photons of the NETD are counted. Documents only.
+    /// Optics efficiency with which the photons of the NETD are counted.
     pub netd_optics_efficiency: Option<f64>,
     /// Side of the pixel for which the NETD is stated, m.
     pub netd_pixel_m: Option<f64>,
@@ -88,6 +88,29 @@ impl NoiseFigures {
     #[must_use]
     pub const fn is_of_bandwidth(&self) -> bool {
         self.detectivity_cm_hz05_w.is_some() || self.nep_w_hz05.is_some()
+    }
+
+    /// Whether two state a noise of the same kind, so that the conditions of the one are those of another value of it too.
+    #[must_use]
+    pub const fn is_of_kind(&self, other: &Self) -> bool {
+        (self.netd_k.is_some() && other.netd_k.is_some())
+            || (self.is_of_bandwidth() && other.is_of_bandwidth())
+            || (self.nesr_microflick.is_some() && other.nesr_microflick.is_some())
+            || (self.electrons.is_some() && other.electrons.is_some())
+            || (self.table.is_some() && other.table.is_some())
+    }
+
+    /// The same value under the conditions of another of its kind, where it states none itself.
+    #[must_use]
+    pub fn under(self, other: &Self) -> Self {
+        Self {
+            netd_temperature_k: self.netd_temperature_k.or(other.netd_temperature_k),
+            netd_f_number: self.netd_f_number.or(other.netd_f_number),
+            netd_optics_efficiency: self.netd_optics_efficiency.or(other.netd_optics_efficiency),
+            netd_pixel_m: self.netd_pixel_m.or(other.netd_pixel_m),
+            bandwidth_hz: self.bandwidth_hz.or(other.bandwidth_hz),
+            ..self
+        }
     }
 
     /// The noise that is stated, unless it is a file or none is.

@@ -11,6 +11,7 @@ use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, Measure
 use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use crate::Shortfall;
+use crate::warn::contradiction;
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
 use hadar_scenario::Rule;
@@ -111,7 +112,7 @@ impl Resolution {
             margin: value / self.pixels,
             limiting: MeasuredScene { distance_m: Some(distance_m), ..MeasuredScene::default() },
             approach: self.approach(&named.camera, bands).map(|approach| approach.result),
-            warnings: super::approach::contradiction(&named.camera).into_iter().collect(),
+            warnings: contradiction(&named.camera).into_iter().collect(),
         })
     }
 }

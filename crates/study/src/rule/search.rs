@@ -6,11 +6,12 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
-use super::approach::{contradiction, spoiled};
+use super::approach::spoiled;
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
 use crate::proviso::Proviso;
+use crate::warn::contradiction;
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
