@@ -160,6 +160,8 @@ impl Preset {
         let mut noise = self.figures.noise.clone();
         if noise.netd_k.is_some() {
             noise.netd_temperature_k.get_or_insert(REFERENCE_K);
+        }
+        if noise.netd_k.is_some() || noise.nesr_microflick.is_some() {
             noise.netd_f_number = noise.netd_f_number.or(at.f_number);
             noise.netd_optics_efficiency =
                 noise.netd_optics_efficiency.or(Some(at.optics_efficiency.taken()));
@@ -252,7 +254,14 @@ fn noise_of(
             NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
         }
         Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => NoiseSpec::Nep { nep_w_hz05, bandwidth_hz },
-        Some(StatedNoise::Nesr { microflick, .. }) => NoiseSpec::SpectralRadiance { microflick },
+        Some(StatedNoise::Nesr { microflick, f_number: at, optics_efficiency: eta, pixel_m: of, .. }) => {
+            NoiseSpec::SpectralRadiance {
+                microflick,
+                f_number: at.unwrap_or(f_number),
+                optics_efficiency: eta.unwrap_or(optics_efficiency),
+                pixel_m: of.unwrap_or(pixel_m),
+            }
+        }
         Some(StatedNoise::Counts { sigma_counts }) => NoiseSpec::Counts { sigma_counts },
     }
 }
@@ -287,8 +296,14 @@ impl NoiseFigures {
                 StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
             }
             NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => StatedNoise::Nep { nep_w_hz05, bandwidth_hz },
-            NoiseSpec::SpectralRadiance { microflick } => {
-                StatedNoise::Nesr { microflick, wavelength_um: None }
+            NoiseSpec::SpectralRadiance { microflick, f_number, optics_efficiency, pixel_m } => {
+                StatedNoise::Nesr {
+                    microflick,
+                    wavelength_um: None,
+                    f_number: Some(f_number),
+                    optics_efficiency: Some(optics_efficiency),
+                    pixel_m: Some(pixel_m),
+                }
             }
             NoiseSpec::Counts { sigma_counts } => StatedNoise::Counts { sigma_counts },
             NoiseSpec::Table { .. } => return Self::default(),

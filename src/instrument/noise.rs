@@ -5,7 +5,8 @@
 //!   photons, so that no NETD is below √N/(dN/dT); a quantum efficiency that is not stated is 1, at which that is least;
 //! * specific detectivity: NEP = √(A_p Δf)/D*, σ_w = η_q NEP t/(hcν_w), η_q quantum efficiency;
 //! * noise-equivalent power: of a bandwidth Δf, or per √Hz and then NEP = n √Δf;
-//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = étendue × η t × ∫ L dλ/(hcν) over the band;
+//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = étendue × η t × ∫ L dλ/(hcν) over the band, at the f-number,
+//!   pixel and optics efficiency for which it is stated;
 //! * counts: as given, or as a table over wavenumber.
 //!
 //! The bandwidth of a reading that integrates for t is Δf = 1/(2t) where no other is stated.
@@ -83,9 +84,10 @@ impl Camera {
             NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => {
                 Some(of_power(nep_w_hz05 * bandwidth_hz.unwrap_or(0.5 / t).sqrt()))
             }
-            NoiseSpec::SpectralRadiance { microflick } => {
-                // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
-                let collected = self.etendue_m2_sr(None) * self.optics_efficiency * self.quantum_efficiency;
+            NoiseSpec::SpectralRadiance { microflick, f_number, optics_efficiency, pixel_m } => {
+                // Light of that radiance through those optics; the weights of the bands hold the efficiency curves.
+                let stated = Self { f_number: *f_number, pixel_m: *pixel_m, ..self.clone() };
+                let collected = stated.etendue_m2_sr(None) * optics_efficiency * self.quantum_efficiency;
                 Some(
                     photons_of_flick(bands, *microflick)
                         .iter()
@@ -119,7 +121,7 @@ impl Camera {
             }
             NoiseSpec::Detectivity { detectivity_cm_hz05_w, .. } => *detectivity_cm_hz05_w /= factor,
             NoiseSpec::Nep { nep_w_hz05, .. } => *nep_w_hz05 *= factor,
-            NoiseSpec::SpectralRadiance { microflick } => *microflick *= factor,
+            NoiseSpec::SpectralRadiance { microflick, .. } => *microflick *= factor,
             NoiseSpec::Counts { sigma_counts } => *sigma_counts *= factor,
             NoiseSpec::Table { sigma_counts, .. } => {
                 sigma_counts.iter_mut().for_each(|sigma| *sigma *= factor);

@@ -8,6 +8,7 @@ use super::setting::Setting;
 use hadar::error::Result;
 use hadar::instrument::Readout;
 use hadar::instrument::figures::{CameraSpec, Efficiency, Kind, NOISES, Row, TABLE};
+use hadar::instrument::presets::Preset;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toml::Value;
@@ -87,7 +88,16 @@ pub(super) fn read_with(
     Ok(stated)
 }
 
+/// A noise of the file's own is written with the conditions of the file, where figures were moved over it.
 pub(super) fn written(spec: &CameraSpec, paths: Paths<'_>) -> Entries {
+    let mut stated = spec.clone();
+    if let Some(filed) = spec.filed.as_ref().filter(|filed| filed.states_noise() && filed.preset.is_none()) {
+        let figures = CameraSpec { noise: spec.noise.clone(), ..CameraSpec::clone(filed) };
+        let full = Preset { figures, ..Preset::default() };
+        let (noise, exposure_s) = full.noise_in_full();
+        (stated.noise, stated.noise_exposure_s) = (noise, spec.noise_exposure_s.or(exposure_s));
+    }
+    let spec = &stated;
     TABLE.iter().fold(Entries::default(), |entries, row| {
         let value = match row.kind {
             Kind::Quantity(dimension, _, slot) => {

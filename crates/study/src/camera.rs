@@ -2,7 +2,7 @@
 
 use hadar::error::{Error, Place, Result};
 use hadar::grid::Grid;
-use hadar::instrument::figures::{Kind, NoiseFigures, Part, TABLE};
+use hadar::instrument::figures::{self, Kind, NOISES, NoiseFigures, Part, TABLE};
 use hadar::instrument::presets::{self, Preset};
 use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, REFERENCE_K};
 use hadar_formats::file::text_of_file;
@@ -104,34 +104,34 @@ pub(super) fn checked_at(camera: Camera, place: &dyn Fn(&str) -> Place) -> Resul
 fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&str) -> Place) -> Result<()> {
     let refuse =
         |key: &str, found: String, instead: &str| Err(Error::malformed(found, instead).at(place(key)));
-    let of_netd = || TABLE.iter().filter(|row| row.part == Part::Condition(&["netd"]) && row.is_given(spec));
     let is_of_kind = preset.is_some_and(|preset| preset.figures.noise.is_of_kind(&spec.noise));
-    if let Some(row) = of_netd().next()
-        && spec.noise.netd_k.is_none()
-    {
-        return refuse(row.key, format!("{} without a netd", row.key), "write netd = \"50 mK\" beside it");
+    let conditions = || TABLE.iter().filter(|row| row.is_given(spec) && row.part.is_condition_of("netd"));
+    for row in conditions() {
+        if !NOISES.iter().any(|key| row.part.is_condition_of(key) && is_stated(spec, key)) {
+            let found = format!("{} without a netd", row.key);
+            return refuse(row.key, found, "write netd = \"50 mK\" beside it");
+        }
     }
     if spec.noise_exposure_s.is_some() && !spec.states_noise() {
         let instead = "write netd, detectivity or noise_electrons beside it";
         return refuse("noise_exposure", "noise_exposure without a noise".into(), instead);
     }
-    // Of a noise like the preset's those of the preset hold.
-    if spec.noise.netd_k.is_some() && !is_of_kind {
-        let stated = of_netd().next().map(|row| row.key).or(spec.noise_exposure_s.map(|_| "noise_exposure"));
-        let needed = [
-            ("netd_temperature", "\"30 degC\"", spec.noise.netd_temperature_k),
-            ("netd_f_number", "1.0", spec.noise.netd_f_number),
-        ];
-        if let Some(key) = stated
-            && let Some((missing, example, _)) = needed.iter().find(|(_, _, given)| given.is_none())
-        {
-            let found = format!("a netd with {key} and without {missing}, half of what it is stated for");
-            return refuse(
-                key,
-                found,
-                &format!("write {missing} = {example} beside it, or no condition at all"),
-            );
-        }
+    // A value of the preset's noise is one under the preset's conditions.
+    let noise = &spec.noise;
+    let (kelvin, f_number) = (("netd_temperature", "\"30 degC\""), ("netd_f_number", "1.0"));
+    let needed = match () {
+        () if is_of_kind => &[][..],
+        () if noise.netd_k.is_some() => &[kelvin, f_number],
+        () if noise.nesr_microflick.is_some() => &[f_number],
+        () => &[],
+    };
+    let of_exposure = spec.noise_exposure_s.filter(|_| noise.netd_k.is_some()).map(|_| "noise_exposure");
+    if let Some(key) = conditions().next().map(|row| row.key).or(of_exposure)
+        && let Some((missing, example)) = needed.iter().find(|(key, _)| !is_stated(spec, key))
+    {
+        let found =
+            format!("{key} beside a noise without its {missing}, which is half of what it is stated for");
+        return refuse(key, found, &format!("write {missing} = {example} beside it, or no condition at all"));
     }
     let of_bandwidth = [("detectivity", spec.noise.detectivity_cm_hz05_w), ("nep", spec.noise.nep_w_hz05)];
     match of_bandwidth.iter().find(|(_, given)| given.is_some()) {
@@ -155,6 +155,11 @@ fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&
 fn laid(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
     let file = spec.filed.as_deref().map(|filed| overridden(filed, preset.clone(), None)).transpose()?;
     overridden(spec, preset, file.as_ref())
+}
+
+/// Whether a key is stated.
+fn is_stated(spec: &CameraSpec, key: &str) -> bool {
+    figures::row(key).is_some_and(|row| row.is_given(spec))
 }
 
 /// The preset with the scenario's figures laid over it.
@@ -232,7 +237,7 @@ fn column(path: &Path, name: &str, action: &str) -> Result<Vec<(f64, f64)>> {
 mod tests {
     use super::*;
     use hadar::instrument::Readout;
-    use hadar::instrument::figures::{self, Row};
+    use hadar::instrument::figures::Row;
     use hadar_scenario::{Efficiency, Scenario};
 
     #[test]

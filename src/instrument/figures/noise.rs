@@ -14,11 +14,11 @@ pub struct NoiseFigures {
     pub netd_k: Option<f64>,
     /// Temperature of the blackbody at which the NETD is stated, K.
     pub netd_temperature_k: Option<f64>,
-    /// f-number at which the NETD is stated.
+    /// f-number at which the NETD or the NESR is stated.
     pub netd_f_number: Option<f64>,
-    /// Optics efficiency with which the photons of the NETD are counted.
+    /// Optics efficiency with which the photons of the NETD or the NESR are counted.
     pub netd_optics_efficiency: Option<f64>,
-    /// Side of the pixel for which the NETD is stated, m.
+    /// Side of the pixel for which the NETD or the NESR is stated, m.
     pub netd_pixel_m: Option<f64>,
     /// Specific detectivity D*, cm √Hz W⁻¹.
     pub detectivity_cm_hz05_w: Option<f64>,
@@ -75,6 +75,12 @@ pub enum StatedNoise {
         microflick: f64,
         /// Where it is stated, µm.
         wavelength_um: Option<f64>,
+        /// f-number.
+        f_number: Option<f64>,
+        /// Optics efficiency.
+        optics_efficiency: Option<f64>,
+        /// Side of the pixel, m.
+        pixel_m: Option<f64>,
     },
     /// Deviation of a band reading.
     Counts {
@@ -132,7 +138,13 @@ impl NoiseFigures {
         } else if let Some(nep_w_hz05) = self.nep_w_hz05 {
             Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz })
         } else if let Some(microflick) = self.nesr_microflick {
-            Some(StatedNoise::Nesr { microflick, wavelength_um: self.nesr_wavelength_um })
+            Some(StatedNoise::Nesr {
+                microflick,
+                wavelength_um: self.nesr_wavelength_um,
+                f_number: self.netd_f_number,
+                optics_efficiency: self.netd_optics_efficiency,
+                pixel_m: self.netd_pixel_m,
+            })
         } else {
             self.electrons.map(|sigma_counts| StatedNoise::Counts { sigma_counts })
         }
@@ -158,9 +170,14 @@ impl From<StatedNoise> for NoiseFigures {
             StatedNoise::Nep { nep_w_hz05, bandwidth_hz } => {
                 Self { nep_w_hz05: Some(nep_w_hz05), bandwidth_hz, ..nothing }
             }
-            StatedNoise::Nesr { microflick, wavelength_um } => {
-                Self { nesr_microflick: Some(microflick), nesr_wavelength_um: wavelength_um, ..nothing }
-            }
+            StatedNoise::Nesr { microflick, wavelength_um, f_number, optics_efficiency, pixel_m } => Self {
+                nesr_microflick: Some(microflick),
+                nesr_wavelength_um: wavelength_um,
+                netd_f_number: f_number,
+                netd_optics_efficiency: optics_efficiency,
+                netd_pixel_m: pixel_m,
+                ..nothing
+            },
             StatedNoise::Counts { sigma_counts } => Self { electrons: Some(sigma_counts), ..nothing },
         }
     }

@@ -41,6 +41,12 @@ pub enum NoiseSpec {
     SpectralRadiance {
         /// NESR, µflick (µW cm⁻² sr⁻¹ µm⁻¹).
         microflick: f64,
+        /// f-number at which it is stated.
+        f_number: f64,
+        /// Optics efficiency with which it is stated.
+        optics_efficiency: f64,
+        /// Side of the pixel for which it is stated, m.
+        pixel_m: f64,
     },
     /// Standard deviation of a band reading.
     Counts {
