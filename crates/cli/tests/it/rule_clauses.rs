@@ -183,7 +183,7 @@ fn a_temperature_is_known_as_well_as_the_netd_says() {
         [bands]\nranges = [[\"8 um\", \"14 um\"]]\nintegrate = true\n[unknown]\nnuisances = [\"temperature\"]\n\
         [[clause]]\nname = \"t\"\nkind = \"temperature-error\"\n[clause.requirement]\ntemperature_error = \"0.1 K\"\ncoverage_factor = 1\n\
         [[camera]]\nexposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"14 mm\"\n\
-        netd = \"50 mK\"\nnetd_temperature = \"30 degC\"\nframes = 16\n";
+        netd = \"50 mK\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.0\nframes = 16\n";
     let camera = measured(text);
     // 50 mK over √16; the band of the camera's own figure is that of the paper, 8 to 14 um and no other.
     let value = camera.value.unwrap();

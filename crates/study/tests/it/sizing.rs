@@ -1,5 +1,6 @@
 //! From a requirement to a camera and back, and scenarios that say the same thing in other units.
 
+use hadar::instrument::figures::NoiseFigures;
 use hadar::material::Library;
 use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Scenario;
@@ -269,8 +270,9 @@ fn a_camera_of_ones_own_can_be_fed_back() {
             Quantity::Exposure => camera.exposure_s = Some(value),
             Quantity::Pixel => camera.pixel_m = Some(value),
             Quantity::FNumber => camera.f_number = Some(value),
+            // The electronic part alone is solved for, not the shot noise that an NETD contains.
             Quantity::Noise => {
-                camera.noise.netd_k = camera.noise.netd_k.map(|netd| netd * value / solution.camera)
+                camera.noise = NoiseFigures { electrons: Some(value), ..NoiseFigures::default() }
             }
             Quantity::Frames => camera.frames = Some(value as u32),
             Quantity::Distance | Quantity::Speed => continue,
