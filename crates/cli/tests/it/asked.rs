@@ -50,7 +50,8 @@ fn standard_input_is_read_as_a_file_is() {
 
 /// A camera of one's own with a noise for which no condition is stated.
 fn own_camera() -> String {
-    let own = "exposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"24 mm\"\nnetd = \"30 mK\"";
+    let own =
+        "exposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"24 mm\"\nnetd = \"30 mK\"";
     let text = SCENARIO.replace("preset = \"flir-a325sc\"", own);
     assert_ne!(text, SCENARIO);
     text
@@ -123,7 +124,11 @@ fn a_noise_with_half_of_its_conditions_is_refused() {
         let said = asked(conditions);
         assert_eq!(said.code, 1, "{conditions}");
         let found = format!("camera.{key}: {key} beside a noise without its {missing}");
-        assert!(said.stderr.contains(&found) && said.stderr.contains(&format!("write {missing} = ")), "{}", said.stderr);
+        assert!(
+            said.stderr.contains(&found) && said.stderr.contains(&format!("write {missing} = ")),
+            "{}",
+            said.stderr
+        );
     }
     for conditions in ["", "netd_temperature = \"30 degC\"\nnetd_f_number = 1.0"] {
         assert_eq!(asked(conditions).code, 0, "{conditions}");
@@ -136,7 +141,8 @@ fn a_noise_keeps_the_conditions_of_its_file() {
     let folder = Folder::with(&own_camera());
     folder.file(
         "stated.toml",
-        &own_camera().replace("netd = ", &format!("noise_exposure = \"10 ms\"\nnetd_pixel = \"12 um\"\n{CONDITIONS}")),
+        &own_camera()
+            .replace("netd = ", &format!("noise_exposure = \"10 ms\"\nnetd_pixel = \"12 um\"\n{CONDITIONS}")),
     );
     let reached = |file: &str, set: &[&str]| {
         let answer = folder.json(&[&["size", file], set].concat());
@@ -170,7 +176,13 @@ fn a_noise_keeps_the_conditions_of_its_file() {
     assert!((reached("a.toml", &[&asked[..], &["--set", &set]].concat()) / 0.5 - 1.0).abs() < 1e-9);
     folder.json(&["sweep", "a.toml", "--out", "table", "--vary", "camera.exposure=10 ms,40 ms"]);
     let table = std::fs::read_to_string(folder.path().join("table/sweep.csv")).unwrap();
-    let column = table.lines().next().unwrap().split(',').position(|head| head.ends_with("statistical_distance")).unwrap();
+    let column = table
+        .lines()
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|head| head.ends_with("statistical_distance"))
+        .unwrap();
     let last: f64 = table.lines().last().unwrap().split(',').nth(column).unwrap().parse().unwrap();
     assert!((last / reached("a.toml", &longer) - 1.0).abs() < 1e-9, "{table}");
 }
