@@ -58,9 +58,10 @@ impl Camera {
         if netd_k >= least_k || !least_k.is_finite() {
             return Ok(());
         }
-        let [least, kelvin, pixel, exposure] =
-            [1e3 * least_k * PRINTED, temperature_k, 1e6 * pixel_m, 1e3 * self.noise_exposure_s]
-                .map(|value| significant(value, 4));
+        let least = significant(1e3 * least_k * PRINTED, 4);
+        // Without the digits of a conversion of units.
+        let [kelvin, pixel, exposure] = [temperature_k, 1e6 * pixel_m, 1e3 * self.noise_exposure_s]
+            .map(|value| significant(value, 5).parse().unwrap_or(value));
         let expected = format!(
             "at least {least} mK, the shot noise of a blackbody of {kelvin} K at f/{f_number}, {pixel} um and {exposure} ms, which a \
              measured NETD contains"

@@ -88,14 +88,12 @@ impl Preset {
         let noise = match &self.noise_table {
             Some(table) => table.clone(),
             None => {
-                let own = [f_number, optics_efficiency, pixel_m];
-                let at = self.noise_at.as_deref().map_or(own, |at| {
-                    [
-                        at.f_number.unwrap_or(f_number),
-                        at.optics_efficiency.taken(),
-                        at.pixel_m.unwrap_or(pixel_m),
-                    ]
-                });
+                let at = self.noise_camera();
+                let at = [
+                    at.f_number.unwrap_or(f_number),
+                    at.optics_efficiency.taken(),
+                    at.pixel_m.unwrap_or(pixel_m),
+                ];
                 noise_of(figures.noise.stated(), at, &mut assumed)
             }
         };
@@ -147,16 +145,31 @@ impl Preset {
         })
     }
 
+    /// The camera that the noise is stated of; what its document is silent on is as here.
+    #[must_use]
+    pub fn noise_camera(&self) -> CameraSpec {
+        let figures = &self.figures;
+        let Some(at) = self.noise_at.as_deref() else { return figures.clone() };
+        let is_timed = at.exposure_s.is_some() || at.frame_rate_hz.is_some();
+        CameraSpec {
+            exposure_s: at.exposure_s.or(figures.exposure_s.filter(|_| !is_timed)),
+            frame_rate_hz: at.frame_rate_hz.or(figures.frame_rate_hz.filter(|_| !is_timed)),
+            f_number: at.f_number.or(figures.f_number),
+            pixel_m: at.pixel_m.or(figures.pixel_m),
+            ..at.clone()
+        }
+    }
+
     /// The exposure of which the noise is, s: as it is stated, or that of the camera that it is stated of, a frame where that is silent.
     fn noise_exposure_s(&self) -> Option<f64> {
-        let at = self.noise_at.as_deref().unwrap_or(&self.figures);
+        let at = self.noise_camera();
         self.figures.noise_exposure_s.or(at.exposure_s).or(at.frame_rate_hz.map(f64::recip))
     }
 
     /// The noise with all of its conditions, those that are not stated as they are taken.
     #[must_use]
     pub fn noise_in_full(&self) -> (NoiseFigures, Option<f64>) {
-        let at = self.noise_at.as_deref().unwrap_or(&self.figures);
+        let at = self.noise_camera();
         let mut noise = self.figures.noise.clone();
         if noise.netd_k.is_some() {
             noise.netd_temperature_k.get_or_insert(REFERENCE_K);

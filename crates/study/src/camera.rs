@@ -170,7 +170,7 @@ fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Resul
     let beneath = file.unwrap_or(&preset);
     let own_noise = beneath.figures.noise.clone();
     let own_exposure_s = beneath.figures.noise_exposure_s;
-    let own_at = beneath.noise_at.clone().unwrap_or_else(|| Box::new(beneath.figures.clone()));
+    let own_at = Box::new(beneath.noise_camera());
     let mut stated = preset;
     let figures = &mut stated.figures;
     if spec.preset.is_none() {
@@ -238,6 +238,7 @@ mod tests {
     use super::*;
     use hadar::instrument::Readout;
     use hadar::instrument::figures::Row;
+    use hadar::spectrum::Bands;
     use hadar_scenario::{Efficiency, Scenario};
 
     #[test]
@@ -265,6 +266,68 @@ mod tests {
             "flir-a325sc with noise_electrons changed"
         );
         assert_eq!(name(&|spec| spec.frames = Some(16)), "flir-a325sc with frames changed");
+    }
+
+    /// Noise in counts, and the exposure of which it is.
+    fn noise_of(camera: &Camera) -> (Vec<f64>, f64) {
+        let bands = Bands::from_rows([(800.0, 20.0), (1000.0, 50.0), (1200.0, 30.0)]).unwrap();
+        (camera.reading_sigma(&bands).unwrap(), camera.noise_exposure_s)
+    }
+
+    /// One rule: over the file (`--set`, `--vary`, an uncertainty), written out (the page, a report) and in the camera itself (the solver).
+    #[test]
+    fn a_noise_is_the_same_whatever_figure_is_moved() {
+        let own = CameraSpec {
+            exposure_s: Some(10e-3),
+            pixel_m: Some(12e-6),
+            f_number: Some(1.2),
+            focal_length_m: Some(14e-3),
+            optics_efficiency: Some(Efficiency::Number(0.9)),
+            ..CameraSpec::default()
+        };
+        let of = |state: &dyn Fn(&mut CameraSpec)| {
+            let mut spec = own.clone();
+            state(&mut spec);
+            spec
+        };
+        // A preset that states its NETD for no lens, one that does for f/1, and noises of one's own.
+        let cameras = [
+            of(&|spec| spec.preset = Some("flir-tau-2-640".into())),
+            of(&|spec| spec.preset = Some("flir-boson-640-14mm".into())),
+            of(&|spec| spec.noise.netd_k = Some(30e-3)),
+            of(&|spec| spec.noise.nesr_microflick = Some(2.0)),
+            of(&|spec| (spec.noise.nep_w_hz05, spec.noise.bandwidth_hz) = (Some(1e-12), Some(50.0))),
+            of(&|spec| (spec.noise.nep_w_hz05, spec.noise_exposure_s) = (Some(1e-12), Some(2e-3))),
+            of(&|spec| spec.noise.electrons = Some(5e4)),
+        ];
+        let resolved = |spec: &CameraSpec| resolved(spec, &Source::default()).unwrap();
+        let figures = ["exposure", "f_number", "pixel", "optics_efficiency"];
+        for spec in &cameras {
+            let camera = resolved(spec);
+            for row in figures.into_iter().filter_map(figures::row) {
+                let mut moved = spec.clone();
+                row.put_number(&mut moved, 0.7 * row.number(spec).unwrap());
+                let kept = with_noise_kept(&moved, spec);
+                let over = CameraSpec { filed: Some(Arc::new(spec.clone())), ..moved.clone() };
+                let mut solved = CameraSpec::of(&camera);
+                row.put_number(&mut solved, 0.7 * row.number(spec).unwrap());
+                for (what, found) in [("over", resolved(&over)), ("kept", resolved(&kept))] {
+                    assert_eq!(noise_of(&found), noise_of(&camera), "{what} {} {spec:?}", row.key);
+                    assert_eq!(row.number(&CameraSpec::of(&found)), row.number(&solved));
+                }
+                let trial = Camera {
+                    exposure_s: solved.exposure_s.unwrap(),
+                    f_number: solved.f_number.unwrap(),
+                    pixel_m: solved.pixel_m.unwrap(),
+                    optics_efficiency: row
+                        .number(&solved)
+                        .filter(|_| row.key == "optics_efficiency")
+                        .unwrap_or(0.9),
+                    ..camera.clone()
+                };
+                assert_eq!(noise_of(&trial), noise_of(&camera), "solver {} {spec:?}", row.key);
+            }
+        }
     }
 
     /// A camera like the FLIR of the paper with one figure changed, and what that figure cannot be stated without.

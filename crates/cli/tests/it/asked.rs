@@ -82,9 +82,9 @@ fn a_noise_that_vanishes_is_refused() {
 #[test]
 fn a_netd_below_its_shot_noise_is_refused_with_the_least() {
     let folder = Folder::with(&own_camera().replace("netd = ", CONDITIONS));
-    // A blackbody of 77 K sends 1e-6 of the photons of one of 303 K into the band: 30 mK are less than any detector of 10 ms sees.
+    // A blackbody of 77 K sends 1e-5 of the photons of one of 303 K into the band: the least is 28.7 mK there, and 34.4 mK at f/1.2.
     for set in [
-        "camera.netd_temperature=77 K",
+        "camera.netd_temperature=76 K",
         "camera.netd=1 mK",
         "camera.netd=1e-320 K",
         "camera.noise_exposure=1 us",
@@ -101,6 +101,9 @@ fn a_netd_below_its_shot_noise_is_refused_with_the_least() {
         };
         assert_eq!(again.code, 0, "{set} {least}: {}", again.stderr);
     }
+    let slow =
+        ["size", "a.toml", "--set", "camera.netd_temperature=77 K", "--set", "camera.netd_f_number=1.2"];
+    assert!(folder.refusal(&slow).contains("at least 34.4"));
     // sqrt(N)/(dN/dT) of 12 um, f/1, 10 ms, 715 to 1250 cm^-1: 1.14 mK.
     let said = folder.refusal(&["size", "a.toml", "--set", "camera.netd=1 mK"]);
     assert!(said.contains("at least 1.14"), "{said}");
