@@ -3,7 +3,7 @@
 //! Every statement is linear in σ, the deviation of a band reading in counts (D* is so in 1/σ), so that each is σ over
 //! what one unit of it amounts to by [`NoiseSpec`]:
 //!
-//! * NETD = σ/(dN/dT), N photons of a blackbody in all of the camera's range (K);
+//! * NETD = σ/(dN/dT), N photons of a blackbody in all of the camera's range (K); one that is measured is √(σ² + N)/(dN/dT);
 //! * NEP = σ hcν/(η_q t), power on the detector (W); per √Hz it is NEP/√Δf;
 //! * D* = √(A_p Δf)/NEP (cm √Hz W⁻¹), A_p pixel area;
 //! * NESR = σ hcν/(t η × étendue × Δλ) (µflick = µW cm⁻² sr⁻¹ µm⁻¹), Δλ width of the band in wavelength;
@@ -87,7 +87,7 @@ impl NetdConditions {
     }
 }
 
-/// σ in counts of an NETD in K under these conditions: NETD · dN/dT.
+/// σ in counts of an NETD in K under these conditions: NETD · dN/dT. Of a measured NETD it is that of shot noise and electronic noise together.
 ///
 /// ```
 /// use hadar::instrument::{equivalents, presets};
@@ -275,7 +275,8 @@ fn one_watt(camera: &Camera, band: &Bands) -> f64 {
 
 /// Counts that 1 µflick amounts to in the exposure of the noise.
 fn one_microflick(camera: &Camera, band: &Bands) -> f64 {
-    let noise = NoiseSpec::SpectralRadiance { microflick: 1.0 };
+    let (f_number, optics_efficiency, pixel_m) = (camera.f_number, camera.optics_efficiency, camera.pixel_m);
+    let noise = NoiseSpec::SpectralRadiance { microflick: 1.0, f_number, optics_efficiency, pixel_m };
     one_band(&Camera { noise, ..camera.clone() }, band)
 }
 

@@ -129,7 +129,15 @@ impl Preset {
         let figures = &self.figures;
         let noise = match &self.noise_table {
             Some(table) => table.clone(),
-            None => noise_of(figures.noise.stated(), [f_number, optics_efficiency, pixel_m], &mut assumed),
+            None => {
+                let at = self.noise_camera();
+                let at = [
+                    at.f_number.unwrap_or(f_number),
+                    at.optics_efficiency.taken(),
+                    at.pixel_m.unwrap_or(pixel_m),
+                ];
+                noise_of(figures.noise.stated(), at, &mut assumed)
+            }
         };
         let spectral_range_cm1 = figures.spectral_range_cm1.unwrap_or_else(|| {
             let [low, high] = PAPER_RANGE_CM1;
@@ -199,13 +207,51 @@ impl Preset {
             f_number,
             focal_length_m,
             optics_efficiency,
-            noise_exposure_s: figures.noise_exposure_s.unwrap_or(exposure_s),
+            noise_exposure_s: self.noise_exposure_s().unwrap_or(exposure_s),
             readout,
             frames,
             reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
             spectral_range_cm1,
             ..Camera::as_stated(figures, own)
         })
+    }
+
+    /// The camera that the noise is stated of; what its document is silent on is as here.
+    #[must_use]
+    pub fn noise_camera(&self) -> CameraSpec {
+        let figures = &self.figures;
+        let Some(at) = self.noise_at.as_deref() else { return figures.clone() };
+        let is_timed = at.exposure_s.is_some() || at.frame_rate_hz.is_some();
+        CameraSpec {
+            exposure_s: at.exposure_s.or(figures.exposure_s.filter(|_| !is_timed)),
+            frame_rate_hz: at.frame_rate_hz.or(figures.frame_rate_hz.filter(|_| !is_timed)),
+            f_number: at.f_number.or(figures.f_number),
+            pixel_m: at.pixel_m.or(figures.pixel_m),
+            ..at.clone()
+        }
+    }
+
+    /// The exposure of which the noise is, s: as it is stated, or that of the camera that it is stated of, a frame where that is silent.
+    fn noise_exposure_s(&self) -> Option<f64> {
+        let at = self.noise_camera();
+        self.figures.noise_exposure_s.or(at.exposure_s).or(at.frame_rate_hz.map(f64::recip))
+    }
+
+    /// The noise with all of its conditions, those that are not stated as they are taken.
+    #[must_use]
+    pub fn noise_in_full(&self) -> (NoiseFigures, Option<f64>) {
+        let at = self.noise_camera();
+        let mut noise = self.figures.noise.clone();
+        if noise.netd_k.is_some() {
+            noise.netd_temperature_k.get_or_insert(REFERENCE_K);
+        }
+        if noise.netd_k.is_some() || noise.nesr_microflick.is_some() {
+            noise.netd_f_number = noise.netd_f_number.or(at.f_number);
+            noise.netd_optics_efficiency =
+                noise.netd_optics_efficiency.or(Some(at.optics_efficiency.taken()));
+            noise.netd_pixel_m = noise.netd_pixel_m.or(at.pixel_m);
+        }
+        (noise, self.noise_exposure_s())
     }
 
     /// The figures without which there is no camera: the frame is taken for an exposure that is not stated, 1 for an efficiency of the optics.
@@ -264,7 +310,7 @@ struct Required {
     optics_efficiency: f64,
 }
 
-/// The noise that is stated; an NETD without its conditions is one of this camera.
+/// The noise that is stated; conditions that an NETD does not state are these.
 fn noise_of(
     stated: Option<StatedNoise>,
     [f_number, optics_efficiency, pixel_m]: [f64; 3],
@@ -301,7 +347,14 @@ fn noise_of(
             NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
         }
         Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => NoiseSpec::Nep { nep_w_hz05, bandwidth_hz },
-        Some(StatedNoise::Nesr { microflick, .. }) => NoiseSpec::SpectralRadiance { microflick },
+        Some(StatedNoise::Nesr { microflick, f_number: at, optics_efficiency: eta, pixel_m: of, .. }) => {
+            NoiseSpec::SpectralRadiance {
+                microflick,
+                f_number: at.unwrap_or(f_number),
+                optics_efficiency: eta.unwrap_or(optics_efficiency),
+                pixel_m: of.unwrap_or(pixel_m),
+            }
+        }
         Some(StatedNoise::Counts { sigma_counts }) => NoiseSpec::Counts { sigma_counts },
     }
 }
@@ -336,8 +389,14 @@ impl NoiseFigures {
                 StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
             }
             NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => StatedNoise::Nep { nep_w_hz05, bandwidth_hz },
-            NoiseSpec::SpectralRadiance { microflick } => {
-                StatedNoise::Nesr { microflick, wavelength_um: None }
+            NoiseSpec::SpectralRadiance { microflick, f_number, optics_efficiency, pixel_m } => {
+                StatedNoise::Nesr {
+                    microflick,
+                    wavelength_um: None,
+                    f_number: Some(f_number),
+                    optics_efficiency: Some(optics_efficiency),
+                    pixel_m: Some(pixel_m),
+                }
             }
             NoiseSpec::Counts { sigma_counts } => StatedNoise::Counts { sigma_counts },
             NoiseSpec::Table { .. } => return Self::default(),

@@ -1,10 +1,12 @@
 //! Electronic noise of a band reading, from what data sheets state.
 //!
-//! * NETD: σ = NETD · dN/dT, N the photons of a blackbody at the stated temperature, f-number, pixel and
-//!   optics efficiency in all of the detector's spectral range, per exposure;
+//! * NETD: σ² = (NETD · dN/dT)² − N, N the photons of a blackbody at the stated temperature, f-number, pixel and
+//!   optics efficiency in all of the detector's spectral range, per exposure. What is measured contains the shot noise of these
+//!   photons, so that no NETD is below √N/(dN/dT); a quantum efficiency that is not stated is 1, at which that is least;
 //! * specific detectivity: NEP = √(A_p Δf)/D*, σ_w = η_q NEP t/(hcν_w), η_q quantum efficiency;
 //! * noise-equivalent power: of a bandwidth Δf, or per √Hz and then NEP = n √Δf;
-//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = étendue × η t × ∫ L dλ/(hcν) over the band;
+//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = étendue × η t × ∫ L dλ/(hcν) over the band, at the f-number,
+//!   pixel and optics efficiency for which it is stated;
 //! * counts: as given, or as a table over wavenumber.
 //!
 //! The bandwidth of a reading that integrates for t is Δf = 1/(2t) where no other is stated.
@@ -70,16 +72,9 @@ impl Camera {
                 let at = |center: f64| interpolated(wavenumbers_cm1, sigma_counts, center);
                 Some(bands.bands().iter().map(|band| at(band.center_cm1)).collect())
             }
-            NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
-                let stated = Camera {
-                    f_number: *f_number,
-                    optics_efficiency: *optics_efficiency,
-                    pixel_m: *pixel_m,
-                    exposure_s: t,
-                    frames: 1,
-                    ..self.clone()
-                };
-                Some(vec![netd_k * stated.counts_per_kelvin(*temperature_k); bands.len()])
+            NoiseSpec::Netd { netd_k, .. } => {
+                let sigma = self.of_netd().map_or(0.0, |of| of.electronic_sigma(*netd_k));
+                Some(vec![sigma; bands.len()])
             }
             NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
                 let area_cm2 = (self.pixel_m * 100.0).powi(2);
@@ -89,9 +84,10 @@ impl Camera {
             NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => {
                 Some(of_power(nep_w_hz05 * bandwidth_hz.unwrap_or(0.5 / t).sqrt()))
             }
-            NoiseSpec::SpectralRadiance { microflick } => {
-                // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
-                let collected = self.etendue_m2_sr(None) * self.optics_efficiency * self.quantum_efficiency;
+            NoiseSpec::SpectralRadiance { microflick, f_number, optics_efficiency, pixel_m } => {
+                // Light of that radiance through those optics; the weights of the bands hold the efficiency curves.
+                let stated = Self { f_number: *f_number, pixel_m: *pixel_m, ..self.clone() };
+                let collected = stated.etendue_m2_sr(None) * optics_efficiency * self.quantum_efficiency;
                 Some(
                     photons_of_flick(bands, *microflick)
                         .iter()
@@ -112,6 +108,46 @@ impl Camera {
         .sqrt()
     }
 
+    /// The same kind of noise with a deviation σ `factor` times as large. Of a NETD σ is stated itself: it contains shot noise, which no
+    /// factor changes.
+    #[must_use]
+    pub fn noise_scaled(&self, factor: f64) -> NoiseSpec {
+        let mut noise = self.noise.clone();
+        match &mut noise {
+            NoiseSpec::None => {}
+            NoiseSpec::Netd { netd_k, .. } => {
+                let sigma = self.of_netd().map_or(0.0, |of| of.electronic_sigma(*netd_k));
+                return NoiseSpec::Counts { sigma_counts: factor * sigma };
+            }
+            NoiseSpec::Detectivity { detectivity_cm_hz05_w, .. } => *detectivity_cm_hz05_w /= factor,
+            NoiseSpec::Nep { nep_w_hz05, .. } => *nep_w_hz05 *= factor,
+            NoiseSpec::SpectralRadiance { microflick, .. } => *microflick *= factor,
+            NoiseSpec::Counts { sigma_counts } => *sigma_counts *= factor,
+            NoiseSpec::Table { sigma_counts, .. } => {
+                sigma_counts.iter_mut().for_each(|sigma| *sigma *= factor);
+            }
+        }
+        noise
+    }
+
+    /// The least NETD that there can be under the conditions of the stated one, K: that of shot noise alone. `None` where the noise is
+    /// not stated as NETD.
+    #[must_use]
+    pub fn least_netd_k(&self) -> Option<f64> {
+        self.of_netd().map(|of| of.shot_noise / of.per_kelvin)
+    }
+
+    /// The reading of which the NETD is stated.
+    fn of_netd(&self) -> Option<OfNetd> {
+        let NoiseSpec::Netd { temperature_k, f_number, optics_efficiency, pixel_m, .. } = self.noise else {
+            return None;
+        };
+        let exposure_s = self.noise_exposure_s;
+        let stated = Self { f_number, optics_efficiency, pixel_m, exposure_s, ..self.clone() };
+        let [photons, per_kelvin] = stated.counts_and_slope(temperature_k);
+        Some(OfNetd { shot_noise: photons.sqrt(), per_kelvin })
+    }
+
     /// Share of the photons on the detector that are counted at a wavenumber (cm⁻¹).
     fn counted(&self, wavenumber_cm1: f64) -> f64 {
         let curves = self.efficiency_curves.iter().filter(|curve| curve.name() == "quantum_efficiency");
@@ -121,14 +157,92 @@ impl Camera {
     /// dN/dT of a far blackbody in all of the camera's spectral range, counts per K and exposure.
     #[must_use]
     pub fn counts_per_kelvin(&self, temperature_k: f64) -> f64 {
+        let [_, per_kelvin] = self.counts_and_slope(temperature_k);
+        per_kelvin
+    }
+
+    /// N and dN/dT of that blackbody, counts of an exposure and counts per K.
+    fn counts_and_slope(&self, temperature_k: f64) -> [f64; 2] {
         // A range that makes no bands is refused by `checked`; no bands here mean no counts.
-        let Ok(bands) = self.own_bands() else { return 0.0 };
+        let Ok(bands) = self.own_bands() else { return [0.0; 2] };
         let bands = self.received(&bands);
         let nodes = bands.nodes_cm1();
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
         planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
-        let per_kelvin: f64 = bands.weigh(&slope).iter().sum();
         let one = Self { frames: 1, readout: super::Readout::Simultaneous, ..self.clone() };
-        per_kelvin * one.counts_per_radiance(&bands, &View::default())
+        let counted = one.counts_per_radiance(&bands, &View::default());
+        [value, slope].map(|radiance| counted * bands.weigh(&radiance).iter().sum::<f64>())
+    }
+}
+
+/// The reading of which a NETD is stated.
+struct OfNetd {
+    /// √N, counts.
+    shot_noise: f64,
+    /// dN/dT, counts per K.
+    per_kelvin: f64,
+}
+
+impl OfNetd {
+    /// σ = √((NETD · dN/dT)² − N), as a product so that no digits are lost where the two are nearly equal; 0 below the shot noise, which
+    /// `checked` refuses.
+    fn electronic_sigma(&self, netd_k: f64) -> f64 {
+        let all = netd_k * self.per_kelvin;
+        ((all - self.shot_noise).max(0.0) * (all + self.shot_noise)).sqrt()
+    }
+}
+
+#[cfg(all(test, feature = "library"))]
+mod tests {
+    use super::*;
+    use crate::instrument::presets;
+
+    /// 47.8 mK of the paper's bolometer: σ_all = 1.769e6 counts of the 2.530e9 photons of a blackbody of 30 degC in front of the
+    /// optics, whose shot noise is 5.030e4 counts. It takes 1/(2 · 1237) of σ, some 0.04 %.
+    #[test]
+    fn a_measured_netd_contains_the_shot_noise_of_its_photons() {
+        let camera = presets::get("flir-a325sc").unwrap();
+        let bands = camera.own_bands().unwrap();
+        let before = Camera { optics_efficiency: 1.0, ..camera.clone() };
+        let all = 47.8e-3 * before.counts_per_kelvin(303.15);
+        let photons = Camera { reference_temperature_k: 303.15, ..before }.figures().unwrap().photons;
+        let sigma = camera.reading_sigma(&bands).unwrap()[0];
+        assert!((sigma.powi(2) / (all.powi(2) - photons) - 1.0).abs() < 1e-12);
+        assert!(((1.0 - sigma / all) * 2.0 * all.powi(2) / photons - 1.0).abs() < 1e-3);
+        assert!((3e-4..5e-4).contains(&(1.0 - sigma / all)), "{}", 1.0 - sigma / all);
+        // With the shot noise of its photons it is the NETD that was stated.
+        let total = camera.equivalents().unwrap();
+        let own =
+            Camera { noise: NoiseSpec::Counts { sigma_counts: sigma }, optics_efficiency: 1.0, ..camera };
+        assert!(
+            (own.equivalents().unwrap().netd_with_shot_noise_k / 47.8e-3 - 1.0).abs() < 1e-12,
+            "{total:?}"
+        );
+    }
+
+    #[test]
+    fn a_netd_below_the_shot_noise_is_no_camera() {
+        let mut camera = presets::get("flir-a325sc").unwrap();
+        let least_k = camera.least_netd_k().unwrap();
+        // √N/(dN/dT) by hand: 5.030e4/(1.769e6/47.8 mK).
+        assert!((least_k / (5.030e4 / 1.769e6 * 47.8e-3) - 1.0).abs() < 2e-3, "{least_k}");
+        let stated = |camera: &mut Camera, share: f64| {
+            if let NoiseSpec::Netd { netd_k, .. } = &mut camera.noise {
+                *netd_k = share * least_k;
+            }
+            camera.clone().checked()
+        };
+        let sigma = |camera: &Camera| camera.reading_sigma(&camera.own_bands().unwrap()).unwrap()[0];
+        // NETD = (1 + ε) least: σ = √(2ε + ε²) of the shot noise.
+        for share in [1e-9, 1e-4, 0.5] {
+            let found = sigma(&stated(&mut camera, 1.0 + share).unwrap());
+            let photons = (least_k
+                * Camera { optics_efficiency: 1.0, ..camera.clone() }.counts_per_kelvin(303.15))
+            .powi(2);
+            let expected = (photons * (2.0 * share + share * share)).sqrt();
+            assert!((found / expected - 1.0).abs() < 1e-6, "{share}: {found} {expected}");
+        }
+        let refused = stated(&mut camera, 1.0 - 1e-6).unwrap_err().to_string();
+        assert!(refused.contains("netd") && refused.contains("at least 1.36"), "{refused}");
     }
 }

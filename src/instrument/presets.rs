@@ -47,6 +47,10 @@ pub struct Preset {
     /// The file that it is of; none of one of the program's own.
     #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// The camera that its noise is stated of, where figures were moved since: conditions that the noise does not state are those of
+    /// this one; none where it is the camera itself.
+    #[serde(skip)]
+    pub noise_at: Option<Box<CameraSpec>>,
     /// Efficiencies over wavenumber, read from the files of the figures.
     #[serde(skip)]
     pub efficiency_curves: Vec<EfficiencyCurve>,

@@ -4,12 +4,34 @@ use super::bands::{range, wavenumbers};
 use super::entries::Entries;
 use super::keys::rule::UNCERTAIN;
 use super::paths::{Paths, file};
-use super::section::Entry;
+use super::section::{Entry, Section};
+use super::setting::Setting;
 use hadar::error::Result;
 use hadar::instrument::Readout;
 use hadar::instrument::figures::{CameraSpec, Efficiency, Kind, NOISES, Row, TABLE};
+use hadar::instrument::presets::Preset;
 use hadar::units::Spectral;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 use toml::Value;
+
+/// Figures that a noise is stated for, where it does not state them itself.
+const OF_NOISE: [&str; 5] = ["exposure", "frame_rate", "f_number", "optics_efficiency", "pixel"];
+
+/// Whether a setting moves one of these over the file.
+pub(super) fn moves_noise(setting: &Setting) -> bool {
+    setting.key.rsplit_once('.').is_some_and(|(table, figure)| {
+        (table == "camera" || table.starts_with("camera[")) && OF_NOISE.contains(&figure)
+    })
+}
+
+/// The cameras of a file by their keys, `camera` or `camera[0]`; one that cannot be read is left out.
+pub(super) fn filed(root: &Section<'_>) -> BTreeMap<String, Arc<CameraSpec>> {
+    let Some(entry) = root.get("camera") else { return BTreeMap::new() };
+    let items = if entry.is_list() { entry.items("").unwrap_or_default() } else { vec![entry] };
+    let spec = |item: &Entry<'_>| read_with(item, &mut |_, entry| Ok(entry.is_table())).ok();
+    items.iter().filter_map(|item| Some((item.key().to_owned(), Arc::new(spec(item)?)))).collect()
+}
 
 pub(super) fn read(entry: &Entry<'_>) -> Result<CameraSpec> {
     read_with(entry, &mut |_, _| Ok(false))
@@ -67,10 +89,20 @@ pub(super) fn read_with(
         }
     }
     stated.own = stated.preset.as_deref().and_then(|name| entry.source().own_camera(name));
+    stated.filed = entry.source().filed.get(entry.key()).cloned();
     Ok(stated)
 }
 
+/// A noise of the file's own is written with the conditions of the file, where figures were moved over it.
 pub(super) fn written(spec: &CameraSpec, paths: Paths<'_>) -> Entries {
+    let mut stated = spec.clone();
+    if let Some(filed) = spec.filed.as_ref().filter(|filed| filed.states_noise() && filed.preset.is_none()) {
+        let figures = CameraSpec { noise: spec.noise.clone(), ..CameraSpec::clone(filed) };
+        let full = Preset { figures, ..Preset::default() };
+        let (noise, exposure_s) = full.noise_in_full();
+        (stated.noise, stated.noise_exposure_s) = (noise, spec.noise_exposure_s.or(exposure_s));
+    }
+    let spec = &stated;
     TABLE.iter().fold(Entries::default(), |entries, row| {
         let value = match row.kind {
             Kind::Quantity(dimension, _, slot) => {

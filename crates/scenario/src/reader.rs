@@ -2,6 +2,7 @@
 //!
 //! A type of a kind of file reads its root (`of_root`) and lays out its tables (`document`); [`file`] gives it the functions that follow.
 
+use super::camera;
 use super::keys::Table;
 use super::kind::Kind;
 use super::section::Section;
@@ -112,6 +113,13 @@ pub(super) fn open<T>(
     let mut document = parse(text, &source)?;
     source.note_lines(text, &document);
     kind.check(&document, &source)?;
+    if written.settings.iter().any(camera::moves_noise) {
+        let mut filed = document.clone();
+        let others = written.settings.iter().filter(|setting| !camera::moves_noise(setting));
+        others.map(|setting| setting.put(&mut filed)).collect::<Result<()>>()?;
+        source.filed =
+            Section::open(&filed, "", &source, keys).map(|root| camera::filed(&root)).unwrap_or_default();
+    }
     for setting in &written.settings {
         setting.put(&mut document)?;
         source.note_setting(setting);

@@ -194,6 +194,11 @@ impl<'a> Entry<'a> {
         self.source
     }
 
+    /// The full key.
+    pub(super) fn key(&self) -> &str {
+        &self.key
+    }
+
     pub(super) fn fail(&self, error: Error) -> Error {
         error.at(self.source.place(&self.key))
     }

@@ -36,6 +36,8 @@ pub struct Source {
     pub cameras: Arc<[StatedCamera]>,
     /// Whether it may name files.
     pub files_refused: bool,
+    /// Its cameras by their keys as the file states them, where values stand in the place of figures that a noise is stated for.
+    pub(super) filed: BTreeMap<String, Arc<CameraSpec>>,
 }
 
 impl Source {

@@ -1,10 +1,14 @@
 //! Fields changed in the text of a scenario: all else of it, comments included, stays as it was written.
 
 use hadar::error::{Error, Result};
+use hadar::instrument::figures::{self, Part, TABLE};
+use hadar_scenario::{Scenario, StatedCamera, Written};
+use hadar_study::with_noise_kept;
 use serde::Deserialize;
+use std::sync::Arc;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
-use crate::place::{self, Written};
+use crate::place;
 
 /// A change. Paths are those of messages, such as `camera.exposure` and `environment[0].lighting`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -43,15 +47,30 @@ enum Step {
     At(usize),
 }
 
-/// The text after the changes.
-pub(crate) fn applied(text: &str, edits: &[Edit]) -> Result<String> {
+impl Edit {
+    /// The path that it changes.
+    fn key(&self) -> &str {
+        match self {
+            Self::Set { key, .. } | Self::Remove { key } | Self::Add { key } | Self::Table { key, .. } => key,
+        }
+    }
+}
+
+/// The text after the changes; it may name these cameras of the user's own.
+pub(crate) fn applied(text: &str, edits: &[Edit], cameras: &Arc<[StatedCamera]>) -> Result<String> {
     if edits.is_empty() {
         return Ok(text.to_owned());
     }
     let mut document: DocumentMut = text.parse().map_err(|_| {
         Error::malformed("the text of the scenario is no TOML", "mend the text before the form is used")
     })?;
-    edits.iter().try_for_each(|edit| apply(document.as_item_mut(), edit))?;
+    for edit in edits {
+        let before = edit.key().starts_with("camera.").then(|| document.to_string());
+        apply(document.as_item_mut(), edit)?;
+        if let Some(before) = before {
+            keep_noise(&before, &mut document, cameras);
+        }
+    }
     Ok(document.to_string())
 }
 
@@ -59,7 +78,6 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
     match edit {
         Edit::Set { key, value } => {
             let (table, name) = table_of(root, key)?;
-            keep_conditions(table, key, &name);
             put(table, &name, place::value_at(key).parsed(value));
         }
         Edit::Remove { key } => match last(key)? {
@@ -88,20 +106,20 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
             let new = place::new_at(key).ok_or_else(|| not_there(key))?;
             let (table, name) = table_of(root, key)?;
             match (new, table.get_mut(&name)) {
-                (Written::Entry(entry), Some(Item::ArrayOfTables(tables))) => tables.push(entry),
-                (Written::Entry(entry), Some(Item::Value(Value::Array(items)))) => {
+                (place::Written::Entry(entry), Some(Item::ArrayOfTables(tables))) => tables.push(entry),
+                (place::Written::Entry(entry), Some(Item::Value(Value::Array(items)))) => {
                     items.push(entry.into_inline_table());
                 }
                 (_, Some(there)) if !there.is_none() => {
                     return Err(Error::malformed(format!("{key} is there already"), "change it"));
                 }
-                (Written::Entry(entry), _) => {
+                (place::Written::Entry(entry), _) => {
                     let mut tables = ArrayOfTables::new();
                     tables.push(entry);
                     drop(table.insert(&name, Item::ArrayOfTables(tables)));
                 }
-                (Written::Table(new), _) => drop(table.insert(&name, Item::Table(new))),
-                (Written::Value(value), _) => put(table, &name, value),
+                (place::Written::Table(new), _) => drop(table.insert(&name, Item::Table(new))),
+                (place::Written::Value(value), _) => put(table, &name, value),
             }
         }
         Edit::Table { key, toml } => {
@@ -120,23 +138,40 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
     Ok(())
 }
 
-/// Figures of a camera, where what is stated of its noise says for which value of them, and the noises that take it.
-const CONDITIONS: [(&str, &str, &[&str]); 3] = [
-    ("exposure", "noise_exposure", &["netd", "detectivity", "nep", "nesr", "noise_electrons"]),
-    ("f_number", "netd_f_number", &["netd"]),
-    ("pixel", "netd_pixel", &["netd"]),
+/// Figures of a camera, and the keys that say for which value of them a noise is stated.
+const CONDITIONS: [(&str, &str); 4] = [
+    ("exposure", "noise_exposure"),
+    ("f_number", "netd_f_number"),
+    ("optics_efficiency", "netd_optics_efficiency"),
+    ("pixel", "netd_pixel"),
 ];
 
-/// Writes down for which value of a figure the noise is stated, before that figure changes: whoever turns it turns a camera whose noise
-/// is known, and states no other noise.
-fn keep_conditions(table: &mut dyn TableLike, key: &str, name: &str) {
-    let of_camera =
-        CONDITIONS.iter().filter(|(figure, ..)| *figure == name && key == format!("camera.{name}"));
-    for (_, condition, noises) in of_camera {
-        let stated = noises.iter().any(|noise| table.contains_key(noise));
-        let Some(value) = table.get(name).and_then(Item::as_value).cloned() else { continue };
-        if stated && !table.contains_key(condition) {
-            put(table, condition, value.decorated(" ", ""));
+/// Writes the noise down with all for which it is stated, where a change of the camera would make it another one: whoever turns a figure
+/// turns a camera whose noise is known. `before` is the text without the change.
+fn keep_noise(before: &str, document: &mut DocumentMut, cameras: &Arc<[StatedCamera]>) {
+    let read = |text: &str| {
+        Scenario::from_written(&Written::of(text, None).with_cameras(Arc::clone(cameras)).refusing_files())
+            .ok()
+    };
+    let (Some(filed), Some(mut moved)) = (read(before), read(&document.to_string())) else { return };
+    let (Some(filed), Some(spec)) = (filed.camera, moved.camera.take()) else { return };
+    let kept = with_noise_kept(&spec, &filed);
+    let text = Scenario { camera: Some(kept.clone()), ..moved }.to_toml();
+    let (Ok(written), Ok(before)) = (text.parse::<DocumentMut>(), before.parse::<DocumentMut>()) else {
+        return;
+    };
+    let value = |document: &DocumentMut, key: &str| document.get("camera")?.get(key)?.as_value().cloned();
+    for row in TABLE.iter().filter(|row| row.part != Part::Own && row.is_given(&kept) && !row.is_given(&spec))
+    {
+        // As the figure itself was written, where it is that one.
+        let figure =
+            CONDITIONS.iter().find(|(_, condition)| *condition == row.key).map(|(figure, _)| *figure);
+        let same = figure
+            .filter(|figure| figures::row(figure).is_some_and(|own| own.number(&filed) == row.number(&kept)));
+        let new = same.and_then(|figure| value(&before, figure)).or_else(|| value(&written, row.key));
+        if let (Some(new), Some(table)) = (new, document.get_mut("camera").and_then(Item::as_table_like_mut))
+        {
+            put(table, row.key, new.decorated(" ", ""));
         }
     }
 }
@@ -195,6 +230,10 @@ fn not_there(key: &str) -> Error {
 mod tests {
     use super::*;
 
+    fn applied(text: &str, edits: &[Edit]) -> Result<String> {
+        super::applied(text, edits, &Arc::default())
+    }
+
     const TEXT: &str = "# why\n[target] # it\nmaterial = \"skin\"   # of a person\ntemperature = \"33 degC\"\n\n\
         [[environment]]\ntemperature = \"5 degC\"\nlighting = 0.6\n\n# ours\n[camera]\nexposure = \"10 ms\"\nframes = 4\n";
 
@@ -220,12 +259,22 @@ mod tests {
         let stated = TEXT.to_owned() + "netd = \"30 mK\"\nf_number = 1.0\n";
         let turned =
             applied(&stated, &[set("camera.exposure", "3 ms"), set("camera.exposure", "4 ms")]).unwrap();
-        assert!(
-            turned.contains("exposure = \"4 ms\"\n") && turned.ends_with("noise_exposure = \"10 ms\"\n"),
-            "{turned}"
-        );
-        let turned = applied(&turned, &[set("camera.f_number", "1.4"), set("camera.frames", "9")]).unwrap();
-        assert!(turned.ends_with("noise_exposure = \"10 ms\"\nnetd_f_number = 1.0\n"), "{turned}");
+        // All of the noise is written down, as its figures were written, once.
+        let kept = "netd_temperature = \"303.15 K\"\nnetd_f_number = 1.0\nnetd_optics_efficiency = 1.0\nnoise_exposure = \"10 ms\"\n";
+        assert!(turned.contains("exposure = \"4 ms\"\n") && turned.ends_with(kept), "{turned}");
+        let slower = applied(&turned, &[set("camera.f_number", "1.4"), set("camera.frames", "9")]).unwrap();
+        assert!(slower.contains("\nf_number = 1.4\n") && slower.ends_with(kept), "{slower}");
+        // What is turned is the noise itself: its conditions stay as they are.
+        let louder = applied(&stated, &[set("camera.netd", "40 mK")]).unwrap();
+        assert_eq!(louder, stated.replace("30 mK", "40 mK"));
+        // A preset's noise is of the preset, unless the preset does not say for which lens.
+        let preset = |name: &str| {
+            TEXT.replace("exposure = \"10 ms\"", &format!("preset = \"{name}\"\nf_number = 1.4"))
+        };
+        let turned = |name: &str| applied(&preset(name), &[set("camera.f_number", "2.0")]).unwrap();
+        assert_eq!(turned("flir-boson-640-14mm"), preset("flir-boson-640-14mm").replace("1.4", "2.0"));
+        let open = turned("flir-tau-2-640");
+        assert!(open.contains("netd = \"0.03 K\"\n") && open.contains("netd_f_number = 1.4\n"), "{open}");
         // A camera without a noise of its own, or one that says it, has nothing to be kept.
         assert!(!applied(TEXT, &[set("camera.exposure", "3 ms")]).unwrap().contains("noise_exposure"));
     }

@@ -160,7 +160,7 @@ impl Engine {
 
     /// A scenario with its changes as text, fields and answer.
     pub(crate) fn answer(&self, ask: &Ask) -> Result<String> {
-        let (scenario, changed) = match edit::applied(&ask.scenario, &ask.edits) {
+        let (scenario, changed) = match self.edited(ask) {
             Ok(text) => (text, Ok(())),
             Err(error) => (ask.scenario.clone(), Err(error)),
         };
@@ -200,7 +200,7 @@ impl Engine {
 
     /// The answer as `hadar size --json` prints it.
     pub(crate) fn json(&self, ask: &Ask) -> Result<String> {
-        let study = self.study(&edit::applied(&ask.scenario, &ask.edits)?)?;
+        let study = self.study(&self.edited(ask)?)?;
         let mut result = study.size_with_curves()?;
         let mut no_report = Work::default();
         no_report.spare(Thing::Reports, Reason::NotAsked, 1);
@@ -210,7 +210,7 @@ impl Engine {
 
     /// The report of `hadar size --out`, on its one page.
     pub(crate) fn report(&self, ask: &Ask) -> Result<String> {
-        let text = edit::applied(&ask.scenario, &ask.edits)?;
+        let text = self.edited(ask)?;
         let (sized, mut read) = inputs_of(|| -> Result<(Study, Sizing)> {
             let study = self.study(&text)?;
             let result = study.size_with_curves()?;
@@ -222,6 +222,11 @@ impl Engine {
         let provenance = Provenance::of(&self.commit, command, 1, &read)?;
         let about = About { answer: &size::text(&result, &study), provenance: &provenance, inputs: &[] };
         size::bundle(&study, &result, Path::new(""))?.page(&about)
+    }
+
+    /// The text of a question with its changes.
+    fn edited(&self, ask: &Ask) -> Result<String> {
+        edit::applied(&ask.scenario, &ask.edits, &self.cameras.stated.clone().into())
     }
 
     fn study(&self, text: &str) -> Result<Study> {

@@ -2,12 +2,13 @@
 
 use hadar::error::{Error, Place, Result};
 use hadar::grid::Grid;
-use hadar::instrument::figures::{Kind, Part, TABLE};
+use hadar::instrument::figures::{self, Kind, NOISES, NoiseFigures, Part, TABLE};
 use hadar::instrument::presets::{self, Preset};
-use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, REFERENCE_K};
+use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec};
 use hadar_formats::file::text_of_file;
-use hadar_scenario::{CameraSpec, Efficiency, Source};
+use hadar_scenario::{CameraSpec, Source};
 use std::path::Path;
+use std::sync::Arc;
 
 /// The preset with what the scenario overrides; without a preset everything must be said.
 pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
@@ -23,7 +24,7 @@ pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
 pub(super) fn known(spec: &CameraSpec) -> Result<Option<Preset>> {
     match (&spec.own, &spec.preset) {
         (Some(own), name) => {
-            let stated = overridden(own, known(own)?.unwrap_or_default())?;
+            let stated = laid(own, known(own)?.unwrap_or_default())?;
             Ok(Some(Preset { name: name.clone().unwrap_or_default(), ..stated }))
         }
         (None, Some(name)) => presets::find(name).map(Some),
@@ -59,7 +60,31 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
 pub(super) fn stated_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
     let preset = known(spec).map_err(|error| error.at(place("preset")))?;
     check_conditions(spec, preset.as_ref(), place)?;
-    overridden(spec, preset.unwrap_or_default())
+    laid(spec, preset.unwrap_or_default())
+}
+
+/// The camera of a spec with the noise of the camera as `filed` states it: what moves figures of a camera states no other noise. The
+/// noise is written out with all of its conditions where it would be another one without.
+#[must_use]
+pub fn with_noise_kept(spec: &CameraSpec, filed: &CameraSpec) -> CameraSpec {
+    let alone = CameraSpec { filed: None, ..spec.clone() };
+    let moved = CameraSpec { filed: Some(Arc::new(filed.clone())), ..alone.clone() };
+    let in_full = |spec: &CameraSpec| {
+        let stated = laid(spec, known(spec)?.unwrap_or_default())?;
+        Ok::<_, Error>((stated.noise_in_full(), stated.noise_table))
+    };
+    match (in_full(&moved), in_full(&alone)) {
+        (Ok((own, table)), Ok(other)) if (&own, &table) != (&other.0, &other.1) && !own.0.is_none => {
+            let (noise, noise_exposure_s) = own;
+            CameraSpec { noise, noise_exposure_s, ..alone }
+        }
+        _ => alone,
+    }
+}
+
+/// The same for a spec that knows its file.
+pub(super) fn with_filed_noise(spec: &CameraSpec) -> CameraSpec {
+    spec.filed.as_deref().map_or_else(|| spec.clone(), |filed| with_noise_kept(spec, filed))
 }
 
 /// A camera whose figures make one; a mistake is told where its key stands.
@@ -75,71 +100,79 @@ pub(super) fn checked_at(camera: Camera, place: &dyn Fn(&str) -> Place) -> Resul
     })
 }
 
-/// Conditions of a noise that is not stated, and a noise without the condition it cannot do without.
+/// Conditions of a noise that is not stated, a noise without the condition it cannot do without, and one with half of its conditions.
 fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&str) -> Place) -> Result<()> {
-    for row in TABLE.iter().filter(|row| row.part == Part::Condition(&["netd"])) {
-        if row.is_given(spec) && spec.noise.netd_k.is_none() {
+    let refuse =
+        |key: &str, found: String, instead: &str| Err(Error::malformed(found, instead).at(place(key)));
+    let is_of_kind = preset.is_some_and(|preset| preset.figures.noise.is_of_kind(&spec.noise));
+    let conditions = || TABLE.iter().filter(|row| row.is_given(spec) && row.part.is_condition_of("netd"));
+    for row in conditions() {
+        if !NOISES.iter().any(|key| row.part.is_condition_of(key) && is_stated(spec, key)) {
             let found = format!("{} without a netd", row.key);
-            return Err(Error::malformed(found, "write netd = \"50 mK\" beside it").at(place(row.key)));
+            return refuse(row.key, found, "write netd = \"50 mK\" beside it");
         }
     }
     if spec.noise_exposure_s.is_some() && !spec.states_noise() {
         let instead = "write netd, detectivity or noise_electrons beside it";
-        return Err(Error::malformed("noise_exposure without a noise", instead).at(place("noise_exposure")));
+        return refuse("noise_exposure", "noise_exposure without a noise".into(), instead);
+    }
+    // A value of the preset's noise is one under the preset's conditions.
+    let noise = &spec.noise;
+    let (kelvin, f_number) = (("netd_temperature", "\"30 degC\""), ("netd_f_number", "1.0"));
+    let needed = match () {
+        () if is_of_kind => &[][..],
+        () if noise.netd_k.is_some() => &[kelvin, f_number],
+        () if noise.nesr_microflick.is_some() => &[f_number],
+        () => &[],
+    };
+    let of_exposure = spec.noise_exposure_s.filter(|_| noise.netd_k.is_some()).map(|_| "noise_exposure");
+    if let Some(key) = conditions().next().map(|row| row.key).or(of_exposure)
+        && let Some((missing, example)) = needed.iter().find(|(key, _)| !is_stated(spec, key))
+    {
+        let found =
+            format!("{key} beside a noise without its {missing}, which is half of what it is stated for");
+        return refuse(key, found, &format!("write {missing} = {example} beside it, or no condition at all"));
     }
     let of_bandwidth = [("detectivity", spec.noise.detectivity_cm_hz05_w), ("nep", spec.noise.nep_w_hz05)];
     match of_bandwidth.iter().find(|(_, given)| given.is_some()) {
         None if spec.noise.bandwidth_hz.is_some() => {
             let instead = "write detectivity = \"4.7e10 cm Hz^0.5/W\" or nep beside it";
-            let error = Error::malformed("noise_bandwidth without a detectivity or nep", instead);
-            Err(error.at(place("noise_bandwidth")))
+            refuse("noise_bandwidth", "noise_bandwidth without a detectivity or nep".into(), instead)
         }
         // A preset that states such a noise states its conditions too.
         Some((key, _))
-            if spec.noise.bandwidth_hz.is_none()
-                && spec.noise_exposure_s.is_none()
-                && !preset.is_some_and(|preset| preset.figures.noise.is_of_bandwidth()) =>
+            if spec.noise.bandwidth_hz.is_none() && spec.noise_exposure_s.is_none() && !is_of_kind =>
         {
             let instead =
                 "write noise_bandwidth = \"175 kHz\", or noise_exposure = \"2.86 us\" for 1/(2 x 2.86 us)";
-            Err(Error::malformed(format!("{key} without a bandwidth"), instead).at(place(key)))
+            refuse(key, format!("{key} without a bandwidth"), instead)
         }
         _ => Ok(()),
     }
 }
 
-/// Noise that comes with a preset is stated under the preset's conditions.
-fn under_own_conditions(figures: &mut CameraSpec) {
-    if figures.noise.netd_k.is_some() {
-        let noise = &mut figures.noise;
-        noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
-        noise.netd_optics_efficiency =
-            noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
-        noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
-    }
+/// What is stated of a camera over a known one. Where figures were moved over a file, the camera of the file is the one whose noise it is.
+fn laid(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
+    let file = spec.filed.as_deref().map(|filed| overridden(filed, preset.clone(), None)).transpose()?;
+    overridden(spec, preset, file.as_ref())
 }
 
-/// The same camera with its preset's noise as one of its own, under the preset's conditions, so that it can be changed alone.
-pub(super) fn with_own_noise(spec: &CameraSpec) -> CameraSpec {
-    let preset = known(spec).ok().flatten();
-    match preset {
-        Some(Preset { mut figures, .. }) if !spec.states_noise() => {
-            under_own_conditions(&mut figures);
-            let noise_exposure_s = figures.noise_exposure_s.or(figures.exposure_s);
-            CameraSpec { noise: figures.noise, noise_exposure_s, ..spec.clone() }
-        }
-        _ => spec.clone(),
-    }
+/// Whether a key is stated.
+fn is_stated(spec: &CameraSpec, key: &str) -> bool {
+    figures::row(key).is_some_and(|row| row.is_given(spec))
 }
 
 /// The preset with the scenario's figures laid over it.
-fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
+///
+/// A noise is one figure with its conditions. It keeps them, stated or those of the camera that states it, whatever lies over that
+/// camera; the same kind of noise without conditions is another value of it; any other is a noise of its own.
+fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Result<Preset> {
+    let beneath = file.unwrap_or(&preset);
+    let own_noise = beneath.figures.noise.clone();
+    let own_exposure_s = beneath.figures.noise_exposure_s;
+    let own_at = Box::new(beneath.noise_camera());
     let mut stated = preset;
     let figures = &mut stated.figures;
-    let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
-    let conditions = figures.noise.is_of_bandwidth();
-    let own_bandwidth = figures.noise.bandwidth_hz;
-    under_own_conditions(figures);
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
         row.lay(spec, figures);
         if let (Kind::Efficiency(..), Some(path)) = (row.kind, row.file(spec)) {
@@ -148,30 +181,28 @@ fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
             stated.efficiency_curves.push(curve);
         }
     }
+    let is_of_kind = spec.noise.is_of_kind(&own_noise);
     if !spec.states_noise() {
-        // Noise that comes with the preset is stated at the preset's exposure.
-        figures.noise_exposure_s = own_noise_exposure.or(figures.exposure_s);
+        (figures.noise, figures.noise_exposure_s) = (own_noise, own_exposure_s);
+        stated.noise_at = Some(own_at);
         return Ok(stated);
     }
-    let mut noise = spec.noise.clone();
-    if noise.netd_k.is_some() {
-        // Without a word on it the NETD is of the reference temperature, through the camera's own optics.
-        let reference_k = figures.reference_temperature_k.unwrap_or(REFERENCE_K);
-        noise.netd_temperature_k.get_or_insert(reference_k);
-        noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
-    }
-    // Noise of the scenario's own is stated at the camera's exposure, one of the preset's kind at the preset's.
-    let exposure_s =
-        if noise.is_of_bandwidth() && conditions { own_noise_exposure } else { figures.exposure_s };
-    if noise.is_of_bandwidth() && spec.noise_exposure_s.is_none() {
-        noise.bandwidth_hz = noise.bandwidth_hz.or(own_bandwidth);
-    }
+    let noise = spec.noise.clone();
     if let Some(path) = &noise.table {
         let rows = column(path, "sigma_counts", "read the noise")?;
         stated.noise_table = Some(NoiseSpec::table(rows).map_err(|error| error.in_file(path))?);
+    } else {
+        stated.noise_table = None;
     }
-    figures.noise_exposure_s = spec.noise_exposure_s.or(exposure_s);
-    figures.noise = noise;
+    if is_of_kind {
+        let own_bandwidth = own_noise.bandwidth_hz.filter(|_| spec.noise_exposure_s.is_none());
+        figures.noise = noise.under(&NoiseFigures { bandwidth_hz: own_bandwidth, ..own_noise });
+        figures.noise_exposure_s = spec.noise_exposure_s.or(own_exposure_s);
+        stated.noise_at = Some(own_at);
+        return Ok(stated);
+    }
+    stated.noise_at = file.map(|file| Box::new(file.figures.clone()));
+    (figures.noise, figures.noise_exposure_s) = (noise, spec.noise_exposure_s);
     Ok(stated)
 }
 
@@ -196,8 +227,9 @@ fn column(path: &Path, name: &str, action: &str) -> Result<Vec<(f64, f64)>> {
 mod tests {
     use super::*;
     use hadar::instrument::Readout;
-    use hadar::instrument::figures::{self, Row};
-    use hadar_scenario::Scenario;
+    use hadar::instrument::figures::Row;
+    use hadar::spectrum::Bands;
+    use hadar_scenario::{Efficiency, Scenario};
 
     #[test]
     fn a_preset_that_was_changed_says_in_what() {
@@ -224,6 +256,68 @@ mod tests {
             "flir-a325sc with noise_electrons changed"
         );
         assert_eq!(name(&|spec| spec.frames = Some(16)), "flir-a325sc with frames changed");
+    }
+
+    /// Noise in counts, and the exposure of which it is.
+    fn noise_of(camera: &Camera) -> (Vec<f64>, f64) {
+        let bands = Bands::from_rows([(800.0, 20.0), (1000.0, 50.0), (1200.0, 30.0)]).unwrap();
+        (camera.reading_sigma(&bands).unwrap(), camera.noise_exposure_s)
+    }
+
+    /// One rule: over the file (`--set`, `--vary`, an uncertainty), written out (the page, a report) and in the camera itself (the solver).
+    #[test]
+    fn a_noise_is_the_same_whatever_figure_is_moved() {
+        let own = CameraSpec {
+            exposure_s: Some(10e-3),
+            pixel_m: Some(12e-6),
+            f_number: Some(1.2),
+            focal_length_m: Some(14e-3),
+            optics_efficiency: Some(Efficiency::Number(0.9)),
+            ..CameraSpec::default()
+        };
+        let of = |state: &dyn Fn(&mut CameraSpec)| {
+            let mut spec = own.clone();
+            state(&mut spec);
+            spec
+        };
+        // A preset that states its NETD for no lens, one that does for f/1, and noises of one's own.
+        let cameras = [
+            of(&|spec| spec.preset = Some("flir-tau-2-640".into())),
+            of(&|spec| spec.preset = Some("flir-boson-640-14mm".into())),
+            of(&|spec| spec.noise.netd_k = Some(30e-3)),
+            of(&|spec| spec.noise.nesr_microflick = Some(2.0)),
+            of(&|spec| (spec.noise.nep_w_hz05, spec.noise.bandwidth_hz) = (Some(1e-12), Some(50.0))),
+            of(&|spec| (spec.noise.nep_w_hz05, spec.noise_exposure_s) = (Some(1e-12), Some(2e-3))),
+            of(&|spec| spec.noise.electrons = Some(5e4)),
+        ];
+        let resolved = |spec: &CameraSpec| resolved(spec, &Source::default()).unwrap();
+        let figures = ["exposure", "f_number", "pixel", "optics_efficiency"];
+        for spec in &cameras {
+            let camera = resolved(spec);
+            for row in figures.into_iter().filter_map(figures::row) {
+                let mut moved = spec.clone();
+                row.put_number(&mut moved, 0.7 * row.number(spec).unwrap());
+                let kept = with_noise_kept(&moved, spec);
+                let over = CameraSpec { filed: Some(Arc::new(spec.clone())), ..moved.clone() };
+                let mut solved = CameraSpec::of(&camera);
+                row.put_number(&mut solved, 0.7 * row.number(spec).unwrap());
+                for (what, found) in [("over", resolved(&over)), ("kept", resolved(&kept))] {
+                    assert_eq!(noise_of(&found), noise_of(&camera), "{what} {} {spec:?}", row.key);
+                    assert_eq!(row.number(&CameraSpec::of(&found)), row.number(&solved));
+                }
+                let trial = Camera {
+                    exposure_s: solved.exposure_s.unwrap(),
+                    f_number: solved.f_number.unwrap(),
+                    pixel_m: solved.pixel_m.unwrap(),
+                    optics_efficiency: row
+                        .number(&solved)
+                        .filter(|_| row.key == "optics_efficiency")
+                        .unwrap_or(0.9),
+                    ..camera.clone()
+                };
+                assert_eq!(noise_of(&trial), noise_of(&camera), "solver {} {spec:?}", row.key);
+            }
+        }
     }
 
     /// A camera like the FLIR of the paper with one figure changed, and what that figure cannot be stated without.

@@ -58,6 +58,7 @@ pub mod warning;
 pub use crate::condition::{Condition, ConditionKind, RangeDecides, Sureness};
 pub use crate::proviso::Proviso;
 pub use crate::warning::{Warning, WorstBlackbody};
+pub use camera::with_noise_kept;
 pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
 pub use companion::Companion;
 pub use identify::{

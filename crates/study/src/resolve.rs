@@ -8,7 +8,6 @@ use self::finder::Finder;
 use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
 use super::classes::Members;
-use super::warn::noise_that_moves;
 use super::{Study, Surface, camera, camera_bands};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
@@ -83,7 +82,6 @@ impl Study {
             check_detector(&bands, camera, &scenario)?;
             let place = |key: &str| scenario.place(key);
             finder.warnings.extend(camera_bands::check(camera, spec, &asked, &bands, &place)?);
-            finder.warnings.extend(noise_that_moves(spec, &scenario.source));
         }
         let target = finder.covering(target, &bands, scenario.target.extrapolate)?;
         let alternatives = finder.alternatives(&target, &bands)?;

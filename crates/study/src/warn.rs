@@ -2,7 +2,7 @@
 
 mod camera;
 
-pub(super) use camera::{assumed, noise_that_moves};
+pub(super) use camera::{assumed, contradiction};
 
 use super::identify::{NearestProof, PairResult};
 use super::{Study, Warning};

@@ -41,6 +41,9 @@ macro_rules! every_figure {
             /// What is stated of that camera, where it is one of the user's own.
             #[serde(skip)]
             own: Option<Arc<CameraSpec>>,
+            /// The same camera as its file states it, where figures that its noise is stated for are moved over the file.
+            #[serde(skip)]
+            filed: Option<Arc<CameraSpec>>,
         }
         @Camera {
             /// Name, as in `camera.preset`.
@@ -124,19 +127,24 @@ macro_rules! every_figure {
         /// Exposure at which that noise is stated, s.
         => f64,
         row("netd", "NETD", Kind::Quantity(Dimension::TemperatureDifference, ABOVE_ZERO, slot!(noise.netd_k)), "\"50 mK\"",
-            "Noise-equivalent temperature difference of one frame.",
+            "Noise-equivalent temperature difference of one frame as it is measured: it contains the shot noise of its photons. Like every \
+             noise it keeps the conditions for which it is stated when another figure is moved.",
             "electronic noise of a reading (S10, Table S2)").noise(),
         row("netd_temperature", "temperature of the NETD",
             Kind::Quantity(Dimension::Temperature, BLACKBODY, slot!(noise.netd_temperature_k)), "\"30 degC\"",
-            "Temperature of the blackbody at which the NETD is stated; 30 degC where it is not stated.",
+            "Temperature of the blackbody at which the NETD is stated, beside netd_f_number; 30 degC where no condition is stated.",
             "electronic noise of a reading from NETD (Table S2)").condition_of(&["netd"]),
         row("netd_f_number", "f-number of the NETD", Kind::Number(F_NUMBER, slot!(noise.netd_f_number)), "1.0",
-            "f-number at which the NETD is stated; that of the lens where it is not stated.",
-            "electronic noise of a reading from NETD (Table S2)").condition_of(&["netd"]),
+            "f-number at which the NETD (beside netd_temperature) or the NESR is stated; that of the lens where no condition is stated.",
+            "electronic noise of a reading from NETD or NESR (Table S2)").condition_of(&["netd", "nesr"]),
+        row("netd_optics_efficiency", "optics efficiency of the NETD",
+            Kind::Number(EFFICIENCY, slot!(noise.netd_optics_efficiency)), "0.9",
+            "Share of the photons that the optics let through where the NETD or the NESR is stated; that of the camera where it is not stated.",
+            "electronic noise of a reading from NETD or NESR (Table S2)").condition_of(&["netd", "nesr"]),
         row("netd_pixel", "pixel of the NETD", Kind::Quantity(Dimension::Length, ABOVE_ZERO, slot!(noise.netd_pixel_m)),
             "\"12 um\"",
-            "Side of the pixel for which the NETD is stated; the camera's own where it is not stated.",
-            "electronic noise of a reading from NETD (Table S2)").condition_of(&["netd"]),
+            "Side of the pixel for which the NETD or the NESR is stated; the camera's own where it is not stated.",
+            "electronic noise of a reading from NETD or NESR (Table S2)").condition_of(&["netd", "nesr"]),
         row("detectivity", "D*",
             Kind::Quantity(Dimension::Detectivity, ABOVE_ZERO, slot!(noise.detectivity_cm_hz05_w)), "\"4.7e10 cm Hz^0.5/W\"",
             "Specific detectivity D*, with a noise_bandwidth or the noise_exposure that it follows from.",

@@ -14,11 +14,11 @@ pub struct NoiseFigures {
     pub netd_k: Option<f64>,
     /// Temperature of the blackbody at which the NETD is stated, K.
     pub netd_temperature_k: Option<f64>,
-    /// f-number at which the NETD is stated.
+    /// f-number at which the NETD or the NESR is stated.
     pub netd_f_number: Option<f64>,
-    /// Optics efficiency with which the photons of the NETD are counted. Documents only.
+    /// Optics efficiency with which the photons of the NETD or the NESR are counted.
     pub netd_optics_efficiency: Option<f64>,
-    /// Side of the pixel for which the NETD is stated, m.
+    /// Side of the pixel for which the NETD or the NESR is stated, m.
     pub netd_pixel_m: Option<f64>,
     /// Specific detectivity D*, cm √Hz W⁻¹.
     pub detectivity_cm_hz05_w: Option<f64>,
@@ -75,6 +75,12 @@ pub enum StatedNoise {
         microflick: f64,
         /// Where it is stated, µm.
         wavelength_um: Option<f64>,
+        /// f-number.
+        f_number: Option<f64>,
+        /// Optics efficiency.
+        optics_efficiency: Option<f64>,
+        /// Side of the pixel, m.
+        pixel_m: Option<f64>,
     },
     /// Deviation of a band reading.
     Counts {
@@ -88,6 +94,29 @@ impl NoiseFigures {
     #[must_use]
     pub const fn is_of_bandwidth(&self) -> bool {
         self.detectivity_cm_hz05_w.is_some() || self.nep_w_hz05.is_some()
+    }
+
+    /// Whether two state a noise of the same kind, so that the conditions of the one are those of another value of it too.
+    #[must_use]
+    pub const fn is_of_kind(&self, other: &Self) -> bool {
+        (self.netd_k.is_some() && other.netd_k.is_some())
+            || (self.is_of_bandwidth() && other.is_of_bandwidth())
+            || (self.nesr_microflick.is_some() && other.nesr_microflick.is_some())
+            || (self.electrons.is_some() && other.electrons.is_some())
+            || (self.table.is_some() && other.table.is_some())
+    }
+
+    /// The same value under the conditions of another of its kind, where it states none itself.
+    #[must_use]
+    pub fn under(self, other: &Self) -> Self {
+        Self {
+            netd_temperature_k: self.netd_temperature_k.or(other.netd_temperature_k),
+            netd_f_number: self.netd_f_number.or(other.netd_f_number),
+            netd_optics_efficiency: self.netd_optics_efficiency.or(other.netd_optics_efficiency),
+            netd_pixel_m: self.netd_pixel_m.or(other.netd_pixel_m),
+            bandwidth_hz: self.bandwidth_hz.or(other.bandwidth_hz),
+            ..self
+        }
     }
 
     /// The noise that is stated, unless it is a file or none is.
@@ -109,7 +138,13 @@ impl NoiseFigures {
         } else if let Some(nep_w_hz05) = self.nep_w_hz05 {
             Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz })
         } else if let Some(microflick) = self.nesr_microflick {
-            Some(StatedNoise::Nesr { microflick, wavelength_um: self.nesr_wavelength_um })
+            Some(StatedNoise::Nesr {
+                microflick,
+                wavelength_um: self.nesr_wavelength_um,
+                f_number: self.netd_f_number,
+                optics_efficiency: self.netd_optics_efficiency,
+                pixel_m: self.netd_pixel_m,
+            })
         } else {
             self.electrons.map(|sigma_counts| StatedNoise::Counts { sigma_counts })
         }
@@ -135,9 +170,14 @@ impl From<StatedNoise> for NoiseFigures {
             StatedNoise::Nep { nep_w_hz05, bandwidth_hz } => {
                 Self { nep_w_hz05: Some(nep_w_hz05), bandwidth_hz, ..nothing }
             }
-            StatedNoise::Nesr { microflick, wavelength_um } => {
-                Self { nesr_microflick: Some(microflick), nesr_wavelength_um: wavelength_um, ..nothing }
-            }
+            StatedNoise::Nesr { microflick, wavelength_um, f_number, optics_efficiency, pixel_m } => Self {
+                nesr_microflick: Some(microflick),
+                nesr_wavelength_um: wavelength_um,
+                netd_f_number: f_number,
+                netd_optics_efficiency: optics_efficiency,
+                netd_pixel_m: pixel_m,
+                ..nothing
+            },
             StatedNoise::Counts { sigma_counts } => Self { electrons: Some(sigma_counts), ..nothing },
         }
     }

@@ -66,6 +66,14 @@ pub enum Part {
     Condition(&'static [&'static str]),
 }
 
+impl Part {
+    /// Whether it is a condition of the noise of a key.
+    #[must_use]
+    pub fn is_condition_of(self, noise: &str) -> bool {
+        matches!(self, Self::Condition(noises) if noises.contains(&noise))
+    }
+}
+
 /// Whether the sheet of a camera has a line for a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Line {

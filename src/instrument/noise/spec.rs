@@ -12,7 +12,7 @@ pub enum NoiseSpec {
     None,
     /// Noise-equivalent temperature difference.
     Netd {
-        /// NETD of one frame, K.
+        /// NETD of one frame as it is measured, with the shot noise of its photons, K.
         netd_k: f64,
         /// Temperature of the blackbody at which it is stated, K.
         temperature_k: f64,
@@ -41,6 +41,12 @@ pub enum NoiseSpec {
     SpectralRadiance {
         /// NESR, µflick (µW cm⁻² sr⁻¹ µm⁻¹).
         microflick: f64,
+        /// f-number at which it is stated.
+        f_number: f64,
+        /// Optics efficiency with which it is stated.
+        optics_efficiency: f64,
+        /// Side of the pixel for which it is stated, m.
+        pixel_m: f64,
     },
     /// Standard deviation of a band reading.
     Counts {
@@ -82,22 +88,6 @@ impl NoiseSpec {
         }
         let (wavenumbers_cm1, sigma_counts) = rows.into_iter().unzip();
         Ok(Self::Table { wavenumbers_cm1, sigma_counts })
-    }
-
-    /// The same kind of noise with a deviation σ `factor` times as large.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        let mut noise = self.clone();
-        match &mut noise {
-            Self::None => {}
-            Self::Netd { netd_k, .. } => *netd_k *= factor,
-            Self::Detectivity { detectivity_cm_hz05_w, .. } => *detectivity_cm_hz05_w /= factor,
-            Self::Nep { nep_w_hz05, .. } => *nep_w_hz05 *= factor,
-            Self::SpectralRadiance { microflick } => *microflick *= factor,
-            Self::Counts { sigma_counts } => *sigma_counts *= factor,
-            Self::Table { sigma_counts, .. } => sigma_counts.iter_mut().for_each(|sigma| *sigma *= factor),
-        }
-        noise
     }
 
     /// Key of a scenario that states this kind.

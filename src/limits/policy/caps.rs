@@ -229,6 +229,8 @@ mod tests {
     fn trial() -> Trial {
         let mut camera = presets::get("flir-a325sc").unwrap();
         (camera.full_well, camera.frame_rate_hz) = (Some(1e7), Some(60.0));
+        // The paper's lens contradicts its view; here it is one of 320 pixels across 50 degrees.
+        camera.focal_length_m = camera.pixel_m * 320.0 / 50f64.to_radians();
         Trial { camera, distance_m: Some(30.0) }
     }
 

@@ -61,7 +61,7 @@ impl Lever {
             Self::Exposure => camera.exposure_s *= factor,
             Self::Pixel => camera.pixel_m *= factor,
             Self::FNumber => camera.f_number *= factor,
-            Self::Noise => camera.noise = camera.noise.scaled(factor),
+            Self::Noise => camera.noise = camera.noise_scaled(factor),
             Self::Frames => {
                 let step = camera.quantisation_step_counts().unwrap_or(0.0);
                 let var = camera.read_noise_counts.powi(2) + step * step / 12.0;

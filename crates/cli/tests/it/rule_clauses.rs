@@ -108,6 +108,30 @@ fn pixels_on_the_target_are_geometry() {
     assert!(close(coarse.value.unwrap(), pixels(60e-6 / 18e-3), 1e-12));
 }
 
+/// 640 pixels behind the lens fill the stated view; to say that there are 8 made the blur 0.029 pixels: the finer pixel moves through the wider view.
+#[test]
+fn pixels_that_contradict_the_view_do_not_sharpen_a_rule() {
+    let with = |more: &str| {
+        let camera = format!(
+            "[[camera]]\nname = \"narrow\"\npreset = \"flir-boson-plus-640\"\nf_number = 1.0\nfocal_length = \"35 mm\"\nfield_of_view = \"12.5 deg\"\n{more}"
+        );
+        only(
+            &(NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "").replace("60 km/h", "30 km/h").replace(
+                "[\"8 um\", \"9 um\"], [\"9 um\", \"10 um\"], [\"11 um\", \"12 um\"]",
+                "[\"8 um\", \"13 um\"]",
+            ) + &camera),
+        )
+    };
+    let blurred = |camera: &CameraVerdict| camera.fails_by.iter().any(|by| by.code() == "motion-blur");
+    let said = |camera: &CameraVerdict| {
+        camera.warnings.iter().any(|warning| warning.code().name() == "contradictory-view")
+    };
+    let (own, few, sharp) = (with(""), with("pixels = 8\n"), with("pixels = 8\nexposure = \"1 ms\"\n"));
+    assert!(blurred(&own) && !said(&own));
+    assert!(blurred(&few) && said(&few));
+    assert!(!blurred(&sharp) && said(&sharp));
+}
+
 /// The speed of the rule is that of clauses that demand quantities: what moves by a pixel spoils a temperature and a depth, and the way
 /// while a frame is exposed is as fine as a target is seen.
 #[test]
@@ -125,8 +149,8 @@ fn quantities_are_demanded_at_the_speed_of_the_rule() {
     let warm = "kind = \"temperature-error\"\n[clause.requirement]\ntemperature_error = \"90 K\"\n";
     let depth = "kind = \"depth-error\"\n[clause.requirement]\ndepth_error = \"50 m\"\nshare = 0.1\n[clause.stereo]\n\
                  baseline = \"0.3 m\"\n[clause.scene]\nsize = [60, 80]\n";
-    // A pixel at 5 m in 12 ms by the finer angle, 2/3 mrad: v sin(320/3000) 12 ms = 5 m/1500, v = 2.61 m/s.
-    let fastest = 5.0 / 1500.0 / 0.012 / (320.0_f64 / 3000.0).sin();
+    // A pixel at 5 m in 12 ms by the finer angle, 2/3 mrad, from the edge of the stated view: v sin(25 deg) 12 ms = 5 m/1500.
+    let fastest = 5.0 / 1500.0 / 0.012 / 25f64.to_radians().sin();
     for clause in [warm, depth] {
         let [slow, fast] = [0.99, 1.01].map(|share| format!("{} m/s", share * fastest));
         assert!(!blurred(&slow, clause) && blurred(&fast, clause), "{clause}");
@@ -183,7 +207,7 @@ fn a_temperature_is_known_as_well_as_the_netd_says() {
         [bands]\nranges = [[\"8 um\", \"14 um\"]]\nintegrate = true\n[unknown]\nnuisances = [\"temperature\"]\n\
         [[clause]]\nname = \"t\"\nkind = \"temperature-error\"\n[clause.requirement]\ntemperature_error = \"0.1 K\"\ncoverage_factor = 1\n\
         [[camera]]\nexposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"14 mm\"\n\
-        netd = \"50 mK\"\nnetd_temperature = \"30 degC\"\nframes = 16\n";
+        netd = \"50 mK\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.0\nframes = 16\n";
     let camera = measured(text);
     // 50 mK over √16; the band of the camera's own figure is that of the paper, 8 to 14 um and no other.
     let value = camera.value.unwrap();

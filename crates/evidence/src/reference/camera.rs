@@ -115,14 +115,17 @@ fn reading_sigma(camera: &Camera, bands: &Bands) -> Result<Vec<Extended>> {
         NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
             let [low, high] = camera.spectral_range_cm1;
             let nodes: Vec<f64> = (0..=(high - low) as usize).map(|i| low + i as f64).collect();
-            let slope: Extended = Blackbody::new(&nodes, &number(temperature_k)).slopes.into_iter().sum();
+            let blackbody = Blackbody::new(&nodes, &number(temperature_k));
+            let [all, slope]: [Extended; 2] =
+                [blackbody.values, blackbody.slopes].map(|of| of.into_iter().sum());
             let stated = Camera { f_number, pixel_m, ..camera.clone() };
-            let per_kelvin = etendue_m2_sr(&stated, None)
+            let counted = etendue_m2_sr(&stated, None)
                 * number(optics_efficiency)
                 * number(camera.quantum_efficiency)
-                * &time
-                * slope;
-            vec![number(netd_k) * per_kelvin; bands.len()]
+                * &time;
+            // What is measured contains the shot noise of the photons.
+            let measured = number(netd_k) * &counted * slope;
+            vec![(measured.square() - counted * all).sqrt(); bands.len()]
         }
         NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
             let side_cm = number(camera.pixel_m) * number(100.0);

@@ -85,7 +85,7 @@ pub(super) fn topic() -> Result<Topic> {
         ),
         (
             "netd",
-            "noise of a data sheet: NETD times dN/dT of a blackbody of 303.15 K",
+            "noise of a data sheet: NETD times dN/dT of a blackbody of 303.15 K, less the shot noise of its photons, in squares",
             Camera { noise: netd(0.05, &base), ..base.clone() },
             far,
         ),

@@ -5,7 +5,7 @@ use super::json::Json;
 
 /// The number of the answers. It rises when one changes beyond its tolerance, when inputs of a vector change, or when a vector
 /// goes; vectors may be added without.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// The number of the form of the files. It rises when a key goes or changes its meaning.
 pub const SCHEMA: u32 = 1;

@@ -186,7 +186,7 @@ fn noise(preset: &Preset) -> String {
         Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => {
             format!("NEP {} W/Hz^0.5{}", significant(nep_w_hz05, 3), bandwidth(bandwidth_hz))
         }
-        Some(StatedNoise::Nesr { microflick, wavelength_um }) => {
+        Some(StatedNoise::Nesr { microflick, wavelength_um, .. }) => {
             let at = wavelength_um.map_or_else(String::new, |um| {
                 let (all, slope) = blackbody_microflick(um, 300.0);
                 let kelvin = quantity(microflick / slope, "K");

@@ -1,5 +1,6 @@
 //! What a scenario leaves silent: unknowns and ranges, and the echo that says everything.
 
+use super::super::camera::with_filed_noise;
 use hadar::error::{Error, Result};
 use hadar::fisher::Unknowns;
 use hadar::identifiability::nearest::StateRange;
@@ -52,6 +53,7 @@ pub(super) fn fill(
     scenario.alternatives.temperature_range_k = Some(range.temperature_k);
     scenario.alternatives.lighting_range = Some(range.lighting);
     if let (Some(spec), Some(camera)) = (scenario.camera.as_mut(), camera) {
+        *spec = with_filed_noise(spec);
         // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
         // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
         let used = CameraSpec::of(camera);

@@ -6,7 +6,7 @@
 //! one; frames must fit into the least time that any speed leaves.
 
 use super::results::{ApproachResult, StopResult};
-use crate::{Shortfall, Warning};
+use crate::Shortfall;
 use hadar::instrument::Camera;
 use hadar::policy::Motion;
 use hadar::policy::stop::Stop;
@@ -39,16 +39,14 @@ impl Moving {
 
     /// Pixels that the picture moves while all bands are exposed, at most; `None` without a distance.
     pub(super) fn blur_pixels(self, camera: &Camera, bands: usize) -> Option<f64> {
-        let [finer, _] = camera.pixel_angles_rad();
-        let motion = Motion::by(camera, finer, self.distance_m)?;
+        let motion = Motion::of(camera, self.distance_m)?;
         Some(motion.blur_pixels(self.speed_m_s, camera.sweep_s(bands)))
     }
 
     /// How far it moves across the line of sight meanwhile, at most, in m at the target.
     pub(super) fn blur_m(self, camera: &Camera, bands: usize) -> Option<f64> {
-        let [_, coarser] = camera.pixel_angles_rad();
-        let motion = Motion::by(camera, coarser, self.distance_m)?;
-        Some(motion.blur_pixels(self.speed_m_s, camera.sweep_s(bands)) * coarser * self.distance_m?)
+        let motion = Motion::of(camera, self.distance_m)?;
+        Some(motion.blur_m(self.speed_m_s, camera.sweep_s(bands)))
     }
 }
 
@@ -105,12 +103,6 @@ pub(super) fn spoiled(
     };
     let late = stop.and_then(|stop| Approach::of(stop, camera, bands).shortfall());
     blurred.into_iter().chain(late).collect()
-}
-
-/// What a reader must know of a camera whose picture is judged by its figures.
-pub(super) fn contradiction(camera: &Camera) -> Option<Warning> {
-    let [finer_rad, coarser_rad] = camera.pixel_angles_rad();
-    camera.contradicts_its_view().then_some(Warning::ContradictoryView { finer_rad, coarser_rad })
 }
 
 impl StopResult {

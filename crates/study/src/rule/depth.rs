@@ -7,12 +7,13 @@
 //! which no window shows the object is not met.
 
 use super::apart::steps;
-use super::approach::{Approach, Moving, contradiction, spoiled};
+use super::approach::{Approach, Moving, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
 use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
 use crate::rests_on::{of_figures, of_measured};
+use crate::warn::contradiction;
 use crate::warning::by_code;
 use crate::{Shortfall, Warning};
 use hadar::error::{Error, Result};

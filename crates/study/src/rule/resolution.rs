@@ -12,6 +12,7 @@ use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use crate::Shortfall;
 use crate::rests_on::of_measured;
+use crate::warn::contradiction;
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
 use hadar_scenario::Rule;
@@ -119,7 +120,7 @@ impl Resolution {
             limiting: MeasuredScene { distance_m: Some(distance_m), ..MeasuredScene::default() },
             conditions,
             approach: self.approach(&named.camera, bands).map(|approach| approach.result),
-            warnings: super::approach::contradiction(&named.camera).into_iter().collect(),
+            warnings: contradiction(&named.camera).into_iter().collect(),
         })
     }
 }

@@ -6,13 +6,14 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
-use super::approach::{contradiction, spoiled};
+use super::approach::spoiled;
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
 use crate::condition::{Condition, hardest_first};
 use crate::proviso::Proviso;
 use crate::rests_on::Circumstances;
+use crate::warn::contradiction;
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;

@@ -5,7 +5,7 @@
 //! in the envelope: corners and scenes between them are looked at, then the largest is followed uphill, one range after the other,
 //! in ever smaller steps. Nothing proves that no scene is worse.
 
-use super::approach::{Approach, Moving, contradiction, spoiled};
+use super::approach::{Approach, Moving, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
@@ -13,6 +13,7 @@ use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use super::{apart, cameras};
 use crate::rests_on::{of_figures, of_measured};
+use crate::warn::contradiction;
 use crate::{Shortfall, Study};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;

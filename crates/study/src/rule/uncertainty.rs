@@ -20,13 +20,14 @@ use super::cameras::Named;
 use crate::{Shortfall, camera};
 use hadar::error::{Error, Place, Result};
 use hadar::identifiability::detection;
-use hadar::instrument::figures::{self, Kind, Part};
+use hadar::instrument::figures::{self, Kind};
 use hadar::instrument::{Camera, presets};
 use hadar::lattice_points::GoldenLattice;
 use hadar::order;
 use hadar::parallel;
 use hadar_scenario::CameraSpec;
 use hadar_scenario::rule::Verdict;
+use std::sync::Arc;
 
 /// Draws of figures alone, which a lattice spreads evenly, and with errors of emissivities, which are random.
 const DRAWS: usize = 512;
@@ -113,11 +114,9 @@ impl<'a> Uncertain<'a> {
         (coverage_factor, emissivities): (f64, bool),
         place: &'a (dyn Fn(&str) -> Place + Sync),
     ) -> Result<Option<Self>> {
-        let is_noise = |key: &&&str| figures::row(key).is_some_and(|row| row.part == Part::Noise);
-        let spec = match named.uncertainty.keys().find(is_noise) {
-            Some(_) => camera::with_own_noise(&named.spec),
-            None => named.spec.clone(),
-        };
+        // Whatever of it is uncertain, its noise is the one that is stated.
+        let filed = named.spec.filed.clone().unwrap_or_else(|| Arc::new(named.spec.clone()));
+        let spec = CameraSpec { filed: Some(filed), ..named.spec.clone() };
         let preset = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
         let stated = |row: &figures::Row| row.number(&spec).or_else(|| row.number(&preset.as_ref()?.figures));
         let mut known = Vec::with_capacity(named.uncertainty.len());

@@ -61,7 +61,7 @@ impl Study {
         if let Some(camera) = camera.filter(noisy) {
             let flicker = camera.flicker_fraction;
             let alone = |share: f64, flicker_fraction: f64| Camera {
-                noise: camera.noise.scaled(share.sqrt()),
+                noise: camera.noise_scaled(share.sqrt()),
                 flicker_fraction,
                 ..camera.clone()
             };

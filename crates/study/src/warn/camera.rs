@@ -3,9 +3,8 @@
 use super::super::identify::PairResult;
 use super::super::size::CameraResult;
 use super::super::{Proviso, Study, Warning};
-use hadar::instrument::{Camera, CameraSpec};
+use hadar::instrument::Camera;
 use hadar::policy::caps::longest_wavelength_m;
-use hadar_scenario::Source;
 
 /// Relative difference between shortcut and exact statistical distance worth a word.
 const SHORTCUT: f64 = 0.1;
@@ -14,21 +13,10 @@ const HALF: f64 = 0.5 + 1e-9;
 /// Radius of the first dark ring of a point's image, in units of λF.
 const AIRY: f64 = 1.22;
 
-/// Figures that are set in the place of the file's beside a noise of its own that is stated for no value of them.
-pub(crate) fn noise_that_moves(spec: &CameraSpec, source: &Source) -> Vec<Warning> {
-    let noise = &spec.noise;
-    let of_netd = noise.netd_k.is_some();
-    let conditions = [
-        ("exposure", "noise_exposure", spec.states_noise() && spec.noise_exposure_s.is_none()),
-        ("f_number", "netd_f_number", of_netd && noise.netd_f_number.is_none()),
-        ("pixel", "netd_pixel", of_netd && noise.netd_pixel_m.is_none()),
-    ];
-    let is_set = |figure: &str| {
-        let key = format!("camera.{figure}");
-        source.settings.iter().any(|setting| setting.key == key)
-    };
-    let moving = conditions.into_iter().filter(|(figure, _, silent)| *silent && is_set(figure));
-    moving.map(|(figure, condition, _)| Warning::NoiseMovesWithFigure { figure, condition }).collect()
+/// That the figures of a camera which say what a pixel sees contradict each other.
+pub(crate) fn contradiction(camera: &Camera) -> Option<Warning> {
+    let [finer_rad, coarser_rad] = camera.pixel_angles_rad();
+    camera.contradicts_its_view().then_some(Warning::ContradictoryView { finer_rad, coarser_rad })
 }
 
 impl Study {
@@ -38,6 +26,7 @@ impl Study {
         let found = [
             shortcut(pair),
             self.motion(result),
+            contradiction(camera).filter(|_| self.angle_matters()),
             self.proviso(camera).map(Warning::FramesInMotion),
             full_well(result),
             self.small_target(camera),
@@ -61,6 +50,11 @@ impl Study {
             return Some(Warning::MotionBlurUnknown);
         };
         (blur >= 1.0).then_some(Warning::MotionBlur { pixels: blur })
+    }
+
+    /// Whether what a pixel sees is used: for motion blur, or for the share of it that the target fills.
+    const fn angle_matters(&self) -> bool {
+        self.scenario.requirement.speed_m_s.is_some() || self.scenario.target.size_m.is_some()
     }
 
     /// Filters without the light they throw back, or a sensor's temperature without filters.

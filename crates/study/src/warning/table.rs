@@ -251,8 +251,6 @@ warnings! {
     BrightestNoise = "brightest-noise";
     /// Frames that take time while something moves.
     FramesInMotion(Proviso) = "frames-in-motion";
-    /// A figure that is set beside a noise that holds for it.
-    NoiseMovesWithFigure { figure: &'static str, condition: &'static str } = "noise-moves-with-figure";
 
     /// Samples of a cube that were looked at.
     SamplesNotChecked { evaluated: usize, samples: usize } = "samples-not-checked";

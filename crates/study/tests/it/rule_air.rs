@@ -20,7 +20,7 @@ fn rule(target: &str, others: &str, range: [&str; 2], demanded: f64, more: &str)
          [\"1072.5 cm^-1\", \"1250.5 cm^-1\"]]\n\
          [requirement]\ndistance = {demanded}\n{more}[envelope]\ndistance = [\"{nearest}\", \"{farthest}\"]\n\
          [[camera]]\nname = \"camera\"\nexposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\n\
-         focal_length = \"24 mm\"\nnetd = \"30 mK\"\nnetd_temperature = \"30 degC\"\nframes = 100\n"
+         focal_length = \"24 mm\"\nnetd = \"30 mK\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.0\nframes = 100\n"
     )
 }
 

@@ -304,7 +304,7 @@ prop_compose! {
     fn camera()(
         preset in proptest::option::of("[a-z][a-z0-9-]{0,12}"),
         quantities in proptest::collection::vec(proptest::option::of(above_zero()), 18),
-        shares in proptest::collection::vec(proptest::option::of(1e-9..=1.0), 3),
+        shares in proptest::collection::vec(proptest::option::of(1e-9..=1.0), 4),
         f_numbers in proptest::collection::vec(proptest::option::of(0.5..1e3), 2),
         which_noise in 0..6usize,
         readout in proptest::option::of(proptest::sample::select(Readout::ALL.to_vec())),
@@ -320,6 +320,7 @@ prop_compose! {
                 // Blackbodies are from 50 K to 5000 K.
                 netd_temperature_k: quantities[6].map(|value| 50.0 + 4950.0 * (value / (1.0 + value))),
                 netd_f_number: f_numbers[1],
+                netd_optics_efficiency: shares[3],
                 netd_pixel_m: quantities[8],
                 detectivity_cm_hz05_w: noise(1),
                 nep_w_hz05: quantities[10].filter(|_| which_noise == 3),

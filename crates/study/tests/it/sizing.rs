@@ -1,5 +1,6 @@
 //! From a requirement to a camera and back, and scenarios that say the same thing in other units.
 
+use hadar::instrument::figures::NoiseFigures;
 use hadar::material::Library;
 use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Scenario;
@@ -238,6 +239,27 @@ fn the_units_of_temperatures_and_priors_do_not_matter() {
     assert!((a.pairs[0].distance_nearest / b.pairs[0].distance_nearest - 1.0).abs() < 1e-9);
 }
 
+/// 12.5 degrees behind 35 mm are 640 pixels of 12 um; that there are 8 of them contradicts it, is said, and makes the blur no less.
+#[test]
+fn pixels_that_contradict_the_view_do_not_sharpen_the_picture() {
+    let camera = "[camera]\npreset = \"flir-boson-plus-640\"\nf_number = 1.0\nfocal_length = \"35 mm\"\nfield_of_view = \"12.5 deg\"\n";
+    let scene = PAIR.replace("[target]", "[target]\ndistance = \"20 m\"");
+    let sized = |more: &str| size(&format!("{scene}\n[requirement]\nspeed = \"30 km/h\"\n{camera}{more}"));
+    let blur = |sized: &Sizing| sized.camera.as_ref().unwrap().motion_blur_pixels.unwrap();
+    let said =
+        |sized: &Sizing| sized.warnings.iter().any(|warning| warning.code().name() == "contradictory-view");
+    let (own, few) = (sized(""), sized("pixels = 8\n"));
+    // One frame of 60 Hz at the edge of the view, by hand; 0.4 % between the lens and the view is no contradiction.
+    let by_hand = 30.0 / 3.6 / 60.0 * 6.25_f64.to_radians().sin() / (20.0 * 12e-6 / 35e-3);
+    assert!((blur(&own) / by_hand - 1.0).abs() < 0.01 && !said(&own), "{}", blur(&own));
+    assert!((blur(&few) / by_hand - 1.0).abs() < 1e-9 && said(&few), "{}", blur(&few));
+    assert!(few.verdict.fails_by.iter().any(|by| by.code() == "motion-blur"));
+    // The solver and the limits on the exposure go by the same blur.
+    let solved = &few.solve_for.as_ref().unwrap().0;
+    let speed = solved.iter().find(|(quantity, _)| *quantity == Quantity::Speed).unwrap();
+    assert!((speed.1.camera * blur(&few) / (30.0 / 3.6) - 1.0).abs() < 1e-9);
+}
+
 /// A camera of the scenario's own, not a preset: its NETD is stated under the conditions it was written with, so the
 /// filled-in scenario with only the solved quantity changed gives the demanded distance.
 #[test]
@@ -269,8 +291,9 @@ fn a_camera_of_ones_own_can_be_fed_back() {
             Quantity::Exposure => camera.exposure_s = Some(value),
             Quantity::Pixel => camera.pixel_m = Some(value),
             Quantity::FNumber => camera.f_number = Some(value),
+            // The electronic part alone is solved for, not the shot noise that an NETD contains.
             Quantity::Noise => {
-                camera.noise.netd_k = camera.noise.netd_k.map(|netd| netd * value / solution.camera)
+                camera.noise = NoiseFigures { electrons: Some(value), ..NoiseFigures::default() }
             }
             Quantity::Frames => camera.frames = Some(value as u32),
             Quantity::Distance | Quantity::Speed => continue,

@@ -71,7 +71,7 @@ fn distance_and_speed_can_be_fed_back() {
     let exposure = solution(&sizing, Quantity::Exposure).value.unwrap();
     let text = SCENE
         .replace("\"30 mph\"", &format!("\"{speed:e} m/s\""))
-        .replace("netd =", &format!("exposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd ="));
+        .replace("netd =", &format!("exposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.3\nnetd ="));
     let then = size(&text);
     assert!((reached(&then) - 1.0).abs() < 1e-9, "{}", reached(&then));
     let blur = then.camera.unwrap().motion_blur_pixels.unwrap();
@@ -121,7 +121,7 @@ fn points_of_the_curves_meet_the_demand() {
         let point = &curves[0].points[i];
         let (f_number, exposure) = (point.x, point.y.unwrap());
         let keys = format!(
-            "f_number = {f_number:e}\nexposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd_f_number = 1.3\nnetd ="
+            "f_number = {f_number:e}\nexposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.3\nnetd ="
         );
         let there = reached(&size(&SCENE.replace("netd =", &keys)));
         assert!((there - 1.0).abs() < 1e-9, "f/{f_number}, {exposure} s: {there}");
@@ -223,7 +223,7 @@ fn elasticities_are_those_of_whole_answers() {
         SCENE.replace(
             "netd =",
             &format!(
-                "{keys}\nnoise_exposure = \"12 ms\"\nnetd_pixel = \"12 um\"\nnetd_f_number = 1.3\nnetd ="
+                "{keys}\nnoise_exposure = \"12 ms\"\nnetd_pixel = \"12 um\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.3\nnetd ="
             ),
         )
     };

@@ -53,7 +53,7 @@ impl CameraTask<'_> {
             Quantity::FNumber => camera.f_number = value,
             Quantity::Noise => {
                 let now = self.value(Quantity::Noise);
-                camera.noise = camera.noise.scaled(if now > 0.0 { value / now } else { 0.0 });
+                camera.noise = camera.noise_scaled(if now > 0.0 { value / now } else { 0.0 });
             }
             // A cast saturates: more frames than fit are as good as endless.
             Quantity::Frames => camera.frames = (value as u32).max(1),

@@ -147,6 +147,7 @@ fn distance_does_not_matter_to_a_target_that_fills_its_pixels() {
 fn the_largest_speed_is_that_of_the_least_exposure() {
     let mut camera = presets::get("ideal-pnrd").unwrap();
     (camera.pixels, camera.field_of_view_rad) = (Some(320), Some(0.4));
+    camera.focal_length_m = camera.pixel_m * 320.0 / 0.4;
     let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
     for share in [0.1, 1.0, 7.0] {
         let required = share * one_band(&own(&camera)).unwrap();

@@ -119,9 +119,11 @@ fn camera_toml(camera: &Camera) -> String {
     let thousandths = |value: f64| (value * 1e3).round() / 1e3;
     let [exposure_ms, noise_ms] = [camera.exposure_s, camera.noise_exposure_s].map(|s| thousandths(s * 1e3));
     let noise = match camera.noise {
-        NoiseSpec::Netd { netd_k, temperature_k, .. } => {
+        NoiseSpec::Netd { netd_k, temperature_k, f_number, .. } => {
             let netd_mk = thousandths(netd_k * 1e3);
-            format!("netd = \"{netd_mk} mK\"\nnetd_temperature = \"{temperature_k:?} K\"\n")
+            format!(
+                "netd = \"{netd_mk} mK\"\nnetd_temperature = \"{temperature_k:?} K\"\nnetd_f_number = {f_number:?}\n"
+            )
         }
         NoiseSpec::Counts { sigma_counts } => format!("noise_electrons = {sigma_counts:?}\n"),
         _ => String::new(),

@@ -55,8 +55,9 @@ words! {
             and its pixels.",
         remedy: "Correct the figure that is wrong: pixel, focal_length, field_of_view or pixels.",
         ContradictoryView { finer_rad, coarser_rad } => format!(
-            "its figures contradict each other: a pixel sees {} or {} mrad, by its side and the focal length or by the view and \
-             the pixels across it; the coarser counts for pixels on the target, the finer for motion blur",
+            "its figures contradict each other: a pixel sees {} or {} mrad, by its side and the focal length or by the field of \
+             view and the pixels across it; motion blur is the largest that any three of the four figures make, and a rule counts \
+             pixels on the target by the coarser angle",
             significant(1e3 * finer_rad, 3),
             significant(1e3 * coarser_rad, 3)
         ),

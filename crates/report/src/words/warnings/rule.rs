@@ -38,15 +38,6 @@ words! {
             short(*way_m)
         ),
     }
-    NoiseMovesWithFigure {
-        meaning: "A figure of the camera is set in the place of the file's, and its noise is not stated for \
-            a value of it: the noise moves with it.",
-        remedy: "Write the condition into the file beside the noise.",
-        NoiseMovesWithFigure { figure, condition } => format!(
-            "camera.{figure} is set, and camera.{condition} is not stated: the noise is taken to hold for what is set, as in a file \
-             that says so, and another {figure} is another noise"
-        ),
-    }
 }
 
 impl Say for NotInForce {
