@@ -2,7 +2,7 @@
 
 use hadar::error::{Error, Place, Result};
 use hadar::grid::Grid;
-use hadar::instrument::figures::{self, Kind, NOISES, NoiseFigures, Part, TABLE};
+use hadar::instrument::figures::{self, Kind, NOISES, NoiseFigures, Part, StatedNoise, TABLE};
 use hadar::instrument::presets::{self, Preset};
 use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec};
 use hadar_formats::file::text_of_file;
@@ -74,7 +74,11 @@ pub fn with_noise_kept(spec: &CameraSpec, filed: &CameraSpec) -> CameraSpec {
         Ok::<_, Error>((stated.noise_in_full(), stated.noise_table))
     };
     match (in_full(&moved), in_full(&alone)) {
-        (Ok((own, table)), Ok(other)) if (&own, &table) != (&other.0, &other.1) && !own.0.is_none => {
+        (Ok((own, table)), Ok(other))
+            if (&own, &table) != (&other.0, &other.1)
+                && (own.0.table.is_some()
+                    || own.0.stated().is_some_and(|noise| noise != StatedNoise::None)) =>
+        {
             let (noise, noise_exposure_s) = own;
             CameraSpec { noise, noise_exposure_s, ..alone }
         }
