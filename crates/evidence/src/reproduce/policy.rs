@@ -5,7 +5,9 @@ use super::order::{Figures, Made};
 use super::scene;
 use hadar::error::Result;
 use hadar::identifiability::detection;
+use hadar::instrument::Camera;
 use hadar::planck;
+use hadar::policy::Motion;
 use hadar::spectrum::Bands;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_report::size;
@@ -80,7 +82,11 @@ fn verdicts(result: &Sizing) -> Option<Vec<Line>> {
 fn camera(result: &Sizing) -> Option<Vec<Line>> {
     let camera = result.camera.as_ref()?;
     let reference = camera.camera.figures().ok()?;
-    let blur = camera.motion_blur_pixels?;
+    // As the paper has it: the lens is that of the view and the pixels across it, which its pixel and focal length contradict.
+    let (view_rad, pixels) = camera.camera.view_and_pixels()?;
+    let of_view = Camera { focal_length_m: camera.camera.pixel_m * pixels / view_rad, ..camera.camera.clone() };
+    let motion = Motion::of(&of_view, result.scenario.target.distance_m)?;
+    let blur = motion.blur_pixels(result.scenario.requirement.speed_m_s?, of_view.exposure_s);
     Some(vec![
         Line::compared(
             PLACE,
