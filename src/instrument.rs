@@ -19,6 +19,7 @@
 //!
 //! Source: paper S7–S16, Tables S1 and S2, Methods 'Guiding public policy'.
 
+mod assumed;
 pub mod budget;
 pub mod bunching;
 mod camera;
@@ -34,6 +35,7 @@ pub mod presets;
 mod readout;
 pub mod view;
 
+pub use assumed::{Assumed, PAPER_RANGE_CM1};
 pub use budget::NoiseLine;
 pub use camera::{Camera, Figures, gamma_per_band};
 pub use comparison::Comparison;
@@ -41,7 +43,7 @@ pub use counting::Counting;
 pub use efficiency::EfficiencyCurve;
 pub use equivalents::Equivalents;
 pub use figures::{CameraSpec, Efficiency, FASTEST_F_NUMBER};
-pub use made::{Assumed, PAPER_RANGE_CM1, REFERENCE_K};
+pub use made::REFERENCE_K;
 pub use noise::NoiseSpec;
 pub use readout::Readout;
 pub use view::{Light, View};

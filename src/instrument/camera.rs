@@ -6,9 +6,10 @@
 //!
 //! Source: paper S7, Methods 'Guiding public policy'.
 
+use super::assumed::{Assumed, PAPER_RANGE_CM1};
 use super::counting::Counting;
 use super::figures::every_figure;
-use super::{Assumed, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, Readout, View};
+use super::{EfficiencyCurve, NoiseSpec, Readout, View};
 use crate::error::Result;
 use crate::planck;
 use crate::spectrum::Bands;

@@ -115,7 +115,11 @@ fn hangs(conditions: &Value) -> bool {
 fn hardest(conditions: &Value) -> Value {
     let codes = conditions.as_array().into_iter().flatten().filter(|one| one["favourable"] == true);
     let codes: Vec<&str> = codes.filter_map(|one| one["code"].as_str()).collect();
-    if codes.is_empty() { Value::Null } else { codes.join(" ").into() }
+    match codes.as_slice() {
+        [] => Value::Null,
+        [one] => (*one).into(),
+        [one, more @ ..] => format!("{one} +{}", more.len()).into(),
+    }
 }
 
 /// The answer about a rule with the camera of the largest margin first.
@@ -199,15 +203,18 @@ mod tests {
             answer,
         };
         let answer = json!({ "verdict": { "met": false, "margin": 0.05, "required_distance": 1.0 }, "limiting": "aluminium" });
-        let hangs = json!({ "verdict": { "met": true, "provided": "its 4 frames can be registered", "margin": 2.0 } });
+        let hangs = json!({ "verdict": { "met": true, "answer": "yes", "margin": 2.0, "conditions": [
+            { "code": "registered-frames", "favourable": true }, { "code": "no-air", "favourable": true },
+            { "code": "setting", "favourable": false },
+        ] } });
         let rows = [
             row("a.toml", Some(answer), None),
             row("b.toml", Some(hangs), None),
             row("longer.toml", None, Some("line 3: it is wrong")),
         ];
-        let expected = "scenario     verdict  provided                        limited by  reaches  demanded  margin   photons it takes\n\
-                        a.toml       no       -                               aluminium   -        1.000     0.05000  -\n\
-                        b.toml       yes, if  its 4 frames can be registered  -           -        -         2.000    -\n\
+        let expected = "scenario     verdict  if                    limited by  reaches  demanded  margin   photons it takes\n\
+                        a.toml       no       -                     aluminium   -        1.000     0.05000  -\n\
+                        b.toml       yes, if  registered-frames +1  -           -        -         2.000    -\n\
                         longer.toml  error: line 3: it is wrong\n\n1 of 3 scenarios without an answer.\n";
         assert_eq!(text(Question::Size, &rows), expected);
         let csv = bundle(Question::Size, &rows).unwrap();
@@ -220,7 +227,7 @@ mod tests {
             |name: &str, margin: f64| json!({ "name": name, "margin": margin, "passes": margin > 1.0 });
         let answer = json!({ "cameras": [camera("a", 0.5), camera("b", 2.0)] });
         let cells: Vec<String> = cells(Question::Rule, &answer).iter().map(shown).collect();
-        assert_eq!(cells, ["no", "1 of 2", "b", "2.000", "-"]);
+        assert_eq!(cells, ["no", "-", "1 of 2", "b", "2.000", "-"]);
     }
 
     /// Only a rule that holds on the day, of at least one camera, all of which pass, is a 'yes'.

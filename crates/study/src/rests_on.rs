@@ -2,7 +2,6 @@
 
 use crate::condition::{Condition, RangeDecides, hardest_first};
 use crate::proviso::Proviso;
-use crate::size::Sensitivity;
 use crate::{PairResult, Study};
 use hadar::demand::Skipping;
 use hadar::error::Result;
@@ -36,8 +35,8 @@ pub(crate) struct Circumstances {
 pub(crate) struct Reached<'a> {
     /// The pair that decides.
     pub(crate) pair: &'a PairResult,
-    /// What the verdict hangs on, where it was asked for.
-    pub(crate) sensitivity: Option<&'a Sensitivity>,
+    /// Error of the emissivities, root mean square, and the share of draws with such errors that meet the requirement; where it was asked for.
+    pub(crate) errors: Option<[f64; 2]>,
     /// Counts of the fullest reading.
     pub(crate) brightest: f64,
 }
@@ -55,11 +54,7 @@ impl Study {
         found.extend(
             self.one_numbers(&pair.alternative).map(|emissivities| Condition::Constants { emissivities }),
         );
-        if let Some(errors) = reached.sensitivity.map(|found| &found.emissivity)
-            && errors.share_met < SETTLED
-            && errors.distance > 0.0
-        {
-            let (error, share_met) = (errors.error, errors.share_met);
+        if let Some([error, share_met]) = reached.errors.filter(|[_, share_met]| *share_met < SETTLED) {
             found.push(Condition::Emissivities { error, share_met });
         }
         if let (false, Some([lower, _])) = (camera.photon_bunching, pair.statistical_distance_bounds) {

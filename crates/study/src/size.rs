@@ -343,7 +343,8 @@ impl Study {
             scenario.sensitivity.get_or_insert_default();
         }
         let brightest = camera.as_ref().map_or(0.0, |camera| own.brightest_member(&camera.camera));
-        let reached = Reached { pair, sensitivity: sensitivity.as_ref(), brightest };
+        let errors = sensitivity.as_ref().map(|found| [found.emissivity.error, found.emissivity.share_met]);
+        let reached = Reached { pair, errors, brightest };
         let verdict = own.verdict(&reached, index, &requirement, own.spoiled(camera.as_ref()))?;
         Ok(Sizing {
             scenario,

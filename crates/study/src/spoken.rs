@@ -7,6 +7,7 @@
 
 use crate::air_ranging::AirFinding;
 use crate::companion::{Caveat, Unknown};
+use crate::condition::Taken;
 use crate::range::DepthFinding;
 use crate::rule::{Certified, Definition, EmissivityError, IdealCamera, Quotable, WhoMeets};
 use crate::warning::Warning;
@@ -112,12 +113,17 @@ sentences!(
 
 impl Serialize for Condition {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Condition", 6)?;
+        let value = self.value();
+        let fields = if value == Taken::Nothing { 5 } else { 6 };
+        let mut object = serializer.serialize_struct("Condition", fields)?;
         object.serialize_field("code", &self.code())?;
         object.serialize_field("kind", self.kind().name())?;
         object.serialize_field("favourable", &self.favourable())?;
         object.serialize_field("figure", &self.figure())?;
-        object.serialize_field("value", &self.value())?;
+        match value {
+            Taken::Nothing => object.skip_field("value")?,
+            value => object.serialize_field("value", &value)?,
+        }
         object.serialize_field("sentence", &Spoken(Phrase::Condition(self)))?;
         object.end()
     }

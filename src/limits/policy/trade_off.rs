@@ -326,6 +326,8 @@ mod tests {
     fn traced(x: Quantity, y: Quantity) -> TradeOff {
         let mut camera = presets::get("ideal-pnrd").unwrap();
         (camera.pixels, camera.field_of_view_rad) = (Some(320), Some(0.4));
+        // The lens of that view.
+        camera.focal_length_m = camera.pixel_m * 320.0 / 0.4;
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         let task = CameraTask {
             camera: &camera,

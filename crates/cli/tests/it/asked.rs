@@ -195,7 +195,8 @@ fn a_noise_keeps_the_conditions_of_its_file() {
 fn a_noise_written_again_is_one_of_the_preset() {
     let folder = Folder::with(SCENARIO);
     let reached = |figures: &str| {
-        let camera = format!("preset = \"flir-boson-640-14mm\"\nf_number = 2.0\n{figures}");
+        let camera =
+            format!("preset = \"flir-boson-640-14mm\"\nf_number = 2.0\nreadout = \"sequential\"\n{figures}");
         folder.file("a.toml", &SCENARIO.replace("preset = \"flir-a325sc\"", &camera));
         folder.json(&["size", "a.toml"])["verdict"]["statistical_distance"].as_f64().unwrap()
     };
@@ -219,6 +220,12 @@ fn what_is_set_is_as_if_the_file_said_it() {
     of_set.as_object_mut().unwrap().remove("set");
     for answer in [&mut of_set, &mut of_file] {
         answer["stats"] = Value::Null;
+    }
+    // What was set is said among the conditions.
+    let set_in: Vec<Value> = of_set["verdict"]["conditions"].as_array().unwrap().clone();
+    assert!(set_in.iter().any(|one| one["code"] == "setting" && one["figure"] == "target.temperature"));
+    for answer in [&mut of_set, &mut of_file] {
+        answer["verdict"]["conditions"] = Value::Null;
     }
     assert_eq!(of_set, of_file);
 

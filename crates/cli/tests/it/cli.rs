@@ -116,10 +116,18 @@ fn check_tells_scripts_whether_the_requirement_is_met() {
         (&["size", "easy.toml", "--check"], 0),
         (&["size", "easy.toml", "--check", "--by", "local-unknown-gain"], 3),
     ] {
-        let outcome = folder.run(arguments);
+        let outcome =
+            if arguments.contains(&"--check") { folder.accepting(arguments) } else { folder.run(arguments) };
         assert_eq!(outcome.code, code, "{arguments:?}");
         assert!(!outcome.stdout.is_empty());
     }
+    // A 'yes' under conditions that nobody accepted is none that a script may rely on; one that does not exist is refused.
+    assert_eq!(folder.run(&["size", "easy.toml", "--check"]).code, 3);
+    let most: Vec<String> =
+        hadar_study::Condition::codes().into_iter().filter(|code| code != "still-scene").collect();
+    assert_eq!(folder.run(&["size", "easy.toml", "--check", "--accept", &most.join(",")]).code, 3);
+    let unknown = folder.run(&["size", "easy.toml", "--check", "--accept", "still-scen"]);
+    assert!(unknown.code == 2 && unknown.stderr.contains("`still-scene`"), "{}", unknown.stderr);
 }
 
 /// Every number of the second answer is that of the first, to the last bit or one.

@@ -253,14 +253,15 @@ fn a_check_ends_with_the_code_of_its_answer() {
             let expected =
                 identify(&folder, &["--by", by])["identifiability"]["identifiable"].as_bool().unwrap();
             let arguments = ["identify", "a.toml", "--by", by, "--check"];
-            let words = folder.run(&arguments);
-            let json = folder.run(&[&arguments[..], &["--json"]].concat());
+            let words = folder.accepting(&arguments);
+            let json = folder.accepting(&[&arguments[..], &["--json"]].concat());
+            assert_eq!(folder.run(&arguments).code, 3, "its conditions are accepted by nobody");
             let code = if expected { 0 } else { 3 };
             assert_eq!((words.code, json.code), (code, code), "{materials} by {by}");
             let json: Value = serde_json::from_str(&json.stdout).unwrap();
             assert_eq!(json["identifiable"], expected);
             assert_eq!(json["not_told_from"].is_null(), expected);
-            assert_eq!(words.stdout.lines().count(), 1);
+            assert_eq!(words.stdout.lines().count() == 1, !expected);
             let start = if expected {
                 "Yes: the camera tells skin from "
             } else if by == "nearest" {

@@ -175,7 +175,9 @@ fn json_has_the_agreed_keys() {
     );
     assert!(cameras[1]["fixes"].is_null());
     assert_eq!(json["rule"]["camera"][0]["preset"], "flir-a325sc");
-    assert_eq!(json["sentence"], "1 of 2 cameras meets the rule: ideal-pnrd.");
+    let meets =
+        "1 of 2 cameras meets the rule: ideal-pnrd (if the target fills a pixel, which sees 1.0 cm there).";
+    assert_eq!(json["sentence"], meets);
     for input in json["inputs"].as_array().unwrap() {
         assert_eq!(input["sha256"].as_str().unwrap().len(), 64, "{input}");
     }
@@ -202,7 +204,7 @@ fn check_tells_scripts_whether_cameras_meet_the_rule() {
         (&["rule", "a.toml", "--any"], 2),
         (&["rule"], 2),
     ] {
-        let outcome = folder.run(arguments);
+        let outcome = folder.accepting(arguments);
         assert_eq!(outcome.code, code, "{arguments:?}: {}{}", outcome.stdout, outcome.stderr);
     }
 }
@@ -463,9 +465,10 @@ fn blur_and_a_full_well_fail_a_camera_that_sees_enough() {
     let ours = answer.cameras.iter().find(|camera| camera.name == "ours").unwrap();
     assert!(ours.margin > 1.0 && !ours.passes);
     assert_eq!(ours.fails_by, [Shortfall::MotionBlur, Shortfall::FullWell]);
-    // Δ = v sin(Lα/2) t/(r α) at the least distance, by hand: 10 m/s, 320 pixels of 12 um behind 18 mm, 12 ms, 5 m.
+    // Δ = v sin(Lα/2) t/(r α) at the least distance, by hand: 10 m/s, 320 pixels of 12 um behind 18 mm, 12 ms, 5 m; a lens that keeps
+    // straight lines straight sees 0.2 % more of an angle by its view.
     let blur = 10.0 * (160.0 / 1500.0_f64).sin() * 12e-3 * 1500.0 / 5.0;
-    assert!((ours.motion_blur_pixels.unwrap() / blur - 1.0).abs() < 1e-12);
+    assert!((ours.motion_blur_pixels.unwrap() / blur - 1.0).abs() < 4e-3);
     // Light is proportional to the exposure: at the longest one nothing is spoiled, a little beyond it is.
     let longest = ours.longest_exposure_s.unwrap();
     for (share, passes) in [(0.999, true), (1.001, false)] {

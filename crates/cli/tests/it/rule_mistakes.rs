@@ -144,7 +144,7 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
         assert!(RULE.contains(line), "{line}");
         let folder = Folder::with(&RULE.replacen(line, instead, 1));
         if said.is_empty() {
-            assert_eq!(folder.run(&["rule", "a.toml", "--check", "--any"]).code, 0, "{instead}");
+            assert_eq!(folder.accepting(&["rule", "a.toml", "--check", "--any"]).code, 0, "{instead}");
             continue;
         }
         let message = folder.refusal(&["rule", "a.toml", "--out", "report"]);
@@ -187,7 +187,7 @@ fn scenes_are_lit_as_much_as_is_known() {
     }
     for lighting in ["", "lighting = [0.7, 0.7]\n"] {
         let folder = Folder::with(&known(lighting));
-        assert_eq!(folder.run(&["rule", "a.toml", "--check", "--any"]).code, 0, "{lighting}");
+        assert_eq!(folder.accepting(&["rule", "a.toml", "--check", "--any"]).code, 0, "{lighting}");
     }
     // Two objects that make up the total in every scene, and two that do not, before a camera and before a stand-in.
     let two = |lighting: &str| {

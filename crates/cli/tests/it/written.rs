@@ -240,7 +240,8 @@ fn a_check_is_a_line_a_camera() {
     let lines: Vec<&str> = outcome.stdout.lines().collect();
     assert_eq!(lines.len(), 2, "{}", outcome.stdout);
     assert!(
-        lines[0].starts_with("ideal-pnrd: proved: at least ")
+        lines[0].starts_with("ideal-pnrd: yes, if ")
+            && lines[0].contains(" more conditions: proved: at least ")
             && lines[0].ends_with(" times the demand everywhere")
     );
     assert!(

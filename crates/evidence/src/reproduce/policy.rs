@@ -84,7 +84,8 @@ fn camera(result: &Sizing) -> Option<Vec<Line>> {
     let reference = camera.camera.figures().ok()?;
     // As the paper has it: the lens is that of the view and the pixels across it, which its pixel and focal length contradict.
     let (view_rad, pixels) = camera.camera.view_and_pixels()?;
-    let of_view = Camera { focal_length_m: camera.camera.pixel_m * pixels / view_rad, ..camera.camera.clone() };
+    let of_view =
+        Camera { focal_length_m: camera.camera.pixel_m * pixels / view_rad, ..camera.camera.clone() };
     let motion = Motion::of(&of_view, result.scenario.target.distance_m)?;
     let blur = motion.blur_pixels(result.scenario.requirement.speed_m_s?, of_view.exposure_s);
     Some(vec![

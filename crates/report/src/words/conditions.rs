@@ -319,7 +319,7 @@ mod tests {
             holds: kelvin(holds),
         };
         let said = range([-273.0, 44.0]).say();
-        assert!(said.ends_with("(the answer holds down however far and up to 44 degC)"), "{said}");
+        assert!(said.ends_with("(the answer holds down however far and up to 44.00 degC)"), "{said}");
         assert!(range([0.0, 40.0]).say().ends_with("(beyond either end the answer changes)"));
     }
 }

@@ -64,6 +64,12 @@ impl Folder {
         Outcome::of(command.current_dir(self.path()).args(arguments))
     }
 
+    /// The same under every condition that a 'yes' may rest on.
+    pub(crate) fn accepting(&self, arguments: &[&str]) -> Outcome {
+        let all = hadar_study::Condition::codes().join(",");
+        self.run(&[arguments, &["--accept", &all]].concat())
+    }
+
     /// The same with a text on standard input.
     pub(crate) fn fed(&self, stdin: &str, arguments: &[&str]) -> Outcome {
         let mut command = Command::new(crate::PROGRAM);

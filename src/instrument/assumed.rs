@@ -1,0 +1,45 @@
+//! What stands for figures of a camera that nobody stated.
+
+/// The range in which the paper counts photons, cm⁻¹.
+pub const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
+
+/// A figure of a camera that nobody stated, and what stands for it.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Assumed {
+    /// Its key.
+    pub figure: &'static str,
+    /// What stands for it, with its unit.
+    pub taken: String,
+    /// Whether the camera may be worse than with that.
+    pub favourable: bool,
+}
+
+impl Assumed {
+    /// Keys of all figures that something may stand for.
+    pub const FIGURES: &'static [&'static str] = &[
+        "exposure",
+        "optics_efficiency",
+        "quantum_efficiency",
+        "netd_temperature",
+        "netd_f_number",
+        "netd_pixel",
+        "noise_exposure",
+        "spectral_range",
+        "flicker_fraction",
+        "readout",
+        "frame_rate",
+        "full_well",
+        "dark_rate",
+        "read_noise",
+        "quantisation_bits",
+    ];
+
+    pub(super) fn favourable(figure: &'static str, taken: impl Into<String>) -> Self {
+        Self { figure, taken: taken.into(), favourable: true }
+    }
+
+    /// No camera is worse than with that.
+    pub(super) fn worst(figure: &'static str, taken: impl Into<String>) -> Self {
+        Self { figure, taken: taken.into(), favourable: false }
+    }
+}
