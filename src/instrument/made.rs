@@ -113,9 +113,9 @@ impl Preset {
                 assumed.push(Assumed::favourable("readout", Readout::Simultaneous.name()));
                 Readout::Simultaneous
             }
-            // The slowest of all that is not known.
+            // The slowest, if not the worst for every noise.
             None => {
-                assumed.push(Assumed::worst("readout", Readout::Sequential.name()));
+                assumed.push(Assumed::favourable("readout", Readout::Sequential.name()));
                 Readout::Sequential
             }
         });
@@ -132,9 +132,13 @@ impl Preset {
         if figures.full_well.is_none() {
             assumed.push(Assumed::favourable("full_well", "never full"));
         }
-        if figures.noise_exposure_s.is_none() && is_noisy {
+        // A document states the noise of a frame of its camera.
+        if figures.noise_exposure_s.is_none() && is_noisy && self.name.is_empty() {
             let frame = format!("{:.4} ms, that of a frame", 1e3 * exposure_s);
             assumed.push(Assumed::favourable("noise_exposure", frame));
+        }
+        if figures.noise.netd_k.is_some() && figures.noise.netd_pixel_m.is_none() && self.name.is_empty() {
+            assumed.push(Assumed::favourable("netd_pixel", format!("{:.4} um, its own", 1e6 * pixel_m)));
         }
         let rest = [
             ("dark_rate", figures.dark_rate_per_s.is_none()),
@@ -288,10 +292,6 @@ fn noise_of(
             }
             if at.is_none() {
                 assumed.push(Assumed::favourable("netd_f_number", format!("f/{f_number}")));
-            }
-            if of.is_none() {
-                let pixel = format!("{:.4} um, its own", 1e6 * pixel_m);
-                assumed.push(Assumed::favourable("netd_pixel", pixel));
             }
             NoiseSpec::Netd {
                 netd_k,

@@ -235,6 +235,12 @@ impl Condition {
         }
     }
 
+    /// Whether a verdict rests on it: a 'no' on what was taken on the unfavourable side, and on a readout, which is slow where nobody says.
+    pub(crate) fn counts(&self, met: bool) -> bool {
+        let is_readout = matches!(self, Self::Assumed { figure, .. } if figure.figure == "readout");
+        met || is_readout || !self.favourable()
+    }
+
     /// The key that would settle it.
     #[must_use]
     pub fn figure(&self) -> Option<String> {

@@ -68,7 +68,7 @@ impl Study {
         if met && self.scenario.requirement.by == DistanceKind::Nearest {
             found.extend(self.ranges_that_decide()?);
         }
-        found.retain(|one| met || !one.favourable());
+        found.retain(|one| one.counts(met));
         hardest_first(&mut found);
         Ok(found)
     }
@@ -87,7 +87,7 @@ impl Study {
         if all && self.scenario.requirement.by == DistanceKind::Nearest {
             found.extend(self.ranges_that_decide()?);
         }
-        found.retain(|one| met || !one.favourable());
+        found.retain(|one| one.counts(met));
         hardest_first(&mut found);
         Ok(found)
     }
@@ -248,7 +248,7 @@ pub(crate) fn of_measured(
     let mut found = figures;
     found.extend(meanwhile(camera, bands, speed_m_s));
     found.extend(settings(set, true));
-    found.retain(|one| met || !one.favourable());
+    found.retain(|one| one.counts(met));
     hardest_first(&mut found);
     found
 }

@@ -291,7 +291,7 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
         }
     }
     for camera in &mut cameras {
-        camera.conditions.retain(|one| camera.passes || !one.favourable());
+        camera.conditions.retain(|one| one.counts(camera.passes));
         hardest_first(&mut camera.conditions);
     }
     cameras

@@ -391,7 +391,7 @@ impl Study {
         };
         let brightest = self.brightest_member(camera);
         let mut conditions = self.unstated(camera, brightest);
-        conditions.retain(|one| !one.favourable());
+        conditions.retain(|one| one.counts(false));
         hardest_first(&mut conditions);
         let sentence = Finding {
             camera: camera.name.clone(),

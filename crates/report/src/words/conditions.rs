@@ -68,7 +68,7 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "noise_exposure" => format!("its noise is that of an exposure of {taken}"),
         "spectral_range" => format!("its detector sees {taken} and no more"),
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),
-        "readout" => "all bands are read in one exposure".into(),
+        "readout" => format!("its readout is {taken}"),
         "frame_rate" => "exposures follow each other without a pause".into(),
         "full_well" => match counts {
             Some(counts) => format!("{} counts do not fill a pixel", significant(counts, 2)),
@@ -254,25 +254,24 @@ pub(crate) fn yes(conditions: &[Condition]) -> String {
     }
 }
 
-/// All conditions in a paragraph of their own; nothing without.
-pub(crate) fn paragraph(conditions: &[Condition]) -> String {
-    paragraph_of("", conditions)
+/// All conditions of a 'yes', or of a 'no', in a paragraph of their own; nothing without.
+pub(crate) fn paragraph(conditions: &[Condition], met: bool) -> String {
+    paragraph_of("", conditions, met)
 }
 
 /// The same of a camera among several.
-pub(crate) fn paragraph_of(camera: &str, conditions: &[Condition]) -> String {
+pub(crate) fn paragraph_of(camera: &str, conditions: &[Condition], met: bool) -> String {
     if conditions.is_empty() {
         return String::new();
     }
     let mut out = if camera.is_empty() { String::new() } else { format!("{camera}: ") };
-    let open: Vec<&Condition> = Condition::open(conditions).collect();
+    let (open, rest): (Vec<_>, Vec<_>) = conditions.iter().partition(|one| met && one.favourable());
     if !open.is_empty() {
         out += "A yes holds only if\n";
         for one in &open {
             let _ = writeln!(out, "  [{}] {}", one.code(), one.say());
         }
     }
-    let rest: Vec<&Condition> = conditions.iter().filter(|one| !one.favourable()).collect();
     if !rest.is_empty() {
         out += if open.is_empty() { "It rests on\n" } else { "It rests on as well\n" };
         for one in rest {
@@ -294,7 +293,7 @@ mod tests {
         let set = Condition::Setting { key: "camera.frames".into(), value: "256".into(), of_rule: false };
         let all = [still, Condition::NoAir, Condition::NoSurroundings, set];
         assert_eq!(yes(&all), "yes, if nothing moves for 88.0 s, and on 2 more conditions");
-        let said = paragraph(&all);
+        let said = paragraph(&all, true);
         assert_eq!(said.matches("\n  [").count(), 4, "{said}");
         assert!(said.contains("It rests on as well\n  [setting] camera.frames = 256"), "{said}");
     }

@@ -44,7 +44,8 @@ pub fn text(answers: &Answers, study: &Study) -> String {
     if let Some(found) = &answers.exact {
         out.push_str(&exact(found, study));
     }
-    out.push_str(&conditions::paragraph(&answers.identification.conditions));
+    let told = answers.identification.identifiability.told_from.unwrap_or(0);
+    out.push_str(&conditions::paragraph(&answers.identification.conditions, told > 0));
     out + &footing(&answers.identification, study)
 }
 
@@ -177,7 +178,7 @@ pub fn check(result: &Check, study: &Study) -> String {
             let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
             let verdict =
                 format!("{yes}: {camera} tells {target} from {all} with {reliability} reliability{by}.\n");
-            match conditions::paragraph(&result.conditions) {
+            match conditions::paragraph(&result.conditions, true) {
                 none if none.is_empty() => verdict,
                 all => format!("{verdict}\n{}\n", all.trim_end()),
             }

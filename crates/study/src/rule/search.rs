@@ -195,7 +195,7 @@ impl TellApart {
         let mut found = near.of_camera(camera, image.reading);
         found.extend(near.of_scene(camera, asked));
         found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
-        found.retain(|one| met || !one.favourable());
+        found.retain(|one| one.counts(met));
         hardest_first(&mut found);
         found
     }

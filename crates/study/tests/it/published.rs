@@ -8,9 +8,9 @@ use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
-use hadar::instrument::presets;
+use hadar::instrument::{Camera, presets};
 use hadar::material::Library;
-use hadar::policy;
+use hadar::policy::{self, Motion};
 use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::spectrum::Bands;
 use hadar_formats::ReadLibrary as _;
@@ -56,8 +56,13 @@ fn the_example_gives_the_main_table() {
     prints("H, S29", hardware.local_unknown_gain.unwrap(), "1.4e-11");
     prints("nearest robot, degC", pair.nearest_state.temperature_k - ZERO_CELSIUS_K, "82.80");
     prints("nearest robot, V", pair.nearest_state.lighting[0], "0.187");
-    // 6a: 30 mph at 30 m; 6e: the information at d = 1.
-    prints("motion blur, pixels", sizing.camera.unwrap().motion_blur_pixels.unwrap(), "0.831");
+    // 6a: 30 mph at 30 m, with the lens of the paper's view, which the entry's own pixel and focal length contradict.
+    let camera = sizing.camera.unwrap().camera;
+    let (view_rad, pixels) = camera.view_and_pixels().unwrap();
+    let of_view = Camera { focal_length_m: camera.pixel_m * pixels / view_rad, ..camera };
+    let blur = Motion::of(&of_view, Some(30.0)).unwrap().blur_pixels(13.4112, 12e-3);
+    prints("motion blur, pixels", blur, "0.831");
+    // 6e: the information at d = 1.
     prints("information at d = 1, bit", detection::information_bits(1.0), "0.7508");
     // The binary channel that the paper's 'maximum Shannon information' is not.
     prints("mutual information at d = 1, bit", detection::mutual_information_bits(1.0), "0.369");

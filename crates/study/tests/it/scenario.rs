@@ -98,7 +98,7 @@ fn the_example_is_the_case_of_the_paper() {
             reliability: Reliability::Distance(1.0),
             by: DistanceKind::Nearest,
             speed_m_s: Some(13.4112),
-            time_s: Some(0.5),
+            time_s: None,
         },
         envelope: None,
         sensitivity: None,

@@ -316,7 +316,7 @@ fn a_camera_is_possible() {
         "[camera]\nfnumber = 1.3" =>
             "a.toml:5: camera: there is no key `fnumber`; the nearest are `f_number`, `frame_rate`, `frames`",
         "[camera]\ngain = 1.3" =>
-            "a.toml:5: camera: there is no key `gain`; what may stand here is `preset`, `exposure`, `pixel`, `f_number`, `focal_length`, `optics_efficiency`, `quantum_efficiency`, `netd`, `netd_temperature`, `netd_f_number`, `netd_optics_efficiency`, `netd_pixel`, `detectivity`, `nep`, `nesr`, `noise_electrons`, `noise_table`, `noise_bandwidth`, `noise_ … , `frames`, `frame_rate`, `sensor_temperature`, `filter_temperature`, `field_of_view` or `pixels`",
+            "a.toml:5: camera: there is no key `gain`; what may stand here is `preset`, `exposure`, `pixel`, `f_number`, `focal_length`, `optics_efficiency`, `quantum_efficiency`, `netd`, `netd_temperature`, `netd_f_number`, `netd_optics_efficiency`, `netd_pixel`, `detectivity`, `nep`, `nesr`, `noise_electrons`, `noise_table`, `noise_bandwidth`, `noise_ … _rate`, `sensor_temperature`, `filter_temperature`, `field_of_view`, `pixels` or `spectral_range`",
         "[camera]\nflicker_fraction = 1.1" =>
             "a.toml:5: camera.flicker_fraction: flicker_fraction is 1.1; it must be between 0 and 1",
         "[camera]\npreset = true" =>

@@ -212,7 +212,9 @@ fn what_is_left_open_is_asked_for() {
              beside it",
         ),
         (
-            format!("{HEAD}{REST}[bands]\nranges = [[\"1310 cm^-1\", \"1350 cm^-1\"]]\n{CAMERA}"),
+            format!(
+                "{HEAD}{REST}[bands]\nranges = [[\"1310 cm^-1\", \"1350 cm^-1\"]]\n{CAMERA}spectral_range = [\"715 cm^-1\", \"1250 cm^-1\"]\n"
+            ),
             "line 10: bands: the band from 1310 to 1350 cm^-1 lies outside the range of the detector, 715 to 1250 \
              cm^-1; leave it out, or take another camera",
         ),

@@ -56,7 +56,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         })
         .collect();
     for camera in &answer.cameras {
-        out.push_str(&conditions::paragraph_of(&camera.name, &camera.conditions));
+        out.push_str(&conditions::paragraph_of(&camera.name, &camera.conditions, camera.passes));
     }
     if !quotables.is_empty() {
         let _ = writeln!(out, "The rule in a sentence\n{}\n", quotables.join("\n"));

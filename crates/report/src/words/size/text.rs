@@ -22,7 +22,7 @@ const DROWNED: f64 = 2.0;
 pub fn text(result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}\n", result.verdict.sentence.say());
-    out.push_str(&conditions::paragraph(&result.verdict.conditions));
+    out.push_str(&conditions::paragraph(&result.verdict.conditions, result.verdict.met == Some(true)));
     let limiting = rows::limiting(result);
     if let Some(pair) = limiting {
         out.push_str(&readings(pair, result, study));
