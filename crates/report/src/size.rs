@@ -3,7 +3,7 @@
 pub mod figures;
 mod trade_off;
 
-pub use crate::words::size::{rows, text};
+pub use crate::words::size::{check, rows, text};
 
 use self::figures::{Collected, InformationMarks};
 use crate::bundle::Bundle;

@@ -48,7 +48,10 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
     let mut result =
         if global.out.is_some() || global.json { study.size_with_curves() } else { study.size() }?;
     result.verdict.accepted.clone_from(&args.accept);
-    let text = size::text(&result, &study);
+    let text = match args.check && global.out.is_none() {
+        true => size::check(&result),
+        false => size::text(&result, &study),
+    };
     result.stats.add(&global.report(&text, |out| size::bundle(&study, &result, out))?);
     global.answer(&result, &text, &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {

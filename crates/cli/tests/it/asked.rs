@@ -306,7 +306,7 @@ fn several_scenarios_are_a_table_with_their_mistakes_in_it() {
     let lines: Vec<&str> = outcome.stdout.lines().collect();
     assert!(lines[0].starts_with("scenario    verdict"), "{}", outcome.stdout);
     assert!(
-        lines[1].starts_with("a.toml      no ") && lines[2].starts_with("good.toml   yes "),
+        lines[1].starts_with("a.toml      no ") && lines[2].starts_with("good.toml   yes, if "),
         "{}",
         outcome.stdout
     );

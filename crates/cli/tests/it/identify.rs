@@ -263,13 +263,14 @@ fn a_check_ends_with_the_code_of_its_answer() {
             assert_eq!(json["not_told_from"].is_null(), expected);
             assert_eq!(words.stdout.lines().count() == 1, !expected);
             let start = if expected {
-                "Yes: the camera tells skin from "
+                "Yes, if "
             } else if by == "nearest" {
                 "No: the camera cannot tell skin from "
             } else {
                 "No: the camera does not tell skin from "
             };
             assert!(words.stdout.starts_with(start), "{}", words.stdout);
+            assert_eq!(words.stdout.contains(": the camera tells skin from "), expected);
             answers.insert(expected);
         }
     }

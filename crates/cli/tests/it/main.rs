@@ -37,6 +37,7 @@ mod papers;
 mod range;
 mod remarks;
 mod render;
+mod rests_on;
 mod robust;
 mod rule;
 mod rule_clauses;

@@ -191,7 +191,7 @@ fn what_is_promised_is_the_lower_end_of_uncertain_figures() {
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let record: serde_json::Value = serde_json::from_str(&read("certificate.json")).unwrap();
     let line = &record["clauses"][0]["lines"][0];
-    assert!(line["margin_proved"].as_f64().unwrap() <= low && line["evidence"] == "simulated", "{line}");
+    assert!(line["margin_proved"].as_f64().unwrap() <= low && line["evidence"] == "assumed", "{line}");
     assert!(read("certificate.intoto.json").contains("\"result\": \"WARNED\""));
     let (scene, _) = NIGHT.split_once("[stop]").unwrap();
     let shape = format!(

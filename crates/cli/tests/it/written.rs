@@ -253,7 +253,8 @@ fn a_check_is_a_line_a_camera() {
     let json = folder.json(&["rule", "a.toml"]);
     let (bound, required) = (&json["cameras"][0]["lower_bound"], &json["requirement"]["distance"]);
     let proved = bound.as_f64().unwrap() / required.as_f64().unwrap();
-    let said: f64 = lines[0].split(' ').nth(4).unwrap().parse().unwrap();
+    let (_, said) = lines[0].split_once("at least ").unwrap();
+    let said: f64 = said.split(' ').next().unwrap().parse().unwrap();
     // A check ends at the first bound that decides.
     assert!((1.0..=proved).contains(&said), "{said} of {proved}");
 }

@@ -12,7 +12,7 @@ const NO_END_K: [f64; 2] = [0.2, 9e5];
 
 impl Say for Assumed {
     fn say(&self) -> String {
-        format!("{}: not stated; {} is taken", self.figure, self.taken)
+        format!("{} is not stated; taken: {}", self.figure, self.taken)
     }
 }
 

@@ -4,7 +4,7 @@ pub(crate) mod captions;
 pub mod rows;
 mod text;
 
-pub use text::text;
+pub use text::{check, text};
 
 use super::probability::{demanded, reliability};
 use super::shortfall::clauses;

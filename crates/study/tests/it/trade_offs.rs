@@ -239,7 +239,8 @@ fn elasticities_are_those_of_whole_answers() {
     }
     // The electronic part alone, not the shot noise that an NETD contains.
     let counts = sizing.camera.unwrap().noise_counts;
-    let noise = slope(&|by| SCENE.replace("netd = \"10 mK\"", &format!("noise_electrons = {:e}", counts * by)));
+    let noise =
+        slope(&|by| SCENE.replace("netd = \"10 mK\"", &format!("noise_electrons = {:e}", counts * by)));
     assert!((of(Lever::Noise) - noise).abs() < 1e-6);
 }
 

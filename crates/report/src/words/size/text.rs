@@ -54,6 +54,17 @@ pub fn text(result: &Sizing, study: &Study) -> String {
     out
 }
 
+/// The verdict and what it rests on, and no more.
+#[must_use]
+pub fn check(result: &Sizing) -> String {
+    let verdict = &result.verdict;
+    format!(
+        "{}\n\n{}",
+        verdict.sentence.say(),
+        conditions::paragraph(&verdict.conditions, verdict.met == Some(true))
+    )
+}
+
 /// The three readings of the distance, side by side.
 fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
