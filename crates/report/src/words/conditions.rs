@@ -254,6 +254,14 @@ pub(crate) fn yes(conditions: &[Condition]) -> String {
     }
 }
 
+/// That a demand is met, with the hardest of its conditions.
+pub(crate) fn met(conditions: &[Condition]) -> String {
+    match Condition::open(conditions).next() {
+        None => "met".into(),
+        Some(_) => yes(conditions),
+    }
+}
+
 /// All conditions of a 'yes', or of a 'no', in a paragraph of their own; nothing without.
 pub(crate) fn paragraph(conditions: &[Condition], met: bool) -> String {
     paragraph_of("", conditions, met)

@@ -7,7 +7,7 @@ use crate::words::conditions;
 use crate::words::shortfall::in_words;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{CameraVerdict, Condition, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
+use hadar_study::{CameraVerdict, Condition, Found, Grade, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
 use std::fmt::Write as _;
 
 /// A line for every camera; of a rule with clauses, a line for each of them below it.
@@ -24,7 +24,7 @@ pub fn check(answer: &RuleAnswer) -> String {
     let mut out = idle;
     for (index, camera) in answer.cameras.iter().enumerate() {
         let met = match camera.verdict {
-            Verdict::Meets => conditions::yes(&camera.conditions),
+            Verdict::Meets => conditions::met(&camera.conditions),
             Verdict::Undecided => "undecided".into(),
             Verdict::Fails => "not met".into(),
         };
@@ -45,6 +45,14 @@ pub fn check(answer: &RuleAnswer) -> String {
     out
 }
 
+/// How sure a 'yes' is where its conditions hold, and the hardest of them.
+fn sure(conditions: &[Condition], evidence: Grade) -> String {
+    match Condition::open(conditions).next() {
+        None => evidence.name().to_owned(),
+        Some(_) => format!("{}: {}", conditions::yes(conditions), evidence.name()),
+    }
+}
+
 fn measured_line(camera: &MeasuredVerdict, quantity: Measure, units: Units) -> String {
     let value = camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3));
     let value = format!("{} {value}", measure(quantity));
@@ -52,10 +60,10 @@ fn measured_line(camera: &MeasuredVerdict, quantity: Measure, units: Units) -> S
     let at = measured_scene(&camera.limiting, units);
     match camera.passes {
         true => match &camera.uncertainty {
-            None => format!("{}: {reached}, {at}", camera.grade.name()),
+            None => format!("{}: {reached}, {at}", sure(&camera.conditions, camera.evidence)),
             Some(found) => {
                 let (low, guarded) = (at_least(found.low), guarded(camera.uncertainty.as_ref()));
-                let grade = camera.grade.name();
+                let grade = sure(&camera.conditions, camera.evidence);
                 format!(
                     "{grade}: at least {low} times the demand{guarded} ({value} as they are stated), {at}"
                 )
@@ -77,17 +85,19 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
         let guarded = guarded(camera.uncertainty.as_ref());
         let known = match camera.lower_bound {
             Some(bound) if bound >= required => {
-                format!("{}: at least {} everywhere{guarded}", camera.evidence.name(), times(bound))
+                format!(
+                    "{}: at least {} everywhere{guarded}",
+                    sure(&camera.conditions, camera.evidence),
+                    times(bound)
+                )
             }
             _ => {
                 let least = times(low * required);
-                format!("met, but searched and not proved: {least} where it is least{guarded}")
+                let met = conditions::met(&camera.conditions);
+                format!("{met}, but searched and not proved: {least} where it is least{guarded}")
             }
         };
-        match Condition::open(&camera.conditions).next() {
-            None => known,
-            Some(_) => format!("{}: {known}", conditions::yes(&camera.conditions)),
-        }
+        known
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;
         let margin = format!("{} times the demand: ", significant(camera.margin, 3));
