@@ -269,7 +269,8 @@ pub(crate) fn rule(
         rule_read.skip_uncovered(common.skip_uncovered);
         let study = RuleStudy::new(&rule_read, &reading.library()?)?;
         let (extent, skipping, seed) = (Extent::Everything, common.skipping(), common.seed);
-        let mut answer = study.answer(&RuleAsked { extent, skipping, seed, on }, &|_, _| ())?;
+        let mut answer =
+            study.answer(&RuleAsked { extent, skipping, seed, on, ..RuleAsked::default() }, &|_, _| ())?;
         let text = rule_report::text(&answer, &study);
         answer.stats.add(&no_report());
         let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;

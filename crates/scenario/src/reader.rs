@@ -115,8 +115,8 @@ pub(super) fn open<T>(
     kind.check(&document, &source)?;
     if written.settings.iter().any(camera::moves_noise) {
         let mut filed = document.clone();
-        let others = written.settings.iter().filter(|setting| !camera::moves_noise(setting));
-        others.map(|setting| setting.put(&mut filed)).collect::<Result<()>>()?;
+        let mut others = written.settings.iter().filter(|setting| !camera::moves_noise(setting));
+        others.try_for_each(|setting| setting.put(&mut filed))?;
         source.filed =
             Section::open(&filed, "", &source, keys).map(|root| camera::filed(&root)).unwrap_or_default();
     }

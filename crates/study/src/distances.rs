@@ -28,7 +28,7 @@ impl Statistical {
     /// What it is at least, and at most, whatever rounding did to it.
     pub(super) fn bounds(self) -> [f64; 2] {
         let error = self.relative_error.unwrap_or(0.0);
-        [self.distance * (1.0 - error), self.upper * (1.0 + error)]
+        [(self.distance * (1.0 - error)).max(0.0), self.upper * (1.0 + error)]
     }
 
     /// Whether the distance is enough whatever rounding did to it.

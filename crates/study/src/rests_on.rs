@@ -165,30 +165,26 @@ impl Study {
     fn ranges_that_decide(&self) -> Result<Vec<Condition>> {
         let (own, physical) = (self.range, StateRange::default());
         let mut found = Vec::new();
-        let temperature = |range: [f64; 2]| StateRange { temperature_k: range, ..own };
-        let lighting = |range: [f64; 2]| StateRange { lighting: range, ..own };
-        let asked: [(&'static str, [f64; 2], [f64; 2], f64, &dyn Fn([f64; 2]) -> StateRange); 2] = [
-            (
-                "alternatives.temperature",
-                own.temperature_k,
-                physical.temperature_k,
-                TEMPERATURE_STEP_K,
-                &temperature,
-            ),
-            ("alternatives.lighting", own.lighting, physical.lighting, LIGHTING_STEP, &lighting),
-        ];
-        for (figure, stated, widest, step, with) in asked {
+        for (figure, step) in
+            [("alternatives.temperature", TEMPERATURE_STEP_K), ("alternatives.lighting", LIGHTING_STEP)]
+        {
+            let is_temperature = figure == "alternatives.temperature";
+            let of = |range: &StateRange| if is_temperature { range.temperature_k } else { range.lighting };
+            let with = |range: [f64; 2]| match is_temperature {
+                true => StateRange { temperature_k: range, ..own },
+                false => StateRange { lighting: range, ..own },
+            };
+            let (stated, widest) = (of(&own), of(&physical));
             if stated == widest || self.holds_in(with(widest))? {
                 continue;
             }
             let mut holds = stated;
             for end in 0..2 {
-                let at = |value: f64| {
+                let holds_to = |value: f64| {
                     let mut range = stated;
                     range[end] = value;
-                    range
+                    self.holds_in(with(range))
                 };
-                let holds_to = |value: f64| self.holds_in(with(at(value)));
                 holds[end] = farthest(stated[end], widest[end], step, holds_to)?;
             }
             found.push(Condition::Range(RangeDecides { figure, stated, holds }));

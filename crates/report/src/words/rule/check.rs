@@ -83,7 +83,7 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
     } else if camera.passes {
         let low = camera.uncertainty.as_ref().map_or(camera.margin, |found| found.low);
         let guarded = guarded(camera.uncertainty.as_ref());
-        let known = match camera.lower_bound {
+        match camera.lower_bound {
             Some(bound) if bound >= required => {
                 format!(
                     "{}: at least {} everywhere{guarded}",
@@ -96,8 +96,7 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
                 let met = conditions::met(&camera.conditions);
                 format!("{met}, but searched and not proved: {least} where it is least{guarded}")
             }
-        };
-        known
+        }
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;
         let margin = format!("{} times the demand: ", significant(camera.margin, 3));
