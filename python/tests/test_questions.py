@@ -112,7 +112,7 @@ def test_an_answer_is_its_json_with_names(tmp_path):
     assert answer["verdict"] == answer.verdict and answer.verdict.met == data["verdict"]["met"]
     assert answer.verdict.sentence == answer.sentence
     assert [pair.alternative for pair in answer.pairs] == ["aluminium", "concrete"]
-    assert answer.hadar == hadar.__version__ and answer.schema == 1
+    assert answer.hadar == hadar.__version__ and answer.schema == 2
     table = answer.to_pandas()
     assert list(table["distance_nearest"]) == [pair["distance_nearest"] for pair in data["pairs"]]
     with pytest.raises(AttributeError, match="there is no `verdikt`"):
