@@ -23,6 +23,8 @@ impl Assumed {
         "netd_temperature",
         "netd_f_number",
         "netd_pixel",
+        "netd_optics_efficiency",
+        "spectral_bands",
         "noise_exposure",
         "spectral_range",
         "flicker_fraction",

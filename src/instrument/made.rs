@@ -123,22 +123,35 @@ impl Preset {
         if figures.frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
             assumed.push(Assumed::favourable("frame_rate", "no pause between exposures"));
         }
-        // A noise that was measured in front of the optics is of the detector with all that it loses.
+        // What the document of a camera states is of the whole of it: the noise that was measured in front of the optics holds all that
+        // it loses and adds. Of a camera of one's own nobody says so.
+        let is_own = self.description.is_empty();
         let of_scene =
             matches!(figures.noise.stated(), Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }));
-        if figures.quantum_efficiency.is_none() && !of_scene {
+        let of_document = of_scene && !is_own;
+        if figures.quantum_efficiency.is_none() && !of_document {
             assumed.push(Assumed::favourable("quantum_efficiency", "1"));
         }
         if figures.full_well.is_none() {
             assumed.push(Assumed::favourable("full_well", "never full"));
         }
-        // A document states the noise of a frame of its camera.
-        if figures.noise_exposure_s.is_none() && is_noisy && self.name.is_empty() {
+        if figures.noise_exposure_s.is_none() && is_noisy && is_own {
             let frame = format!("{:.4} ms, that of a frame", 1e3 * exposure_s);
             assumed.push(Assumed::favourable("noise_exposure", frame));
         }
-        if figures.noise.netd_k.is_some() && figures.noise.netd_pixel_m.is_none() && self.name.is_empty() {
-            assumed.push(Assumed::favourable("netd_pixel", format!("{:.4} um, its own", 1e6 * pixel_m)));
+        if of_scene && is_own {
+            if figures.noise.netd_pixel_m.is_none() {
+                assumed.push(Assumed::favourable("netd_pixel", format!("{:.4} um, its own", 1e6 * pixel_m)));
+            }
+            if figures.noise.netd_optics_efficiency.is_none() {
+                assumed.push(Assumed::favourable("netd_optics_efficiency", "that of its lens"));
+            }
+        }
+        if is_own
+            && figures.spectral_bands.is_none()
+            && figures.readout.is_some_and(|one| one != Readout::Sequential)
+        {
+            assumed.push(Assumed::favourable("spectral_bands", "as many as are asked for"));
         }
         let rest = [
             ("dark_rate", figures.dark_rate_per_s.is_none()),
@@ -146,11 +159,8 @@ impl Preset {
             // Bits divide the full well; without one there is no step to speak of.
             ("quantisation_bits", figures.full_well.is_some() && figures.quantisation_bits.is_none()),
         ];
-        // What is measured of a whole camera has all of its noise.
-        let of_camera =
-            matches!(figures.noise.stated(), Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }));
         for (key, silent) in rest {
-            if silent && !of_camera {
+            if silent && !of_document {
                 assumed.push(Assumed::favourable(key, "0"));
             }
         }
@@ -231,7 +241,10 @@ impl Preset {
             (None, Some(rate)) => {
                 let frame = format!("{:.4} ms, the frame", 1e3 / rate);
                 assumed.push(match stated {
-                    Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
+                    // Signal and noise stretch alike, unless the noise is of another exposure.
+                    Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. })
+                        if self.figures.noise_exposure_s.is_none() =>
+                    {
                         Assumed::worst("exposure", frame)
                     }
                     _ => Assumed::favourable("exposure", frame),
@@ -252,7 +265,10 @@ impl Preset {
         let optics_efficiency = &self.figures.optics_efficiency;
         if optics_efficiency.is_none() {
             assumed.push(match stated {
-                Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
+                Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. })
+                    if self.figures.noise.netd_optics_efficiency.is_none()
+                        && !self.description.is_empty() =>
+                {
                     Assumed::worst("optics_efficiency", "1 (the noise is stated through the same optics)")
                 }
                 _ => Assumed::favourable("optics_efficiency", "1"),

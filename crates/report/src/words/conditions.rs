@@ -65,6 +65,8 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "netd_temperature" => format!("its NETD is of a blackbody of {taken}"),
         "netd_f_number" => format!("its NETD is that behind {taken}"),
         "netd_pixel" => format!("its NETD is that of a pixel of {taken}"),
+        "netd_optics_efficiency" => "its NETD is that behind its own lens".into(),
+        "spectral_bands" => "it has as many bands of its own as are asked for".into(),
         "noise_exposure" => format!("its noise is that of an exposure of {taken}"),
         "spectral_range" => format!("its detector sees {taken} and no more"),
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),

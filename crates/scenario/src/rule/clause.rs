@@ -150,6 +150,8 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
         // Its requirement is another one; how fast the vehicle drives is the rule's to say.
         scenario.requirement.speed_m_s = rule.requirement.speed_m_s;
     }
+    // What the rule demands of all clauses is refused below where none would judge it.
+    scenario.requirement.time_s = scenario.requirement.time_s.or(rule.requirement.time_s);
     scenario.title.clone_from(&rule.title);
     scenario.source = relaid(&rule.source, &key);
     let clause = Clause { name: Some(name), text: said, demand, scenario, stop, key };
@@ -255,6 +257,11 @@ impl Clause {
     fn check(&self) -> Result<()> {
         self.lit_as_known()?;
         self.street_is_the_envelope()?;
+        if self.scenario.requirement.time_s.is_some() {
+            let found = "a time in the requirement of a rule, which would not be judged";
+            let instead = "write start = \"4 s\" in [stop], from which the time of the decision follows";
+            return Err(Error::malformed(found, instead).at(self.scenario.place("requirement.time")));
+        }
         if self.stop.is_none() {
             return Ok(());
         }
