@@ -94,7 +94,7 @@ fn a_camera_of_one_band_takes_filters() {
     assert!(message(&format!("{own}spectral_bands = 1"), "step = \"1 cm^-1\"").contains("has one band"));
     assert_eq!(
         size(&scenario(own, "step = \"1 cm^-1\"")).camera.unwrap().camera.readout,
-        Readout::Simultaneous
+        Readout::Sequential
     );
 }
 
