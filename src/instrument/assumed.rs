@@ -15,22 +15,22 @@ pub struct Assumed {
 }
 
 impl Assumed {
-    /// Keys of all figures that something may stand for.
+    /// Keys of all figures that something may stand for, those first that a 'yes' hangs on most.
     pub const FIGURES: &'static [&'static str] = &[
+        "flicker_fraction",
+        "spectral_range",
+        "netd_f_number",
         "exposure",
         "optics_efficiency",
-        "quantum_efficiency",
         "netd_temperature",
-        "netd_f_number",
+        "readout",
+        "frame_rate",
+        "quantum_efficiency",
+        "full_well",
+        "noise_exposure",
         "netd_pixel",
         "netd_optics_efficiency",
         "spectral_bands",
-        "noise_exposure",
-        "spectral_range",
-        "flicker_fraction",
-        "readout",
-        "frame_rate",
-        "full_well",
         "dark_rate",
         "read_noise",
         "quantisation_bits",

@@ -123,8 +123,35 @@ impl Preset {
         if figures.frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
             assumed.push(Assumed::favourable("frame_rate", "no pause between exposures"));
         }
-        // What the document of a camera states is of the whole of it: the noise that was measured in front of the optics holds all that
-        // it loses and adds. Of a camera of one's own nobody says so.
+        self.open_figures([exposure_s, pixel_m], is_noisy, &mut assumed);
+        let own = Own {
+            name: self.name.clone(),
+            description: self.description.clone(),
+            provenance: self.document.iter().chain(&self.provenance).cloned().collect(),
+            assumed,
+            efficiency_curves: self.efficiency_curves.clone(),
+            noise,
+            frame_rate_hz: figures.frame_rate_hz,
+        };
+        Ok(Camera {
+            exposure_s,
+            pixel_m,
+            f_number,
+            focal_length_m,
+            optics_efficiency,
+            noise_exposure_s: self.noise_exposure_s().unwrap_or(exposure_s),
+            readout,
+            frames,
+            reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
+            spectral_range_cm1,
+            ..Camera::as_stated(figures, own)
+        })
+    }
+
+    /// Figures that change nothing where nobody states them. What the document of a camera states is of the whole of it: the noise that was
+    /// measured in front of the optics holds all that it loses and adds. Of a camera of one's own nobody says so.
+    fn open_figures(&self, [exposure_s, pixel_m]: [f64; 2], is_noisy: bool, assumed: &mut Vec<Assumed>) {
+        let figures = &self.figures;
         let is_own = self.description.is_empty();
         let of_scene =
             matches!(figures.noise.stated(), Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }));
@@ -164,28 +191,6 @@ impl Preset {
                 assumed.push(Assumed::favourable(key, "0"));
             }
         }
-        let own = Own {
-            name: self.name.clone(),
-            description: self.description.clone(),
-            provenance: self.document.iter().chain(&self.provenance).cloned().collect(),
-            assumed,
-            efficiency_curves: self.efficiency_curves.clone(),
-            noise,
-            frame_rate_hz: figures.frame_rate_hz,
-        };
-        Ok(Camera {
-            exposure_s,
-            pixel_m,
-            f_number,
-            focal_length_m,
-            optics_efficiency,
-            noise_exposure_s: self.noise_exposure_s().unwrap_or(exposure_s),
-            readout,
-            frames,
-            reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
-            spectral_range_cm1,
-            ..Camera::as_stated(figures, own)
-        })
     }
 
     /// The camera that the noise is stated of; what its document is silent on is as here.

@@ -11,9 +11,12 @@ use super::plot::{Drawn, Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
 use hadar::error::Result;
-use hadar_study::Warning;
+use hadar_study::{Condition, Warning};
 use rayon::prelude::*;
 use std::path::PathBuf;
+
+/// The file of what a verdict rests on.
+pub(crate) const CONDITIONS: &str = "conditions.csv";
 
 const ANSWER: &str = "answer.txt";
 
@@ -98,6 +101,18 @@ impl Bundle {
         self.add("warnings.csv", tables::warnings(warnings).to_csv()?);
         self.warnings = warnings.to_vec();
         Ok(())
+    }
+
+    /// Adds what verdicts rest on as a table, each with the camera that it is of; nothing where there is nothing.
+    ///
+    /// # Errors
+    /// As [`Bundle::add_table`].
+    pub fn add_conditions(&mut self, all: &[(&str, &Condition)]) -> Result<()> {
+        if all.is_empty() {
+            Ok(())
+        } else {
+            self.add_table(CONDITIONS, tables::conditions(all.iter().copied()))
+        }
     }
 
     /// Adds PNG and CSV of every plot, and SVG of those that are no images.

@@ -23,6 +23,7 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
     let result = &answers.identification;
     bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
+    bundle.add_conditions(&result.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
     bundle.add_warnings(&result.warnings)?;
     if let Some(prediction) = &result.identifiability.prediction_heuristic {
         let mut table = Table::new(["material", "prediction_s32_heuristic"]);

@@ -63,6 +63,11 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
         bundle.add_table("companion.csv", tables::companions(companions))?;
     }
     bundle.add("inputs.csv", inputs(provenance).to_csv()?);
+    let rests_on = answer
+        .cameras
+        .iter()
+        .flat_map(|camera| camera.conditions.iter().map(move |one| (camera.name.as_str(), one)));
+    bundle.add_conditions(&rests_on.collect::<Vec<_>>())?;
     bundle.add_warnings(&warnings(answer))?;
     bundle.add_plots(&[margins(answer)])?;
     Ok(bundle)

@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::columns::aligned;
 use crate::text::significant;
-use crate::words::several::{NOT_IN_FORCE, UNDECIDED, YES_IF, unanswered};
+use crate::words::several::{NOT_IN_FORCE, UNDECIDED, YES_IF, only_if, unanswered};
 use hadar::error::Result;
 use hadar::order;
 use hadar_study::sweep::Question;
@@ -100,7 +100,7 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
             YES_IF.into()
         }
         (_, "verdict") if answer["verdict"]["answer"] == "undecided" => UNDECIDED.into(),
-        (_, "if") => found(paths).map_or(Value::Null, |conditions| hardest(&conditions)),
+        (_, "if") => found(paths).map_or(Value::Null, |conditions| codes(&conditions)),
         _ => found(paths).unwrap_or_default(),
     };
     columns(question).iter().map(of).collect()
@@ -112,13 +112,17 @@ fn hangs(conditions: &Value) -> bool {
 }
 
 /// Codes of the favourable ones, hardest first.
-fn hardest(conditions: &Value) -> Value {
+fn codes(conditions: &Value) -> Value {
     let codes = conditions.as_array().into_iter().flatten().filter(|one| one["favourable"] == true);
     let codes: Vec<&str> = codes.filter_map(|one| one["code"].as_str()).collect();
-    match codes.as_slice() {
-        [] => Value::Null,
-        [one] => (*one).into(),
-        [one, more @ ..] => format!("{one} +{}", more.len()).into(),
+    if codes.is_empty() { Value::Null } else { codes.join(" ").into() }
+}
+
+/// The hardest of some codes, and how many there are behind it.
+fn folded(codes: &str) -> String {
+    match codes.split_once(' ') {
+        Some((hardest, more)) => format!("{hardest} +{}", more.split(' ').count()),
+        None => codes.to_owned(),
     }
 }
 
@@ -148,15 +152,29 @@ fn shown(cell: &Value) -> String {
 pub fn text(question: Question, rows: &[Row]) -> String {
     let heads = columns(question).iter().map(|(head, _)| (*head).to_owned());
     let mut lines = vec![std::iter::once("scenario".to_owned()).chain(heads).collect::<Vec<_>>()];
+    // Folded in the table, whole below it.
+    let mut rests_on = String::new();
     for row in rows {
         let mut line = vec![row.scenario.clone()];
         match (&row.answer, &row.error) {
-            (Some(answer), _) => line.extend(cells(question, answer).iter().map(shown)),
+            (Some(answer), _) => {
+                for ((head, _), cell) in columns(question).iter().zip(cells(question, answer)) {
+                    let whole = shown(&cell);
+                    let is_folded = *head == "if" && whole.contains(' ');
+                    if is_folded {
+                        let _ = writeln!(rests_on, "{}", only_if(&row.scenario, &whole));
+                    }
+                    line.push(if is_folded { folded(&whole) } else { whole });
+                }
+            }
             (None, error) => line.push(format!("error: {}", error.clone().unwrap_or_default())),
         }
         lines.push(line);
     }
     let mut out = aligned(&lines, &[]);
+    if !rests_on.is_empty() {
+        let _ = write!(out, "\n{rests_on}");
+    }
     let failed = rows.iter().filter(|row| row.answer.is_none()).count();
     if failed > 0 {
         let _ = writeln!(out, "\n{}", unanswered(failed, rows.len()));
@@ -215,7 +233,7 @@ mod tests {
         let expected = "scenario     verdict  if                    limited by  reaches  demanded  margin   photons it takes\n\
                         a.toml       no       -                     aluminium   -        1.000     0.05000  -\n\
                         b.toml       yes, if  registered-frames +1  -           -        -         2.000    -\n\
-                        longer.toml  error: line 3: it is wrong\n\n1 of 3 scenarios without an answer.\n";
+                        longer.toml  error: line 3: it is wrong\n\nb.toml: yes only if registered-frames no-air\n\n1 of 3 scenarios without an answer.\n";
         assert_eq!(text(Question::Size, &rows), expected);
         let csv = bundle(Question::Size, &rows).unwrap();
         assert_eq!(csv.names().collect::<Vec<_>>(), ["scenarios.csv"]);

@@ -45,6 +45,7 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
     if let Some(found) = &result.companion {
         bundle.add_table("companion.csv", tables::companions([found]))?;
     }
+    bundle.add_conditions(&result.verdict.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&classes::pictures(&result.classes))?;
     bundle.add_plots(&drawn(study, result)?)?;

@@ -3,7 +3,7 @@
 use super::table::{Table, joined, number, optional};
 use crate::words::Say;
 use hadar_study::companion::Condition;
-use hadar_study::{Companion, PairResult, Warning};
+use hadar_study::{Companion, Condition as RestsOn, PairResult, Warning};
 
 /// All pairs as a table.
 #[must_use]
@@ -46,6 +46,16 @@ pub fn warnings(warnings: &[Warning]) -> Table {
         warnings,
         &[("code", &|warning| warning.code().name().into()), ("message", &|warning| warning.say())],
     )
+}
+
+/// What verdicts rest on, each with the camera that it is of; nothing where there is one alone.
+pub(crate) fn conditions<'a>(all: impl IntoIterator<Item = (&'a str, &'a RestsOn)>) -> Table {
+    let mut table = Table::new(["camera", "code", "kind", "favourable", "figure", "sentence"]);
+    for (camera, one) in all {
+        let (kind, favourable) = (one.kind().name().to_owned(), one.favourable().to_string());
+        table.push(vec![camera.to_owned(), one.code(), kind, favourable, one.figure(), one.say()]);
+    }
+    table
 }
 
 /// The tables of any number of cameras as one: a row a value.

@@ -281,7 +281,7 @@ fn said(warning: &Warning) -> Said {
 fn rests_on(condition: &Condition) -> Said {
     let message =
         if condition.favourable() { format!("only if {}", condition.say()) } else { condition.say() };
-    Said { code: condition.code(), message, remedy: condition.figure().unwrap_or_default() }
+    Said { code: condition.code(), message, remedy: condition.figure() }
 }
 
 /// An error with its place apart.

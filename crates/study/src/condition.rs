@@ -9,11 +9,11 @@
 //! | `target.distance`, `target.size` | the target fills a pixel: [`Condition::FillsPixel`] |
 //! | `background` | asked for where the target does not fill its pixel |
 //! | `[atmosphere]` | the air takes nothing away: [`Condition::NoAir`] |
-//! | `[[environment]]` | nothing lights the target: [`Condition::NoSurroundings`] |
+//! | `[[environment]]` | nothing lights the target: [`Condition::NoSurroundings`], or no more than is there: [`Condition::DarkRest`] |
 //! | `[alternatives]` ranges | all that physics allows, the worst; where a range that was set decides, [`Condition::Range`] |
 //! | `gain` or `environment-temperature` among `unknown.nuisances` | gain and temperatures of the surroundings are known: [`Condition::Calibrated`] |
 //! | `requirement.speed` | nothing moves while frames and bands are read: [`Condition::StillScene`] |
-//! | `requirement.time` | it may take as long as it takes, which that condition tells |
+//! | `requirement.time` | the decision may wait: [`Condition::StillScene`], at a speed [`Condition::Waits`] |
 //! | reliability | d = 1, which the sentence tells |
 
 use crate::proviso::Proviso;
@@ -50,92 +50,48 @@ pub struct RangeDecides {
     pub holds: [f64; 2],
 }
 
-/// What a verdict rests on.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Condition {
-    /// A range that the scenario sets keeps out states that would not be told apart.
-    Range(RangeDecides),
-    /// Frames that are added up while something moves.
-    RegisteredFrames(Proviso),
-    /// Nothing moves for so long, s.
-    StillScene {
-        /// Until all bands of all frames are read.
-        time_s: f64,
-    },
-    /// Materials that are entered as one number for all wavenumbers.
-    Constants {
-        /// The two of the pair that decides.
-        emissivities: [f64; 2],
-    },
-    /// Emissivities with such an error, root mean square, of which so many draws meet the requirement.
-    Emissivities {
-        /// Root mean square.
-        error: f64,
-        /// Share of the draws.
-        share_met: f64,
-    },
-    /// A figure of the camera that nobody stated; of a full well the counts that must not fill it.
-    Assumed {
-        /// The figure, and what stands for it.
-        figure: Assumed,
-        /// Counts of the fullest reading, where it is the full well.
-        counts: Option<f64>,
-    },
-    /// A reading of the distance decides which is no limit.
-    NoLimit,
-    /// Photon bunching that was not asked for would decide.
-    Bunching {
-        /// Photons per mode.
-        occupancy: f64,
-    },
-    /// The target fills the pixel.
-    FillsPixel {
-        /// Side of what the pixel sees, m, where the distance is known.
-        footprint_m: Option<f64>,
-    },
-    /// A camera of one band that its entry models as if it read so many at once.
-    Modelled {
-        /// How many.
-        bands: usize,
-    },
-    /// Bands beyond the stated range of the detector, of so many.
-    BeyondRange {
-        /// How many.
-        outside: usize,
-        /// Of how many.
-        bands: usize,
-    },
-    /// Wide bands are taken at their centres.
-    Sampled {
-        /// Width of the widest, cm⁻¹.
-        width_cm1: f64,
-    },
-    /// The target fills a part of one pixel and lies in no other.
-    InOnePixel {
-        /// Share of the pixel.
-        fill: f64,
-    },
-    /// The lens blurs a point over more than a pixel.
-    Diffraction {
-        /// Over how much, m.
-        blur_m: f64,
-    },
-    /// Filters neither shine nor throw the sensor's light back.
-    NoFilterLight,
-    /// The air takes nothing away.
-    NoAir,
-    /// Nothing around the target lights it.
-    NoSurroundings,
-    /// What is not among the unknowns is known.
-    Calibrated {
-        /// What that is.
-        known: Vec<Nuisance>,
-    },
-    /// Materials that were left out of the alternatives.
-    LeftOut {
-        /// Their names.
-        materials: Vec<String>,
-    },
+/// What is said of a condition whatever its data.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    code: &'static str,
+    kind: ConditionKind,
+    figure: &'static str,
+}
+
+/// Makes the conditions and their rows of one table: documentation, data, code, kind, and the key that would settle it. A sentence and an
+/// explanation for each are in `hadar_report::words::conditions`.
+macro_rules! conditions {
+    ($(
+        $(#[doc = $of:literal])+
+        $variant:ident $({ $($(#[doc = $field_of:literal])+ $field:ident: $type:ty,)+ })? $(($tuple:ty))?
+            = $code:literal, $kind:ident, $figure:literal;
+    )+) => {
+        /// What a verdict rests on.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum Condition {
+            $($(#[doc = $of])+ $variant $({ $($(#[doc = $field_of])+ $field: $type,)+ })? $(($tuple))?,)+
+        }
+
+        /// The hardest to keep first.
+        const ROWS: &[Row] = &[$(Row { code: $code, kind: ConditionKind::$kind, figure: $figure },)+];
+
+        impl Condition {
+            /// Its place among the rows.
+            fn place(&self) -> usize {
+                let mut place = 0;
+                $(
+                    if matches!(self, Self::$variant { .. }) {
+                        return place;
+                    }
+                    place += 1;
+                )+
+                place
+            }
+        }
+    };
+}
+
+conditions! {
     /// A value in the place of the file's.
     Setting {
         /// Its key.
@@ -144,66 +100,122 @@ pub enum Condition {
         value: String,
         /// Whether it stands in the place of what a rule says, which is then another rule.
         of_rule: bool,
-    },
+    } = "setting", Setting, "";
+    /// A range that the scenario sets keeps out states that would not be told apart.
+    Range(RangeDecides) = "range", Range, "alternatives.temperature";
+    /// A reading of the distance decides which is no limit.
+    NoLimit = "no-limit", Assumed, "requirement.by";
+    /// A camera of one band that its entry models as if it read so many at once.
+    Modelled {
+        /// How many.
+        bands: usize,
+    } = "modelled", Assumed, "camera.readout";
+    /// Frames that are added up while something moves.
+    RegisteredFrames(Proviso) = "registered-frames", Proviso, "camera.frames";
+    /// Nothing moves until all bands of all frames are read.
+    StillScene {
+        /// For so long, s.
+        time_s: f64,
+    } = "still-scene", Proviso, "requirement.speed";
+    /// Materials that are entered as one number for all wavenumbers.
+    Constants {
+        /// The two of the pair that decides.
+        emissivities: [f64; 2],
+    } = "constant-emissivities", Assumed, "alternatives.materials";
+    /// Materials that were left out of the alternatives, or that a class lacks.
+    LeftOut {
+        /// Their names.
+        materials: Vec<String>,
+    } = "materials-left-out", Omitted, "alternatives.skip_uncovered";
+    /// Emissivities are known better than to an error with which too few draws meet the requirement.
+    Emissivities {
+        /// Root mean square.
+        error: f64,
+        /// Share of the draws.
+        share_met: f64,
+    } = "emissivities", Proviso, "sensitivity.emissivity_error";
+    /// The target fills the pixel.
+    FillsPixel {
+        /// Side of what the pixel sees, m, where the distance is known.
+        footprint_m: Option<f64>,
+    } = "fills-pixel", Assumed, "target.size";
+    /// Bands beyond the stated range of the detector.
+    BeyondRange {
+        /// How many.
+        outside: usize,
+        /// Of how many.
+        bands: usize,
+    } = "beyond-range", Assumed, "camera.spectral_range";
+    /// The target fills a part of one pixel and lies in no other.
+    InOnePixel {
+        /// Share of the pixel.
+        fill: f64,
+    } = "in-one-pixel", Assumed, "target.size";
+    /// The lens blurs a point over more than a pixel.
+    Diffraction {
+        /// Over how much, m.
+        blur_m: f64,
+    } = "diffraction", Assumed, "camera.pixel";
+    /// A figure of the camera that nobody stated.
+    Assumed {
+        /// The figure, and what stands for it.
+        figure: Assumed,
+        /// Counts of the fullest reading, where it is the full well.
+        counts: Option<f64>,
+    } = "", Assumed, "";
+    /// Photon bunching that was not asked for would decide.
+    Bunching {
+        /// Photons per mode.
+        occupancy: f64,
+    } = "photon-bunching", Assumed, "camera.photon_bunching";
+    /// Filters neither shine nor throw the sensor's light back.
+    NoFilterLight = "no-filter-light", Assumed, "camera.sensor_temperature";
+    /// Wide bands are taken at their centres.
+    Sampled {
+        /// Width of the widest, cm⁻¹.
+        width_cm1: f64,
+    } = "bands-sampled", Assumed, "bands.integrate";
+    /// The air takes nothing away.
+    NoAir = "no-air", Assumed, "atmosphere";
+    /// Nothing around the target lights it.
+    NoSurroundings = "no-surroundings", Assumed, "environment";
+    /// A part of the hemisphere above the target that no object fills is black and cold.
+    DarkRest {
+        /// What part.
+        share: f64,
+    } = "dark-rest", Assumed, "environment";
+    /// The decision may wait until all bands of all frames are read.
+    Waits {
+        /// So long, s.
+        time_s: f64,
+    } = "acquisition-time", Proviso, "requirement.time";
+    /// What is not among the unknowns is known.
+    Calibrated {
+        /// What that is.
+        known: Vec<Nuisance>,
+    } = "calibrated", Assumed, "unknown.nuisances";
 }
-
-/// Codes of all conditions but those of camera figures, which are called as their keys are.
-const CODES: [&str; 19] = [
-    "range",
-    "registered-frames",
-    "still-scene",
-    "constant-emissivities",
-    "emissivities",
-    "no-limit",
-    "photon-bunching",
-    "fills-pixel",
-    "modelled",
-    "beyond-range",
-    "bands-sampled",
-    "in-one-pixel",
-    "diffraction",
-    "no-filter-light",
-    "no-air",
-    "no-surroundings",
-    "calibrated",
-    "materials-left-out",
-    "setting",
-];
 
 impl Condition {
     /// All codes.
     #[must_use]
     pub fn codes() -> Vec<String> {
         let figures = Assumed::FIGURES.iter().map(|figure| kebab(figure));
-        CODES.iter().map(|code| (*code).to_owned()).chain(figures).collect()
+        let own = ROWS.iter().map(|row| row.code).filter(|code| !code.is_empty());
+        own.map(str::to_owned).chain(figures).collect()
+    }
+
+    fn row(&self) -> Option<&'static Row> {
+        ROWS.get(self.place())
     }
 
     /// Stable code, e.g. `still-scene`, or the key of a camera figure, e.g. `full-well`.
     #[must_use]
     pub fn code(&self) -> String {
-        let code = match self {
-            Self::Range(_) => "range",
-            Self::RegisteredFrames(_) => Proviso::CODE,
-            Self::StillScene { .. } => "still-scene",
-            Self::Constants { .. } => "constant-emissivities",
-            Self::Emissivities { .. } => "emissivities",
-            Self::Assumed { figure, .. } => return kebab(figure.figure),
-            Self::NoLimit => "no-limit",
-            Self::Bunching { .. } => "photon-bunching",
-            Self::FillsPixel { .. } => "fills-pixel",
-            Self::Modelled { .. } => "modelled",
-            Self::BeyondRange { .. } => "beyond-range",
-            Self::Sampled { .. } => "bands-sampled",
-            Self::InOnePixel { .. } => "in-one-pixel",
-            Self::Diffraction { .. } => "diffraction",
-            Self::NoFilterLight => "no-filter-light",
-            Self::NoAir => "no-air",
-            Self::NoSurroundings => "no-surroundings",
-            Self::Calibrated { .. } => "calibrated",
-            Self::LeftOut { .. } => "materials-left-out",
-            Self::Setting { .. } => "setting",
-        };
-        code.to_owned()
+        match self {
+            Self::Assumed { figure, .. } => kebab(figure.figure),
+            _ => self.row().map_or_else(String::new, |row| row.code.to_owned()),
+        }
     }
 
     /// Whether another is of the same code.
@@ -213,16 +225,8 @@ impl Condition {
 
     /// Its kind.
     #[must_use]
-    pub const fn kind(&self) -> ConditionKind {
-        match self {
-            Self::Range(_) => ConditionKind::Range,
-            Self::RegisteredFrames(_) | Self::StillScene { .. } | Self::Emissivities { .. } => {
-                ConditionKind::Proviso
-            }
-            Self::LeftOut { .. } => ConditionKind::Omitted,
-            Self::Setting { .. } => ConditionKind::Setting,
-            _ => ConditionKind::Assumed,
-        }
+    pub fn kind(&self) -> ConditionKind {
+        self.row().map_or(ConditionKind::Assumed, |row| row.kind)
     }
 
     /// Whether the answer may be worse where it does not hold.
@@ -235,6 +239,16 @@ impl Condition {
         }
     }
 
+    /// Those without which a 'yes' may be none, hardest first.
+    pub fn open(conditions: &[Self]) -> impl Iterator<Item = &Self> {
+        conditions.iter().filter(|one| one.favourable())
+    }
+
+    /// Those of them that are not among the accepted codes: with one of them, a 'yes' is none that a program may rely on.
+    pub fn unaccepted<'a>(conditions: &'a [Self], accepted: &'a [String]) -> impl Iterator<Item = &'a Self> {
+        Self::open(conditions).filter(|one| !accepted.contains(&one.code()))
+    }
+
     /// Whether a verdict rests on it: a 'no' on what was taken on the unfavourable side, and on a readout, which is slow where nobody says.
     pub(crate) fn counts(&self, met: bool) -> bool {
         let is_readout = matches!(self, Self::Assumed { figure, .. } if figure.figure == "readout");
@@ -243,95 +257,40 @@ impl Condition {
 
     /// The key that would settle it.
     #[must_use]
-    pub fn figure(&self) -> Option<String> {
-        let key = match self {
-            Self::Range(range) => range.figure,
-            Self::RegisteredFrames(_) => "camera.frames",
-            Self::StillScene { .. } => "requirement.speed",
-            Self::Constants { .. } => "alternatives.materials",
-            Self::Emissivities { .. } => "sensitivity.emissivity_error",
-            Self::Assumed { figure, .. } => return Some(format!("camera.{}", figure.figure)),
-            Self::NoLimit => "requirement.by",
-            Self::Bunching { .. } => "camera.photon_bunching",
-            Self::FillsPixel { footprint_m: None } => "target.distance",
-            Self::FillsPixel { .. } => "target.size",
-            Self::Modelled { .. } => "camera.readout",
-            Self::BeyondRange { .. } => "camera.spectral_range",
-            Self::Sampled { .. } => "bands.integrate",
-            Self::InOnePixel { .. } => "target.size",
-            Self::Diffraction { .. } => "camera.pixel",
-            Self::NoFilterLight => "camera.sensor_temperature",
-            Self::NoAir => "atmosphere",
-            Self::NoSurroundings => "environment",
-            Self::Calibrated { .. } => "unknown.nuisances",
-            Self::LeftOut { .. } => "alternatives.skip_uncovered",
-            Self::Setting { key, .. } => return Some(key.clone()),
-        };
-        Some(key.to_owned())
-    }
-
-    /// How hard it is to keep, hardest first: the sentence of a 'yes' names the first.
-    pub(crate) fn rank(&self) -> (u8, f64) {
-        /// Nobody stands still for longer than this without a word, s.
-        const STILL_S: f64 = 0.1;
+    pub fn figure(&self) -> String {
         match self {
-            Self::Range(_) => (0, 0.0),
-            Self::NoLimit => (1, 0.0),
-            Self::RegisteredFrames(proviso) => (2, -proviso.way_m),
-            Self::StillScene { time_s } if *time_s > STILL_S => (2, -time_s),
-            Self::Constants { .. } => (3, 0.0),
-            Self::LeftOut { .. } => (4, 0.0),
-            Self::Emissivities { share_met, .. } => (5, *share_met),
-            Self::FillsPixel { footprint_m } => match footprint_m {
-                Some(footprint_m) => (6, -footprint_m),
-                None => (6, f64::NEG_INFINITY),
-            },
-            Self::Assumed { figure, .. } if !figure.favourable => (11, 0.0),
-            Self::Assumed { figure, .. } => match figure.figure {
-                "flicker_fraction" => (7, 0.0),
-                "spectral_range" => (7, 1.0),
-                "netd_f_number" => (7, 2.0),
-                _ => (8, 0.0),
-            },
-            Self::Bunching { .. } => (8, 1.0),
-            Self::Modelled { .. } => (1, 1.0),
-            Self::BeyondRange { .. } => (6, 1.0),
-            Self::InOnePixel { .. } => (6, 2.0),
-            Self::Diffraction { .. } => (6, 3.0),
-            Self::Sampled { .. } => (8, 3.0),
-            Self::NoFilterLight => (8, 2.0),
-            Self::NoAir => (9, 0.0),
-            Self::NoSurroundings => (9, 1.0),
-            Self::StillScene { .. } => (10, 0.0),
-            Self::Calibrated { .. } => (10, 1.0),
-            Self::Setting { of_rule, .. } => (if *of_rule { 0 } else { 12 }, 0.0),
+            Self::Range(range) => range.figure.to_owned(),
+            Self::Assumed { figure, .. } => format!("camera.{}", figure.figure),
+            Self::FillsPixel { footprint_m: None } => "target.distance".to_owned(),
+            Self::Setting { key, .. } => key.clone(),
+            _ => self.row().map_or_else(String::new, |row| row.figure.to_owned()),
         }
     }
-}
 
-fn kebab(key: &str) -> String {
-    key.replace('_', "-")
-}
-
-hadar::named! {
-    /// How sure a verdict is: the weakest of what went into it.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-    pub enum Sureness {
-        /// A figure that nobody stated, or a condition that nobody checked.
-        Assumed = "assumed",
-        /// The best of a search.
-        Searched = "searched",
-        /// No state of any alternative is nearer than is said.
-        Proved = "proved",
-    }
-    /// The name in JSON.
-    name
-}
-
-impl Condition {
-    /// Those without which a 'yes' may be none, hardest first.
-    pub fn open(conditions: &[Self]) -> impl Iterator<Item = &Self> {
-        conditions.iter().filter(|one| one.favourable())
+    /// How hard it is to keep, hardest first: the sentence of a 'yes' names the first. By the rows, then by how much of it there is.
+    pub(crate) fn rank(&self) -> (usize, f64) {
+        /// Nobody stands still for longer than this without a word, s.
+        const STILL_S: f64 = 0.1;
+        let short = Self::Waits { time_s: 0.0 }.place();
+        let place = match self {
+            Self::StillScene { time_s } if *time_s <= STILL_S => short,
+            // What makes nothing better stands last.
+            _ if !self.favourable() => ROWS.len(),
+            _ => self.place(),
+        };
+        let less = match self {
+            Self::RegisteredFrames(proviso) => -proviso.way_m,
+            Self::StillScene { time_s } | Self::Waits { time_s } => -time_s,
+            Self::Emissivities { share_met, .. } => *share_met,
+            Self::FillsPixel { footprint_m } => footprint_m.map_or(f64::NEG_INFINITY, |side| -side),
+            Self::Assumed { figure, .. } => {
+                let place = Assumed::FIGURES.iter().position(|key| *key == figure.figure);
+                place.map_or(0.0, |place| place as f64)
+            }
+            Self::Setting { .. } => f64::INFINITY,
+            _ => 0.0,
+        };
+        (place, less)
     }
 }
 
@@ -341,6 +300,10 @@ pub(crate) fn hardest_first(conditions: &mut [Condition]) {
         let (a, b) = (a.rank(), b.rank());
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
+}
+
+fn kebab(key: &str) -> String {
+    key.replace('_', "-")
 }
 
 /// The value of a condition in JSON.
@@ -359,7 +322,8 @@ impl Condition {
         match self {
             Self::Range(range) => Taken::Pair(range.stated),
             Self::RegisteredFrames(proviso) => Taken::Number(f64::from(proviso.frames)),
-            Self::StillScene { time_s } => Taken::Number(*time_s),
+            Self::StillScene { time_s } | Self::Waits { time_s } => Taken::Number(*time_s),
+            Self::DarkRest { share } => Taken::Number(*share),
             Self::Constants { emissivities } => Taken::Pair(*emissivities),
             Self::Emissivities { error, .. } => Taken::Number(*error),
             Self::Assumed { counts: Some(counts), .. } => Taken::Number(*counts),
@@ -392,11 +356,14 @@ mod tests {
         let mut codes = Condition::codes();
         codes.sort();
         codes.dedup();
-        assert_eq!(codes.len(), CODES.len() + Assumed::FIGURES.len());
+        assert_eq!(codes.len(), ROWS.len() - 1 + Assumed::FIGURES.len());
         let still = |time_s| Condition::StillScene { time_s };
         let mut all = vec![Condition::NoAir, still(0.01), still(2.0), still(88.0)];
         hardest_first(&mut all);
         assert_eq!(all, [still(88.0), still(2.0), Condition::NoAir, still(0.01)]);
         assert!(all.iter().all(|one| Condition::codes().contains(&one.code())));
+        // Each by its own row.
+        assert_eq!((all[0].code(), all[2].code()), ("still-scene".into(), "no-air".into()));
+        assert_eq!((all[0].kind(), all[2].kind()), (ConditionKind::Proviso, ConditionKind::Assumed));
     }
 }

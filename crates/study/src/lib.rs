@@ -30,6 +30,7 @@ mod cube_noise;
 mod cube_unit;
 pub mod decompose;
 mod distances;
+mod grade;
 mod heat_cube;
 mod identify;
 pub mod library;
@@ -55,7 +56,8 @@ pub mod sweep;
 mod warn;
 pub mod warning;
 
-pub use crate::condition::{Condition, ConditionKind, RangeDecides, Sureness};
+pub use crate::condition::{Condition, ConditionKind, RangeDecides};
+pub use crate::grade::Grade;
 pub use crate::proviso::Proviso;
 pub use crate::warning::{Warning, WorstBlackbody};
 pub use camera::with_noise_kept;
@@ -71,7 +73,7 @@ pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
     ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer,
-    Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime,
+    Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, IdealCamera, LightTime,
     LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
     Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
     RuleStudy, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,

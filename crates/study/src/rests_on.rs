@@ -17,6 +17,8 @@ const SETTLED: f64 = 0.95;
 /// To what an end of a range of temperatures is found beyond which the answer changes, K, and of lighting.
 const TEMPERATURE_STEP_K: f64 = 0.25;
 const LIGHTING_STEP: f64 = 1e-3;
+/// Share of the hemisphere that is rounding.
+const UNLIT: f64 = 1e-9;
 /// Relative difference between times that is rounding.
 const SAME: f64 = 1e-9;
 
@@ -29,6 +31,8 @@ pub(crate) struct Circumstances {
     pub(crate) distance_m: Option<f64>,
     /// Whether a rule asks, whose own text then stands above what is set over it.
     pub(crate) of_rule: bool,
+    /// Whether the time until all is read is judged.
+    pub(crate) is_timed: bool,
 }
 
 /// What of a verdict its conditions depend on.
@@ -96,8 +100,10 @@ impl Study {
     pub(crate) fn unstated(&self, camera: &Camera, brightest: f64) -> Vec<Condition> {
         let mut found = self.of_camera(camera, brightest);
         let speed_m_s = self.scenario.requirement.speed_m_s;
-        let distance_m = self.scenario.target.distance_m;
-        found.extend(self.of_scene(camera, Circumstances { speed_m_s, distance_m, of_rule: false }));
+        let (distance_m, is_timed) =
+            (self.scenario.target.distance_m, self.scenario.requirement.time_s.is_some());
+        let asked = Circumstances { speed_m_s, distance_m, of_rule: false, is_timed };
+        found.extend(self.of_scene(camera, asked));
         found
     }
 
@@ -114,8 +120,7 @@ impl Study {
     /// What nobody stated of the scene, and what must hold in it meanwhile.
     pub(crate) fn of_scene(&self, camera: &Camera, asked: Circumstances) -> Vec<Condition> {
         let scenario = &self.scenario;
-        let mut found: Vec<Condition> =
-            meanwhile(camera, self.bands.len(), asked.speed_m_s).into_iter().collect();
+        let mut found = meanwhile(camera, self.bands.len(), asked.speed_m_s, asked.is_timed);
         if scenario.requirement.by != DistanceKind::Nearest {
             found.push(Condition::NoLimit);
         }
@@ -123,7 +128,8 @@ impl Study {
             let footprint_m = asked.distance_m.map(|z| camera.footprint_m(z));
             found.push(Condition::FillsPixel { footprint_m });
         }
-        let fill = self.view_of(camera).fill;
+        // The farther, the less of its pixel the target fills.
+        let fill = self.fill(camera, asked.distance_m);
         if fill < 1.0 {
             found.push(Condition::InOnePixel { fill });
         }
@@ -145,6 +151,10 @@ impl Study {
         if self.surroundings.objects().is_empty() {
             found.push(Condition::NoSurroundings);
         }
+        let share = 1.0 - self.state.lighting.iter().sum::<f64>();
+        if share > UNLIT && !self.surroundings.objects().is_empty() {
+            found.push(Condition::DarkRest { share });
+        }
         let known = [Nuisance::Gain, Nuisance::EnvironmentTemperature];
         let is_there = |one: &Nuisance| {
             *one != Nuisance::EnvironmentTemperature || !self.surroundings.objects().is_empty()
@@ -164,7 +174,7 @@ impl Study {
     /// Ranges of the alternatives' states that the scenario sets and without which the answer would be another.
     fn ranges_that_decide(&self) -> Result<Vec<Condition>> {
         let (own, physical) = (self.range, StateRange::default());
-        let mut found = Vec::new();
+        let (mut found, mut narrowed) = (Vec::new(), Vec::new());
         for (figure, step) in
             [("alternatives.temperature", TEMPERATURE_STEP_K), ("alternatives.lighting", LIGHTING_STEP)]
         {
@@ -175,7 +185,11 @@ impl Study {
                 false => StateRange { lighting: range, ..own },
             };
             let (stated, widest) = (of(&own), of(&physical));
-            if stated == widest || self.holds_in(with(widest))? {
+            if stated == widest {
+                continue;
+            }
+            narrowed.push((figure, stated));
+            if self.holds_in(with(widest))? {
                 continue;
             }
             let mut holds = stated;
@@ -188,6 +202,13 @@ impl Study {
                 holds[end] = farthest(stated[end], widest[end], step, holds_to)?;
             }
             found.push(Condition::Range(RangeDecides { figure, stated, holds }));
+        }
+        // Each may do by itself and both together not.
+        if found.is_empty() && narrowed.len() > 1 && !self.holds_in(physical)? {
+            let both = narrowed.into_iter();
+            found.extend(
+                both.map(|(figure, stated)| Condition::Range(RangeDecides { figure, stated, holds: stated })),
+            );
         }
         Ok(found)
     }
@@ -218,11 +239,12 @@ pub(crate) fn of_figures(camera: &Camera, bands: usize, brightest: Option<f64>) 
 }
 
 /// What must hold while all bands of all frames are read.
-fn meanwhile(camera: &Camera, bands: usize, speed_m_s: Option<f64>) -> Option<Condition> {
-    match speed_m_s {
-        None => Some(Condition::StillScene { time_s: camera.acquisition_s(bands) }),
-        Some(speed_m_s) => Proviso::of(camera, bands, speed_m_s).map(Condition::RegisteredFrames),
-    }
+fn meanwhile(camera: &Camera, bands: usize, speed_m_s: Option<f64>, is_timed: bool) -> Vec<Condition> {
+    let time_s = camera.acquisition_s(bands);
+    let Some(speed_m_s) = speed_m_s else { return vec![Condition::StillScene { time_s }] };
+    let frames = Proviso::of(camera, bands, speed_m_s).map(Condition::RegisteredFrames);
+    let waits = (!is_timed).then_some(Condition::Waits { time_s });
+    frames.into_iter().chain(waits).collect()
 }
 
 /// What is set in the place of a file's values.
@@ -237,12 +259,12 @@ fn settings(set: &[Setting], of_rule: bool) -> impl Iterator<Item = Condition> {
 pub(crate) fn of_measured(
     figures: Vec<Condition>,
     (camera, bands): (&Camera, usize),
-    speed_m_s: Option<f64>,
+    (speed_m_s, is_timed): (Option<f64>, bool),
     set: &[Setting],
     met: bool,
 ) -> Vec<Condition> {
     let mut found = figures;
-    found.extend(meanwhile(camera, bands, speed_m_s));
+    found.extend(meanwhile(camera, bands, speed_m_s, is_timed));
     found.extend(settings(set, true));
     found.retain(|one| one.counts(met));
     hardest_first(&mut found);

@@ -30,9 +30,9 @@ pub use clauses::{
 pub use expected::{TestCheck, TestResult, Told};
 pub use not_in_force::NotInForce;
 pub use results::{
-    ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, Grade, IdealCamera,
-    LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult,
-    WhoMeets, WithoutPlaceholders,
+    ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult, WhoMeets,
+    WithoutPlaceholders,
 };
 pub use stand_in::{StandIn, StandInAnswer, StandInScene};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
@@ -43,6 +43,7 @@ use self::resolution::Resolution;
 use self::temperature::TemperatureClause;
 use super::{Study, Warning};
 use crate::condition::hardest_first;
+use crate::grade::Grade;
 use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::material::Library;

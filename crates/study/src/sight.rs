@@ -233,7 +233,7 @@ impl Study {
     }
 
     /// Share of the pixel that the target fills.
-    fn fill(&self, camera: &Camera, distance_m: Option<f64>) -> f64 {
+    pub(super) fn fill(&self, camera: &Camera, distance_m: Option<f64>) -> f64 {
         let size = self.scenario.target.size_m.zip(distance_m);
         size.map_or(1.0, |(size, distance)| fill(size, camera.pixel_m, camera.focal_length_m, distance))
     }

@@ -1,13 +1,11 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
-use super::identify::{NearestProof, PairResult, PhotonsRequired};
-use super::{Check, ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
-use crate::condition::{Condition, Sureness, hardest_first};
+use super::identify::{PairResult, PhotonsRequired};
+use super::{ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
 use crate::rests_on::Reached;
-use hadar::demand::{self, Ledger, Skipping, Work};
+use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
-use hadar::fisher::Nuisance;
-use hadar::identifiability::{Status, detection};
+use hadar::identifiability::detection;
 use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
 use hadar::policy::caps::{self, Circumstances};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
@@ -18,14 +16,13 @@ mod curves;
 mod reach;
 pub(crate) mod sensitivity;
 mod trade_offs;
+mod verdict;
 
 pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
-
-/// What a verdict is of.
-const PIXEL: &str = "pixel";
+pub use verdict::{Answer, Finding, Verdict, VerdictAlone, YesNo};
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -64,20 +61,6 @@ pub struct Sizing {
     pub stats: Work,
 }
 
-/// The answer to 'can this camera do it' by the cheapest proofs, and no more.
-#[derive(Debug, Clone, serde::Serialize)]
-#[non_exhaustive]
-pub struct VerdictAlone {
-    /// The scenario with its defaults filled in.
-    pub scenario: Scenario,
-    /// Yes or no; the distance reached is not known.
-    pub verdict: Verdict,
-    /// The first alternative found that the camera does not tell; there may be more.
-    pub not_told_from: Option<String>,
-    /// What it took.
-    pub stats: Work,
-}
-
 /// Parts of a sizing beside its verdict; all of them where nobody says otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SizeAsked {
@@ -91,122 +74,6 @@ impl Default for SizeAsked {
     fn default() -> Self {
         Self { solutions: true, sensitivity: true }
     }
-}
-
-/// Yes or no.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct Verdict {
-    /// Whether the requirement is met; `None` without a camera.
-    pub met: Option<bool>,
-    /// What it is not met by; empty if it is met or there is no camera.
-    pub fails_by: Vec<Shortfall>,
-    /// Yes, no, or that neither is shown; `None` without a camera.
-    pub answer: Option<YesNo>,
-    /// What it is of: one pixel.
-    pub scope: &'static str,
-    /// The answer, in JSON a sentence.
-    pub sentence: Finding,
-    /// Statistical distance that the camera reaches against the limiting alternative.
-    pub statistical_distance: Option<f64>,
-    /// The limit of it, whichever distance decides: that of the nearest.
-    pub statistical_distance_nearest: Option<f64>,
-    /// What the distance is at least: proved.
-    pub lower: Option<f64>,
-    /// What it is at most: a state that was found shows it.
-    pub upper: Option<f64>,
-    /// Statistical distance demanded.
-    pub required_distance: f64,
-    /// The least over that demanded.
-    pub margin: Option<f64>,
-    /// What a 'yes' rests on, hardest first; of a 'no' what was taken on the unfavourable side.
-    pub conditions: Vec<Condition>,
-    /// Codes of conditions that whoever asks accepts.
-    pub accepted: Vec<String>,
-    /// How sure it is; `None` without a camera.
-    pub grade: Option<Sureness>,
-}
-
-hadar::named! {
-    /// A verdict.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-    #[serde(rename_all = "kebab-case")]
-    pub enum YesNo {
-        /// The requirement is met, under the conditions that are listed.
-        Yes = "yes",
-        /// It is not.
-        No = "no",
-        /// What is proved does not reach it, what was found does.
-        Undecided = "undecided",
-    }
-    /// The name in JSON.
-    name
-}
-
-impl Verdict {
-    /// Conditions that are favourable and not among the accepted codes: with one of them, a 'yes' is none that a program may rely on.
-    pub fn open(&self) -> impl Iterator<Item = &Condition> {
-        Condition::open(&self.conditions).filter(|one| !self.accepted.contains(&one.code()))
-    }
-}
-
-/// What there is to be said of a camera, target and alternative.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Finding {
-    /// Name of the camera; empty without one.
-    pub camera: String,
-    /// The target.
-    pub target: String,
-    /// What it is to be told from; every alternative where `None`.
-    pub alternative: Option<String>,
-    /// Statistical distance demanded.
-    pub required: f64,
-    /// Which distance decides: only the nearest is a limit.
-    pub by: DistanceKind,
-    /// What was found.
-    pub answer: Answer,
-    /// Emissivities of the two, where each is entered as one number.
-    pub placeholders: Option<[f64; 2]>,
-    /// Where target or alternative is a class, what its members say together.
-    pub classes: Option<Box<ClassAnswer>>,
-    /// What a 'yes' rests on, hardest first.
-    pub conditions: Vec<Condition>,
-    /// Pixels on the target, where it is more than one.
-    pub pixels: Option<f64>,
-}
-
-/// What was found.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Answer {
-    /// No photons suffice: the spectra are equal.
-    NothingDiffers,
-    /// No photons suffice: the unknowns imitate the other material.
-    UnknownsExplain,
-    /// The unknowns are as many as the bands, and so imitate the other material.
-    TooFewBands {
-        /// Number of bands.
-        bands: usize,
-        /// What is unknown.
-        unknowns: Vec<Nuisance>,
-    },
-    /// There is no camera to judge.
-    Takes {
-        /// Photons by the distance that decides.
-        photons: f64,
-        /// Photons that any camera needs, by the nearest; none suffice where `None`.
-        limit: Option<f64>,
-    },
-    /// The camera was judged.
-    Judged {
-        /// Whether the statistical distance is reached.
-        enough: bool,
-        /// What is wrong with the image.
-        spoiled: Vec<Shortfall>,
-        /// Statistical distance reached, where it is known.
-        reached: Option<f64>,
-        /// That of the nearest distance, where it is known.
-        limit: Option<f64>,
-    },
 }
 
 /// What the task demands of any camera, against the limiting alternative.
@@ -364,68 +231,6 @@ impl Study {
         })
     }
 
-    /// Whether the camera misses the requirement, ending at the first proof; `None` without a camera, and where it meets it: what a 'yes'
-    /// rests on takes the whole answer.
-    ///
-    /// # Errors
-    /// As [`Study::told_apart`].
-    pub fn no_alone(&self) -> Result<Option<VerdictAlone>> {
-        let Some(camera) = &self.camera else { return Ok(None) };
-        let check = self.check(Skipping::On)?;
-        let result = self.camera_result(self.photon_radiance());
-        let spoiled = self.spoiled(result.as_ref());
-        if check.identifiable && spoiled.is_empty() {
-            return Ok(None);
-        }
-        let alternative = match (&check.not_told_from, self.alternatives.as_slice()) {
-            (Some(name), _) => Some(name.clone()),
-            (None, [only]) => Some(only.name.clone()),
-            (None, _) => None,
-        };
-        let index = check.failed.or((self.alternatives.len() == 1).then_some(0));
-        let judged = Answer::Judged {
-            enough: check.identifiable,
-            spoiled: spoiled.clone(),
-            reached: None,
-            limit: None,
-        };
-        let brightest = self.brightest_member(camera);
-        let mut conditions = self.unstated(camera, brightest);
-        conditions.retain(|one| one.counts(false));
-        hardest_first(&mut conditions);
-        let sentence = Finding {
-            camera: camera.name.clone(),
-            target: self.target.name.clone(),
-            required: self.required,
-            by: self.scenario.requirement.by,
-            answer: self.too_few_bands().filter(|_| !check.identifiable).unwrap_or(judged),
-            placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
-            classes: index.and_then(|index| self.classes.get(index)).cloned().map(Box::new),
-            alternative,
-            conditions: conditions.clone(),
-            pixels: self.pixels_on_target(camera),
-        };
-        let by_distance = (!check.identifiable).then_some(Shortfall::Distance);
-        let verdict = Verdict {
-            met: Some(false),
-            fails_by: by_distance.into_iter().chain(spoiled).collect(),
-            answer: Some(YesNo::No),
-            scope: PIXEL,
-            sentence,
-            statistical_distance: None,
-            statistical_distance_nearest: None,
-            lower: None,
-            upper: None,
-            required_distance: self.required,
-            margin: None,
-            conditions,
-            accepted: Vec::new(),
-            grade: Some(Sureness::Proved),
-        };
-        let Check { scenario, not_told_from, stats, .. } = check;
-        Ok(Some(VerdictAlone { scenario, verdict, not_told_from, stats }))
-    }
-
     fn requirement(&self, pair: &PairResult, index: usize, photon_radiance: f64) -> RequirementResult {
         let hardware = |photons: Option<f64>| {
             photons.map(|photons| policy::hardware_required_m2_s(photons, photon_radiance))
@@ -533,101 +338,6 @@ impl Study {
             solved.push((quantity, solution));
         }
         Ok(Solutions(solved))
-    }
-
-    fn verdict(
-        &self,
-        reached: &Reached<'_>,
-        index: usize,
-        requirement: &RequirementResult,
-        spoiled: Vec<Shortfall>,
-    ) -> Result<Verdict> {
-        let pair = reached.pair;
-        let (distance, limit) = (pair.statistical_distance, pair.statistical_distance_nearest);
-        let mixtures = self.classes.get(index).and_then(|answer| answer.mixtures.as_ref());
-        let proved = mixtures.map(|found| found.distance_lower);
-        let far_enough = pair.told_apart;
-        let met = far_enough.map(|enough| enough && spoiled.is_empty());
-        let bounds = pair.statistical_distance_bounds;
-        let lower = bounds.map(|[lower, _]| proved.map_or(lower, |proved| lower.min(proved)));
-        let upper = bounds.map(|[_, upper]| mixtures.map_or(upper, |found| upper.min(found.distance)));
-        let answer = far_enough.map(|enough| match upper {
-            _ if enough && spoiled.is_empty() => YesNo::Yes,
-            Some(upper) if !enough && spoiled.is_empty() && upper >= self.required => YesNo::Undecided,
-            _ => YesNo::No,
-        });
-        let conditions = match &self.camera {
-            Some(camera) => self.conditions(camera, met == Some(true), reached)?,
-            None => Vec::new(),
-        };
-        let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
-        fails_by.extend(&spoiled);
-        let few = self.too_few_bands().filter(|_| far_enough != Some(true));
-        let found = match (distance, requirement.photons, pair.status) {
-            (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
-            (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
-            (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
-            (None, Some(photons), _) => Answer::Takes { photons, limit: requirement.photons_by.nearest },
-            (Some(_), Some(_), _) => {
-                Answer::Judged { enough: far_enough == Some(true), spoiled, reached: upper, limit }
-            }
-        };
-        let proved =
-            pair.proof == NearestProof::Proved && self.scenario.requirement.by == DistanceKind::Nearest;
-        let grade = answer.map(|_| match proved && !self.unknowns.has_priors() {
-            _ if conditions.iter().any(Condition::favourable) => Sureness::Assumed,
-            true => Sureness::Proved,
-            false => Sureness::Searched,
-        });
-        let sentence = Finding {
-            camera: self.camera.as_ref().map_or_else(String::new, |camera| camera.name.clone()),
-            target: pair.target.clone(),
-            alternative: Some(pair.alternative.clone()),
-            required: self.required,
-            by: self.scenario.requirement.by,
-            answer: found,
-            placeholders: self.one_numbers(&pair.alternative),
-            classes: self.classes.get(index).cloned().map(Box::new),
-            conditions: conditions.clone(),
-            pixels: self.camera.as_ref().and_then(|camera| self.pixels_on_target(camera)),
-        };
-        Ok(Verdict {
-            met,
-            fails_by,
-            answer,
-            scope: PIXEL,
-            sentence,
-            statistical_distance: distance,
-            statistical_distance_nearest: limit,
-            lower,
-            upper,
-            required_distance: self.required,
-            margin: lower.map(|lower| lower / self.required),
-            conditions,
-            accepted: Vec::new(),
-            grade,
-        })
-    }
-
-    /// Pixels on a target of a known size, where it is more than one.
-    fn pixels_on_target(&self, camera: &Camera) -> Option<f64> {
-        let target = &self.scenario.target;
-        let across = target.size_m? / camera.footprint_m(target.distance_m?);
-        (across > 1.0).then_some(across * across)
-    }
-
-    /// Emissivities of the target and of an alternative by its name, where each is entered as one number.
-    pub(crate) fn one_numbers(&self, alternative: &str) -> Option<[f64; 2]> {
-        self.target.placeholders(self.alternative(alternative)?)
-    }
-
-    /// That there are no more bands than unknowns, where it is so.
-    fn too_few_bands(&self) -> Option<Answer> {
-        let unknowns = self.decisive_unknowns();
-        (!self.enough_bands(&unknowns)).then(|| {
-            let named = Nuisance::ALL.into_iter().filter(|nuisance| unknowns.contains(*nuisance));
-            Answer::TooFewBands { bands: self.bands.len(), unknowns: named.collect() }
-        })
     }
 
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.

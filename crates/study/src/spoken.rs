@@ -11,7 +11,7 @@ use crate::condition::Taken;
 use crate::range::DepthFinding;
 use crate::rule::{Certified, Definition, EmissivityError, IdealCamera, Quotable, WhoMeets};
 use crate::warning::Warning;
-use crate::{Condition, Finding, Sureness};
+use crate::{Condition, Finding};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::cell::Cell;
 
@@ -126,12 +126,6 @@ impl Serialize for Condition {
         }
         object.serialize_field("sentence", &Spoken(Phrase::Condition(self)))?;
         object.end()
-    }
-}
-
-impl Serialize for Sureness {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
     }
 }
 

@@ -128,6 +128,6 @@ fn only_check(study: &Study, accepted: &[String], global: &Global) -> Result<u8>
     let mut result = study.check_with_conditions(global.skipping())?;
     result.accepted = accepted.to_vec();
     global.answer(&result, &identify::check(&result, study), &result.stats)?;
-    let is_open = Condition::open(&result.conditions).any(|one| !accepted.contains(&one.code()));
+    let is_open = Condition::unaccepted(&result.conditions, accepted).next().is_some();
     Ok(if result.identifiable && !is_open { 0 } else { 3 })
 }

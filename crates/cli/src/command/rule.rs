@@ -11,7 +11,9 @@ use hadar_report::rule;
 use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::sweep::Question;
-use hadar_study::{Condition, Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
+use hadar_study::{
+    CameraAnswer, Condition, Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning,
+};
 use serde_json::Value;
 use std::fs::File;
 use std::io::Read as _;
@@ -262,11 +264,10 @@ fn sources(rule_read: &Rule, global: &Global) -> Result<u8> {
 }
 
 fn code(args: &RuleArgs, answer: &RuleAnswer) -> u8 {
-    let is_open = |one: &Condition| !args.accept.contains(&one.code());
-    let mut met = answer
-        .cameras
-        .iter()
-        .map(|camera| camera.passes && !Condition::open(&camera.conditions).any(is_open));
+    let is_met = |camera: &CameraAnswer| {
+        camera.passes && Condition::unaccepted(&camera.conditions, &answer.accepted).next().is_none()
+    };
+    let mut met = answer.cameras.iter().map(is_met);
     let enough = if args.any { met.any(|passes| passes) } else { met.all(|passes| passes) };
     if args.check && !enough { 3 } else { 0 }
 }

@@ -136,6 +136,11 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
             "a.toml:14: requirement.by: an envelope is searched by the nearest distance only",
         ),
         (
+            "distance = 1.0",
+            "distance = 1.0\ntime = \"1 us\"",
+            "a.toml:14: requirement.time: a time in the requirement of a rule, which would not be judged; write start = ",
+        ),
+        (
             "[envelope]",
             "[rule]\nname = 1\n[envelope]",
             "a.toml:15: rule.name: the number 1 was found; write text in quotes",

@@ -72,6 +72,10 @@ pub struct Difference {
     /// Whether a 'Yes' is a 'No' or the other way; where nothing is decided, and of the text of a folder, whether the words are
     /// others.
     pub verdict_changed: bool,
+    /// What the second's 'yes' rests on and the first's does not, by code and, of several, camera.
+    pub conditions_came: Vec<String>,
+    /// What the first's does and the second's does not.
+    pub conditions_went: Vec<String>,
     /// Keys of the question.
     pub question: Vec<Changed>,
     /// Files that were read, by their SHA-256.
@@ -123,6 +127,8 @@ impl Difference {
             compared: before.figures.keys().chain(after.figures.keys()).collect::<BTreeSet<_>>().len(),
             figures,
             curves,
+            conditions_came: more(&after.conditions, &before.conditions),
+            conditions_went: more(&before.conditions, &after.conditions),
             warnings_came: others(after, before),
             warnings_went: others(before, after),
             files: changed(&before.files, &after.files),
@@ -130,6 +136,7 @@ impl Difference {
         };
         found.warnings_changed = reworded(before, after);
         found.same = found.verdict.is_none()
+            && before.conditions == after.conditions
             && found.question.is_empty()
             && found.inputs.is_empty()
             && found.figures.is_empty()
@@ -138,6 +145,15 @@ impl Difference {
             && found.files.is_empty();
         Ok(found)
     }
+}
+
+/// Conditions that one has more than another.
+fn more(own: &BTreeSet<[String; 2]>, other: &BTreeSet<[String; 2]>) -> Vec<String> {
+    let said = |[camera, code]: &[String; 2]| match camera.as_str() {
+        "" => format!("[{code}]"),
+        camera => format!("[{code}] {camera}"),
+    };
+    own.difference(other).map(said).collect()
 }
 
 /// The Yes or No of the text of a folder, or the sentence itself.

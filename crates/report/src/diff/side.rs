@@ -3,6 +3,7 @@
 //! An item of a list goes by its name where it has one (`pairs[aluminium].distance_nearest`), a row of a table by the first columns that
 //! tell rows apart; of curves there are tables, not values. An error that is stated beside a value goes with it.
 
+use crate::bundle::CONDITIONS;
 use crate::manifest::{Manifest, sha256};
 use hadar::error::{Error, Result};
 use hadar_formats::file;
@@ -50,6 +51,8 @@ pub struct Side {
     pub(super) inputs: BTreeMap<String, String>,
     pub(super) figures: BTreeMap<String, Figure>,
     pub(super) warnings: BTreeSet<[String; 2]>,
+    /// What its 'yes' rests on: the camera, where there are several, and the code.
+    pub(super) conditions: BTreeSet<[String; 2]>,
     /// Files that hold neither tables nor words, by their hashes.
     pub(super) files: BTreeMap<String, String>,
 }
@@ -98,6 +101,7 @@ impl Side {
             }
             let text = String::from_utf8_lossy(&bytes);
             match name {
+                CONDITIONS => side.rests_on(&text).map_err(|error| error.in_file(&path))?,
                 _ if end == "csv" && name != "warnings.csv" => {
                     let drawn = names.contains(name.replace(".csv", ".png").as_str());
                     let table = table(&text, name, drawn).map_err(|error| error.in_file(&path))?;
@@ -146,6 +150,7 @@ impl Side {
                 _ => String::new(),
             };
         side.decided = decided(&answer);
+        side.conditions = conditions(&answer);
         for (key, value) in &answer {
             match key.as_str() {
                 "hadar" | "schema" | "stats" | "set" | "sentence" => {}
@@ -183,6 +188,16 @@ impl Side {
         self.question = keys.into_iter().map(|(key, figure)| (key, plain(&figure.value))).collect();
     }
 
+    fn rests_on(&mut self, text: &str) -> Result<()> {
+        for row in rows(text)?.1 {
+            let cell = |at: usize| row.get(at).cloned().unwrap_or_default();
+            if cell(3) == "true" {
+                self.conditions.insert([cell(0), cell(1)]);
+            }
+        }
+        Ok(())
+    }
+
     fn warned(&mut self, text: &str) -> Result<()> {
         for row in rows(text)?.1 {
             let cell = |at: usize| row.get(at).cloned().unwrap_or_default();
@@ -190,6 +205,20 @@ impl Side {
         }
         Ok(())
     }
+}
+
+/// What a 'yes' rests on, as the JSON of an answer has it.
+fn conditions(answer: &Map<String, Value>) -> BTreeSet<[String; 2]> {
+    let of = |camera: &str, all: Option<&Value>| -> Vec<[String; 2]> {
+        let open =
+            all.and_then(Value::as_array).into_iter().flatten().filter(|one| one["favourable"] == true);
+        open.filter_map(|one| Some([camera.to_owned(), one["code"].as_str()?.to_owned()])).collect()
+    };
+    let own = [answer.get("verdict").and_then(|verdict| verdict.get("conditions")), answer.get("conditions")];
+    let cameras = answer.get("cameras").and_then(Value::as_array).into_iter().flatten();
+    let of_cameras =
+        cameras.flat_map(|one| of(one["name"].as_str().unwrap_or_default(), one.get("conditions")));
+    own.into_iter().flat_map(|all| of("", all)).chain(of_cameras).collect()
 }
 
 /// What an answer decides, as its JSON has it.

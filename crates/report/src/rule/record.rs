@@ -146,10 +146,16 @@ pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificat
             .collect()
     };
     // What rests on something that nobody stated or checked is no pass, unless whoever asks accepts it.
+    // A rule with a value set over it is not the rule of the file that the statement names.
     let surely = |line: &Line<'_>| {
-        Condition::open(line.conditions).all(|one| answer.accepted.contains(&one.code()))
-            && matches!(line.evidence, Grade::Proved)
+        let is_another = line.conditions.iter().any(|one| matches!(one, Condition::Setting { .. }));
+        let is_open = Condition::unaccepted(line.conditions, &answer.accepted).next().is_some();
+        !is_another && !is_open && line.evidence == Grade::Proved
     };
+    let rests_on = answer.cameras.iter().map(|camera| {
+        let open: Vec<String> = Condition::open(&camera.conditions).map(Condition::code).collect();
+        (camera.name.clone(), json!(open))
+    });
     let passed = of(&|line| line.verdict == Verdict::Meets && surely(line));
     let failed = of(&|line| line.verdict == Verdict::Fails);
     let warned = of(&|line| match line.verdict {
@@ -178,6 +184,8 @@ pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificat
             "passedTests": passed,
             "warnedTests": warned,
             "failedTests": failed,
+            "conditions": rests_on.collect::<serde_json::Map<_, _>>(),
+            "accepted": answer.accepted,
         },
     })
 }

@@ -129,6 +129,15 @@ impl Say for Condition {
             }
             Self::NoAir => "the air on the path takes nothing away".into(),
             Self::NoSurroundings => "nothing around the target lights it".into(),
+            Self::DarkRest { share: rest } => {
+                format!(
+                    "what fills the other {} of the hemisphere above the target is black and cold",
+                    share(*rest)
+                )
+            }
+            Self::Waits { time_s } => {
+                format!("the decision may wait {} until all is read", quantity(*time_s, "s"))
+            }
             Self::Calibrated { known, .. } => {
                 let known: Vec<&str> = known
                     .iter()
@@ -151,7 +160,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 19] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 21] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -229,6 +238,16 @@ pub(crate) const EXPLAINED: [[&str; 3]; 19] = [
         "Write [[environment]] with what is around the target.",
     ],
     [
+        "dark-rest",
+        "The lighting factors add up to less than 1: a part of what is around the target is black and cold.",
+        "Write an [[environment]] for the rest: sky, ground, walls.",
+    ],
+    [
+        "acquisition-time",
+        "Nobody states how long the decision may take: all bands of all frames are read first.",
+        "Write requirement.time.",
+    ],
+    [
         "calibrated",
         "What is not among the unknowns is known: the gain of the camera, the temperatures of the surroundings.",
         "Write unknown.nuisances, with \"gain\" and \"environment-temperature\" where they are not known.",
@@ -256,12 +275,13 @@ pub(crate) fn yes(conditions: &[Condition]) -> String {
     }
 }
 
-/// That a demand is met, with the hardest of its conditions.
-pub(crate) fn met(conditions: &[Condition]) -> String {
-    match Condition::open(conditions).next() {
-        None => "met".into(),
-        Some(_) => yes(conditions),
-    }
+/// A 'yes' on a line of its own: the hardest of its conditions in words, the others by their codes.
+pub(crate) fn yes_alone(conditions: &[Condition]) -> String {
+    let mut open = Condition::open(conditions);
+    let Some(hardest) = open.next() else { return "met".into() };
+    let more: Vec<String> = open.map(Condition::code).collect();
+    let more = if more.is_empty() { String::new() } else { format!(" (and {})", more.join(", ")) };
+    format!("yes, if {}{more}", hardest.say())
 }
 
 /// All conditions of a 'yes', or of a 'no', in a paragraph of their own; nothing without.

@@ -36,6 +36,12 @@ pub fn text(found: &Difference) -> String {
         let side = |text: &Option<String>| text.clone().unwrap_or_default();
         let _ = write!(out, "\nVerdict\n  {}\n  {}\n", side(&verdict.before), side(&verdict.after));
     }
+    let rests_on = |sign: char, all: &[String]| -> Vec<String> {
+        all.iter().map(|one| format!("{sign} {one}")).collect()
+    };
+    let mut conditions = rests_on('+', &found.conditions_came);
+    conditions.extend(rests_on('-', &found.conditions_went));
+    section(&mut out, "What a yes rests on that came (+) and went (-)", conditions);
     section(&mut out, "What was asked", found.question.iter().map(changed).collect());
     section(
         &mut out,

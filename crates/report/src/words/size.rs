@@ -108,6 +108,15 @@ fn answered(finding: &Finding) -> String {
             "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
             significant(*photons, 3)
         ),
+        Answer::Judged { enough: false, spoiled, reached: Some(reached), proved: Some(proved), .. }
+            if spoiled.is_empty() && *reached >= finding.required =>
+        {
+            let [proved, reached] = [proved, reached].map(|d| reliability(*d));
+            format!(
+                "Undecided: whether {camera} can tell {target} from {other} with {wanted} reliability; {proved} are proved, and no state \
+                 was found in which it is less than {reached}."
+            )
+        }
         Answer::Judged { enough, spoiled, reached, .. } => {
             let (yes, can) = match (enough, spoiled.is_empty()) {
                 (true, true) => (yes(finding), "can"),
@@ -166,7 +175,7 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
                  nearest, the limit, {limit}."
             )
         }
-        Answer::Judged { enough, spoiled, reached, limit } => {
+        Answer::Judged { enough, spoiled, reached, limit, .. } => {
             let (yes, tells) = match (enough, spoiled.is_empty()) {
                 (true, true) => (yes(finding), "tells"),
                 (true, false) => ("No".into(), "would tell"),
@@ -220,7 +229,7 @@ mod tests {
     }
 
     fn judged(enough: bool, spoiled: Vec<Shortfall>) -> Finding {
-        finding(Answer::Judged { enough, spoiled, reached: Some(2.0), limit: Some(2.0) })
+        finding(Answer::Judged { enough, spoiled, reached: Some(2.0), proved: Some(2.0), limit: Some(2.0) })
     }
 
     #[test]
@@ -238,6 +247,21 @@ mod tests {
         );
         let end = "Both are entered as one number (0.95 and 0.9): that says nothing of real surfaces.";
         assert!(said.ends_with(end), "{said}");
+    }
+
+    /// What is proved does not reach it, what was found does: neither yes nor no.
+    #[test]
+    fn what_is_not_proved_is_undecided() {
+        let found = Answer::Judged {
+            enough: false,
+            spoiled: Vec::new(),
+            reached: Some(1.1),
+            proved: Some(0.8),
+            limit: Some(1.1),
+        };
+        let said = finding(found).say();
+        assert!(said.starts_with("Undecided: whether ours can tell skin from aluminium"), "{said}");
+        assert!(said.contains("78.8 % are proved") && said.contains("less than 86.4 %"), "{said}");
     }
 
     /// No shortfall is called by another's name.

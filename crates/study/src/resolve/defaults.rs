@@ -59,12 +59,18 @@ pub(super) fn fill(
         let used = CameraSpec::of(camera);
         // What nobody stated and may be worse is not stated by the program either.
         let is_open = |key: &str| camera.assumed.iter().any(|one| one.favourable && one.figure == key);
+        let noise_is_open =
+            TABLE.iter().any(|row| matches!(row.part, Part::Condition(_)) && is_open(row.key));
         for row in TABLE {
             let is_filled = match row.part {
                 Part::Own => !is_open(row.key),
                 Part::Noise => false,
                 Part::Condition(noises) => {
-                    noises.iter().any(|key| figures::row(key).is_some_and(|noise| noise.is_given(spec)))
+                    // Nor is half of what a noise is stated for.
+                    !noise_is_open
+                        && noises
+                            .iter()
+                            .any(|key| figures::row(key).is_some_and(|noise| noise.is_given(spec)))
                 }
             };
             if is_filled && !row.is_given(spec) {

@@ -87,6 +87,11 @@ impl Approach {
     }
 }
 
+/// Whether a manoeuvre says how much time there is until the decision.
+pub(super) fn is_timed(stop: Option<&Stop>) -> bool {
+    stop.and_then(Stop::hastiest).is_some_and(|one| one.time_s.is_some())
+}
+
 /// What a manoeuvre spoils of a camera's frames, whatever they are for: they blur, or come too late.
 pub(super) fn spoiled(
     moving: Option<Moving>,

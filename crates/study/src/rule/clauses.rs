@@ -1,12 +1,12 @@
 //! What comes of the clauses of a rule, as data.
 
 use super::results::{
-    ApproachResult, CameraVerdict, EnvelopeResult, Grade, NotIdentifiable, RuleRequirement, StopResult,
-    WhoMeets,
+    ApproachResult, CameraVerdict, EnvelopeResult, NotIdentifiable, RuleRequirement, StopResult, WhoMeets,
 };
 use super::uncertainty::MarginUncertainty;
 use crate::companion::Companion;
 use crate::condition::Condition;
+use crate::grade::Grade;
 use crate::{Shortfall, Warning};
 use hadar::demand::Work;
 use hadar::ranging::depth::Demand;

@@ -7,10 +7,10 @@
 //! which no window shows the object is not met.
 
 use super::apart::steps;
-use super::approach::{Approach, Moving, spoiled};
+use super::approach::{Approach, Moving, is_timed, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
-use super::results::Grade;
+use crate::grade::Grade;
 use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
 use crate::rests_on::{of_figures, of_measured};
 use crate::warn::contradiction;
@@ -45,7 +45,8 @@ struct Before {
     /// Whether the rule has air, which the street has not.
     air: bool,
     bands: usize,
-    speed_m_s: Option<f64>,
+    /// At which speed, m s⁻¹, and whether the time of the decision is judged.
+    asked: (Option<f64>, bool),
 }
 
 /// What is found from one distance.
@@ -79,7 +80,7 @@ impl DepthClause {
                 None => Moving { distance_m: distances_m.first().copied(), ..moving },
             });
             let spoiled = spoiled(moving, stop, &named.camera, bands);
-            let (count, speed_m_s) = (bands, moving.map(|moving| moving.speed_m_s));
+            let (count, asked) = (bands, (moving.map(|moving| moving.speed_m_s), is_timed(stop)));
             let air = scenario.atmosphere.is_some();
             let bands = BandsSpec { source: scenario.bands.source.clone(), ..BandsSpec::default() };
             let mut range = RangeScenario {
@@ -98,7 +99,7 @@ impl DepthClause {
                 Ok((distance_m, RangeStudy::new(&range, library)?))
             };
             let studies = distances_m.into_iter().map(from).collect::<Result<_>>()?;
-            Ok(Before { named: named.clone(), studies, approach, spoiled, air, bands: count, speed_m_s })
+            Ok(Before { named: named.clone(), studies, approach, spoiled, air, bands: count, asked })
         };
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
         Ok(Self { demand: demand.clone(), cameras, set: rule.scenario.source.settings.clone() })
@@ -195,7 +196,7 @@ impl DepthClause {
         let passes = verdict == Verdict::Meets;
         let (camera, bands) = (&before.named.camera, before.bands);
         let figures = of_figures(camera, bands, None);
-        let conditions = of_measured(figures, (camera, bands), before.speed_m_s, &self.set, passes);
+        let conditions = of_measured(figures, (camera, bands), before.asked, &self.set, passes);
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),
             verdict,
@@ -261,7 +262,7 @@ mod tests {
                 spoiled: Vec::new(),
                 air: false,
                 bands: 1,
-                speed_m_s: None,
+                asked: (None, false),
             },
         )
     }

@@ -5,12 +5,12 @@
 //! count as one. It is least at the greatest distance from which a frame
 //! is taken.
 
-use super::approach::{Approach, Moving};
+use super::approach::{Approach, Moving, is_timed};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
-use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use crate::Shortfall;
+use crate::grade::Grade;
 use crate::rests_on::of_measured;
 use crate::warn::contradiction;
 use hadar::error::{Error, Result};
@@ -105,7 +105,13 @@ impl Resolution {
         let evidence = Grade::Proved.guarded(verdict, uncertainty.as_ref());
         let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
         let set = &self.rule.scenario.source.settings;
-        let conditions = of_measured(Vec::new(), (&named.camera, bands), speed_m_s, set, passes);
+        let conditions = of_measured(
+            Vec::new(),
+            (&named.camera, bands),
+            (speed_m_s, is_timed(self.stop.as_ref().map(StopSpec::stop))),
+            set,
+            passes,
+        );
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,

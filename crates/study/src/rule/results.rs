@@ -3,6 +3,7 @@
 use super::not_in_force::NotInForce;
 use super::uncertainty::MarginUncertainty;
 use crate::condition::Condition;
+use crate::grade::Grade;
 use crate::size::Solutions;
 use crate::{ClassSide, NearestState, Shortfall, Warning};
 use hadar::instrument::Readout;
@@ -360,32 +361,7 @@ pub struct ApproachResult {
     pub footprint_m: f64,
 }
 
-hadar::named! {
-    /// How strong the evidence of a line is, the strongest first.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-    #[serde(rename_all = "kebab-case")]
-    pub enum Grade {
-        /// It holds for all scenes, or one scene shows that it does not.
-        Proved = "proved",
-        /// The worst scene was searched, and no worse one is excluded.
-        Searched = "searched",
-        /// Found by draws.
-        Simulated = "simulated",
-        /// It rests on something that nobody states.
-        Assumed = "assumed",
-        /// Nothing can be said.
-        NotStated = "not stated",
-    }
-    /// Its name, e.g. `proved`.
-    name
-}
-
 impl Grade {
-    /// The same of what rests on such conditions too.
-    pub(super) fn under(self, conditions: &[Condition]) -> Self {
-        if Condition::open(conditions).next().is_some() { self.max(Self::Assumed) } else { self }
-    }
-
     /// That of a line with such a verdict, if its margin is guarded: what is promised then rests on draws.
     pub(super) fn guarded(self, verdict: Verdict, uncertainty: Option<&MarginUncertainty>) -> Self {
         let drawn = uncertainty.is_some_and(|found| found.low < found.high);

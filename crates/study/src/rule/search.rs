@@ -6,11 +6,12 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
-use super::approach::spoiled;
+use super::approach::{is_timed, spoiled};
 use super::envelope::{Estimate, Sighted, brightest};
-use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, WithoutPlaceholders};
+use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
 use crate::condition::{Condition, hardest_first};
+use crate::grade::Grade;
 use crate::proviso::Proviso;
 use crate::rests_on::Circumstances;
 use crate::warn::contradiction;
@@ -191,7 +192,12 @@ impl TellApart {
             return Vec::new();
         };
         let farthest_m = candidate.distance_m.map(|[_, most]| most);
-        let asked = Circumstances { speed_m_s: self.pace_m_s(), distance_m: farthest_m, of_rule: true };
+        let asked = Circumstances {
+            speed_m_s: self.pace_m_s(),
+            distance_m: farthest_m,
+            of_rule: true,
+            is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
+        };
         let mut found = near.of_camera(camera, image.reading);
         found.extend(near.of_scene(camera, asked));
         found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));

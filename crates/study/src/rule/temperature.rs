@@ -5,13 +5,13 @@
 //! in the envelope: corners and scenes between them are looked at, then the largest is followed uphill, one range after the other,
 //! in ever smaller steps. Nothing proves that no scene is worse.
 
-use super::approach::{Approach, Moving, spoiled};
+use super::approach::{Approach, Moving, is_timed, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
-use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use super::{apart, cameras};
+use crate::grade::Grade;
 use crate::rests_on::{of_figures, of_measured};
 use crate::warn::contradiction;
 use crate::{Shortfall, Study};
@@ -171,7 +171,13 @@ impl TemperatureClause {
         let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
         let set = &self.rule.scenario.source.settings;
         let figures = of_figures(&named.camera, bands, brightest);
-        let conditions = of_measured(figures, (&named.camera, bands), speed_m_s, set, passes);
+        let conditions = of_measured(
+            figures,
+            (&named.camera, bands),
+            (speed_m_s, is_timed(self.stop.as_ref().map(StopSpec::stop))),
+            set,
+            passes,
+        );
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,

@@ -24,7 +24,7 @@ pub fn check(answer: &RuleAnswer) -> String {
     let mut out = idle;
     for (index, camera) in answer.cameras.iter().enumerate() {
         let met = match camera.verdict {
-            Verdict::Meets => conditions::met(&camera.conditions),
+            Verdict::Meets => conditions::yes_alone(&camera.conditions),
             Verdict::Undecided => "undecided".into(),
             Verdict::Fails => "not met".into(),
         };
@@ -49,7 +49,7 @@ pub fn check(answer: &RuleAnswer) -> String {
 fn sure(conditions: &[Condition], evidence: Grade) -> String {
     match Condition::open(conditions).next() {
         None => evidence.name().to_owned(),
-        Some(_) => format!("{}: {}", conditions::yes(conditions), evidence.name()),
+        Some(_) => format!("{}: {}", conditions::yes_alone(conditions), evidence.name()),
     }
 }
 
@@ -93,7 +93,7 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
             }
             _ => {
                 let least = times(low * required);
-                let met = conditions::met(&camera.conditions);
+                let met = conditions::yes_alone(&camera.conditions);
                 format!("{met}, but searched and not proved: {least} where it is least{guarded}")
             }
         }
