@@ -241,8 +241,10 @@ fn a_check_is_a_line_a_camera() {
     assert_eq!(lines.len(), 2, "{}", outcome.stdout);
     assert!(
         lines[0].starts_with("ideal-pnrd: yes, if ")
-            && lines[0].contains(" more conditions: proved: at least ")
-            && lines[0].ends_with(" times the demand everywhere")
+            && lines[0].contains("calibrated): proved: at least ")
+            && lines[0].ends_with(" times the demand everywhere"),
+        "{}",
+        lines[0]
     );
     assert!(
         lines[1].starts_with("flir-a325sc: not met: 0.")

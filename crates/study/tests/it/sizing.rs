@@ -262,8 +262,8 @@ fn pixels_that_contradict_the_view_do_not_sharpen_the_picture() {
     assert!((speed.1.camera * blur(&few) / (30.0 / 3.6) - 1.0).abs() < 1e-9);
 }
 
-/// A camera of the scenario's own, not a preset: its NETD is stated under the conditions it was written with, so the
-/// filled-in scenario with only the solved quantity changed gives the demanded distance.
+/// A camera of the scenario's own whose NETD has its conditions: the filled-in scenario with only the solved quantity
+/// changed gives the demanded distance. (Where nobody states them, the echo does not either.)
 #[test]
 fn a_camera_of_ones_own_can_be_fed_back() {
     let text = r#"
@@ -281,6 +281,10 @@ fn a_camera_of_ones_own_can_be_fed_back() {
         f_number = 1.3
         focal_length = "18 mm"
         netd = "50 mK"
+        netd_temperature = "30 degC"
+        netd_f_number = 1.3
+        netd_pixel = "12 um"
+        noise_exposure = "12 ms"
     "#;
     let library = Library::embedded().unwrap();
     let study = Study::new(&Scenario::from_toml(text, None).unwrap(), &library).unwrap();
