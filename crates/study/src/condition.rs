@@ -16,6 +16,7 @@
 //! | `requirement.time` | the decision may wait: [`Condition::StillScene`], at a speed [`Condition::Waits`] |
 //! | reliability | d = 1, which the sentence tells |
 
+use crate::Shortfall;
 use crate::proviso::Proviso;
 use hadar::fisher::Nuisance;
 use hadar::instrument::Assumed;
@@ -46,8 +47,8 @@ pub struct RangeDecides {
     pub figure: &'static str,
     /// As it is stated, K, or a share.
     pub stated: [f64; 2],
-    /// The widest that was found not to change the answer, likewise.
-    pub holds: [f64; 2],
+    /// The widest that was found not to change the answer, likewise; `None` where it was not searched.
+    pub holds: Option<[f64; 2]>,
 }
 
 /// What is said of a condition whatever its data.
@@ -103,6 +104,11 @@ conditions! {
     } = "setting", Setting, "";
     /// A range that the scenario sets keeps out states that would not be told apart.
     Range(RangeDecides) = "range", Range, "alternatives.temperature";
+    /// What spoils the image, where distances alone are compared.
+    Spoiled {
+        /// By what.
+        by: Shortfall,
+    } = "image", Proviso, "camera.exposure";
     /// A reading of the distance decides which is no limit.
     NoLimit = "no-limit", Assumed, "requirement.by";
     /// A camera of one band that its entry models as if it read so many at once.
@@ -338,6 +344,7 @@ impl Condition {
             Self::Calibrated { known, .. } => Taken::Texts(known.iter().map(|one| one.name()).collect()),
             Self::LeftOut { materials } => Taken::Texts(materials.iter().map(String::as_str).collect()),
             Self::Setting { value, .. } => Taken::Text(value),
+            Self::Spoiled { by } => Taken::Text(by.code()),
             Self::NoLimit
             | Self::FillsPixel { .. }
             | Self::NoFilterLight

@@ -81,9 +81,7 @@ impl Study {
     pub fn identify_with_conditions(&self) -> Result<Identification> {
         let mut found = self.identify()?;
         if let Some(camera) = &self.camera {
-            let told = found.identifiability.told_from.is_some_and(|told| told > 0);
-            let all = found.identifiability.identifiable == Some(true);
-            found.conditions = self.conditions_of_check(camera, told, all)?;
+            found.conditions = self.conditions_of_pairs(camera, &found.pairs, &[])?;
         }
         Ok(found)
     }

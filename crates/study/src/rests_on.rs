@@ -2,7 +2,7 @@
 
 use crate::condition::{Condition, RangeDecides, hardest_first};
 use crate::proviso::Proviso;
-use crate::{PairResult, Study};
+use crate::{Apart, PairResult, Study};
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -58,7 +58,59 @@ impl Study {
         found.extend(
             self.one_numbers(&pair.alternative).map(|emissivities| Condition::Constants { emissivities }),
         );
-        if let Some([error, share_met]) = reached.errors.filter(|[_, share_met]| *share_met < SETTLED) {
+        found.extend(self.of_pair(camera, pair, reached.errors));
+        if met {
+            found.extend(self.ranges_that_decide(true, &|range| self.holds_in(range))?);
+        }
+        found.retain(|one| one.counts(met));
+        hardest_first(&mut found);
+        Ok(found)
+    }
+
+    /// The same of an answer to many questions: the target against each alternative, and all materials against all.
+    pub(crate) fn conditions_of_pairs(
+        &self,
+        camera: &Camera,
+        pairs: &[PairResult],
+        apart: &[&Apart],
+    ) -> Result<Vec<Condition>> {
+        let mut found = self.unstated(camera, self.brightest_member(camera));
+        let told = || pairs.iter().enumerate().filter(|(_, pair)| pair.told_apart == Some(true));
+        let constants = told().find_map(|(_, pair)| self.one_numbers(&pair.alternative));
+        found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
+        let least = |pair: &PairResult| pair.statistical_distance_bounds.map_or(0.0, |[lower, _]| lower);
+        let hardest = told().min_by(|(_, a), (_, b)| least(a).total_cmp(&least(b)));
+        if let Some((index, pair)) = hardest {
+            let own = self.against(index);
+            let alternative = own.alternatives.get(index);
+            let errors = alternative.map(|other| own.emissivity_errors(camera, other, index)).transpose()?;
+            let errors = errors.map(|found| [found.error, found.share_met]);
+            found.extend(own.of_pair(camera, pair, errors));
+        }
+        // Distances alone are compared here.
+        let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
+        found.extend(spoiled.into_iter().map(|by| Condition::Spoiled { by }));
+        let of_told = self.only(&told().map(|(index, _)| index).collect::<Vec<_>>());
+        let mut ranges = of_told.ranges_that_decide(true, &|range| of_told.holds_in(range))?;
+        let others = apart.iter().flat_map(|found| &found.told_apart);
+        if ranges.is_empty() && others.clone().next().is_some() {
+            let hold_in = |range: StateRange| {
+                let told = Self { range, ..self.clone() }.told_apart(Skipping::On, &|_, _| ())?.told_apart;
+                Ok(others.clone().all(|pair| told.contains(pair)))
+            };
+            ranges = self.ranges_that_decide(false, &hold_in)?;
+        }
+        found.extend(ranges);
+        let met = hardest.is_some() || others.clone().next().is_some();
+        found.retain(|one| one.counts(met));
+        hardest_first(&mut found);
+        Ok(found)
+    }
+
+    /// What the distance of a pair hangs on.
+    fn of_pair(&self, camera: &Camera, pair: &PairResult, errors: Option<[f64; 2]>) -> Vec<Condition> {
+        let mut found = Vec::new();
+        if let Some([error, share_met]) = errors.filter(|[_, share_met]| *share_met < SETTLED) {
             found.push(Condition::Emissivities { error, share_met });
         }
         if let (false, Some([lower, _])) = (camera.photon_bunching, pair.statistical_distance_bounds) {
@@ -69,31 +121,7 @@ impl Study {
                 found.push(Condition::Bunching { occupancy });
             }
         }
-        if met && self.scenario.requirement.by == DistanceKind::Nearest {
-            found.extend(self.ranges_that_decide()?);
-        }
-        found.retain(|one| one.counts(met));
-        hardest_first(&mut found);
-        Ok(found)
-    }
-
-    /// The same of an answer that ends at the first proof, and knows no distance.
-    /// `met` of some alternative at least, `all` of all of them.
-    pub(crate) fn conditions_of_check(
-        &self,
-        camera: &Camera,
-        met: bool,
-        all: bool,
-    ) -> Result<Vec<Condition>> {
-        let mut found = self.unstated(camera, self.brightest_member(camera));
-        let pairs = self.alternatives.iter().filter_map(|other| self.target.placeholders(other));
-        found.extend(pairs.take(1).map(|emissivities| Condition::Constants { emissivities }));
-        if all && self.scenario.requirement.by == DistanceKind::Nearest {
-            found.extend(self.ranges_that_decide()?);
-        }
-        found.retain(|one| one.counts(met));
-        hardest_first(&mut found);
-        Ok(found)
+        found
     }
 
     /// What nobody stated of camera and scene.
@@ -171,10 +199,18 @@ impl Study {
         found
     }
 
-    /// Ranges of the alternatives' states that the scenario sets and without which the answer would be another.
-    fn ranges_that_decide(&self) -> Result<Vec<Condition>> {
+    /// Ranges of the alternatives' states that the scenario sets and without which the answer would be another; `farther`, with how far each
+    /// may go.
+    fn ranges_that_decide(
+        &self,
+        farther: bool,
+        holds_in: &dyn Fn(StateRange) -> Result<bool>,
+    ) -> Result<Vec<Condition>> {
         let (own, physical) = (self.range, StateRange::default());
         let (mut found, mut narrowed) = (Vec::new(), Vec::new());
+        if self.scenario.requirement.by != DistanceKind::Nearest {
+            return Ok(found);
+        }
         for (figure, step) in
             [("alternatives.temperature", TEMPERATURE_STEP_K), ("alternatives.lighting", LIGHTING_STEP)]
         {
@@ -188,27 +224,25 @@ impl Study {
             if stated == widest {
                 continue;
             }
-            narrowed.push((figure, stated));
-            if self.holds_in(with(widest))? {
+            narrowed.push(RangeDecides { figure, stated, holds: None });
+            if holds_in(with(widest))? {
                 continue;
             }
             let mut holds = stated;
-            for end in 0..2 {
+            for end in if farther { 0..2 } else { 0..0 } {
                 let holds_to = |value: f64| {
                     let mut range = stated;
                     range[end] = value;
-                    self.holds_in(with(range))
+                    holds_in(with(range))
                 };
                 holds[end] = farthest(stated[end], widest[end], step, holds_to)?;
             }
+            let holds = farther.then_some(holds);
             found.push(Condition::Range(RangeDecides { figure, stated, holds }));
         }
         // Each may do by itself and both together not.
-        if found.is_empty() && narrowed.len() > 1 && !self.holds_in(physical)? {
-            let both = narrowed.into_iter();
-            found.extend(
-                both.map(|(figure, stated)| Condition::Range(RangeDecides { figure, stated, holds: stated })),
-            );
+        if found.is_empty() && narrowed.len() > 1 && !holds_in(physical)? {
+            found.extend(narrowed.into_iter().map(Condition::Range));
         }
         Ok(found)
     }
@@ -217,6 +251,22 @@ impl Study {
     fn holds_in(&self, range: StateRange) -> Result<bool> {
         let wider = Self { range, remembered: None, ..self.clone() };
         Ok(wider.of_worst_members(Skipping::On)?.check(Skipping::On)?.identifiable)
+    }
+
+    /// The same of these alternatives alone.
+    fn only(&self, kept: &[usize]) -> Self {
+        fn of<T: Clone>(all: &[T], kept: &[usize]) -> Vec<T> {
+            kept.iter().filter_map(|index| all.get(*index).cloned()).collect()
+        }
+        let [targets, others] = &self.members;
+        Self {
+            alternatives: of(&self.alternatives, kept),
+            paired: of(&self.paired, kept),
+            classes: of(&self.classes, kept),
+            members: [targets.clone(), of(others, kept)],
+            remembered: None,
+            ..self.clone()
+        }
     }
 }
 

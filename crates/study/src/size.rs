@@ -341,7 +341,7 @@ impl Study {
     }
 
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
-    fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
+    pub(crate) fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
         let Some(camera) = camera else { return Vec::new() };
         let mut spoiled = Vec::new();
         match (self.scenario.requirement.speed_m_s, camera.motion_blur_pixels) {

@@ -70,3 +70,69 @@ fn a_rule_is_not_passed_on_the_ground_of_what_nobody_stated() {
     let blur = blur.or(contradiction["cameras"][0]["motion_blur_pixels"].as_f64()).unwrap();
     assert!((blur / 2.3 - 1.0).abs() < 0.03, "{blur}");
 }
+
+/// Wherever `size` says no by its image, `identify` says yes under `[image]` alone; nothing else that a 'yes' of `size` rests on is missing.
+#[test]
+fn who_compares_distances_alone_says_so() {
+    let scene = |exposure: &str, more: &str| {
+        format!(
+            "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\ndistance = \"10 m\"\n\
+             [[environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n\
+             [alternatives]\nmaterials = [\"concrete\"]\n[unknown]\nnuisances = [\"temperature\"]\n\
+             [camera]\npreset = \"ideal-pnrd\"\nexposure = \"{exposure}\"\n{more}"
+        )
+    };
+    let (mut spoiled, mut kept) = (0, 0);
+    for exposure in ["10 us", "12 ms", "1 s"] {
+        for more in [
+            "",
+            "[requirement]\nspeed = \"5 m/s\"\n",
+            "full_well = 1e7\n",
+            "[requirement]\nspeed = \"5 m/s\"\ntime = \"100 ms\"\n",
+        ] {
+            let folder = Folder::with(&scene(exposure, more));
+            let size = folder.json(&["size", "a.toml"]);
+            let identify = folder.json(&["identify", "a.toml"]);
+            let check = folder.run(&["identify", "a.toml", "--check", "--json"]);
+            assert_eq!(check.code, 3);
+            let check: Value = serde_json::from_str(&check.stdout).unwrap();
+            assert_eq!(identify["conditions"], check["conditions"], "{exposure} {more}");
+            let list = identify["conditions"].as_array().unwrap();
+            let said = |code: &str| list.iter().any(|one| one["code"] == code);
+            let by_image = size["verdict"]["fails_by"].as_array().unwrap().iter().any(|by| by != "distance");
+            assert_eq!(said("image"), by_image, "{exposure} {more}: {}", identify["conditions"]);
+            spoiled += u32::from(by_image);
+            if size["verdict"]["answer"] == "yes" {
+                kept += 1;
+                assert_eq!(size["verdict"]["conditions"], identify["conditions"], "{exposure} {more}");
+            }
+        }
+    }
+    assert!(spoiled > 2 && kept > 2, "{spoiled} {kept}");
+}
+
+/// A target that is told from nothing, among materials of which some are: what that rests on is listed, its range too.
+#[test]
+fn a_table_of_pairs_lists_what_its_yes_rests_on() {
+    let scene = "[target]\nmaterial = \"marble\"\ntemperature = \"37 degC\"\n\
+                 [alternatives]\nmaterials = [\"concrete\", \"pvc-tape\"]\nRANGE\n\
+                 [bands]\nranges = [[\"750 cm^-1\", \"900 cm^-1\"], [\"900 cm^-1\", \"1050 cm^-1\"]]\n\
+                 [unknown]\nnuisances = [\"temperature\"]\n[camera]\npreset = \"flir-a325sc\"\n";
+    let of = |range: &str| {
+        let folder = Folder::with(&scene.replace("RANGE", range));
+        let answer = folder.json(&["identify", "a.toml", "--apart"]);
+        let codes: Vec<String> = answer["conditions"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| one["code"].as_str().unwrap().to_owned())
+            .collect();
+        (answer["apart"]["told_apart"].as_array().unwrap().len(), codes)
+    };
+    let (told, codes) = of("");
+    assert!(told == 1 && codes.contains(&"full-well".to_owned()), "{told} {codes:?}");
+    assert!(!codes.contains(&"range".to_owned()), "{codes:?}");
+    // At one temperature all of them differ.
+    let (told, codes) = of("temperature = [\"36.9 degC\", \"37.1 degC\"]");
+    assert!(told > 1 && codes.contains(&"range".to_owned()), "{told} {codes:?}");
+}

@@ -36,21 +36,31 @@ impl Say for RangeDecides {
                         format!("{word} to {}", celsius(k))
                     }
                 };
-                let holds = match (self.holds[0] < low, self.holds[1] > high) {
+                let far = self.holds.unwrap_or(self.stated);
+                let holds = match (far[0] < low, far[1] > high) {
+                    _ if self.holds.is_none() => "how far the answer holds was not searched".to_owned(),
                     (false, false) => "beyond either end the answer changes".to_owned(),
                     (below, above) => {
-                        let down = if below { end(self.holds[0], "down") } else { "not below".into() };
-                        let up = if above { end(self.holds[1], "up") } else { "not above".into() };
+                        let down = if below { end(far[0], "down") } else { "not below".into() };
+                        let up = if above { end(far[1], "up") } else { "not above".into() };
                         format!("the answer holds {down} and {up}")
                     }
                 };
                 format!("no alternative is colder than {} or warmer than {} ({holds})", ends[0], ends[1])
             }
-            _ => format!(
-                "the lighting of the alternatives stays between {low} and {high} (the answer holds from {} to {})",
-                significant(self.holds[0], 3),
-                significant(self.holds[1], 3)
-            ),
+            _ => {
+                let holds = self.holds.map_or_else(
+                    || "how far the answer holds was not searched".to_owned(),
+                    |far| {
+                        format!(
+                            "the answer holds from {} to {}",
+                            significant(far[0], 3),
+                            significant(far[1], 3)
+                        )
+                    },
+                );
+                format!("the lighting of the alternatives stays between {low} and {high} ({holds})")
+            }
         }
     }
 }
@@ -99,6 +109,9 @@ impl Say for Condition {
             ),
             Self::Assumed { figure, counts } if figure.favourable => holds(figure, *counts),
             Self::Assumed { figure, .. } => figure.say(),
+            Self::Spoiled { by } => {
+                format!("it does not matter that {}", super::shortfall::clauses(std::slice::from_ref(by)))
+            }
             Self::NoLimit => "the paper's local distance is believed, which is no limit".into(),
             Self::Bunching { occupancy } => format!(
                 "the bunching of thermal photons is left out ({} photons per mode)",
@@ -160,7 +173,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 21] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 22] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -185,6 +198,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 21] = [
         "emissivities",
         "Errors of the emissivities as they usually are would undo the answer.",
         "Measure these emissivities, and state sensitivity.emissivity_error.",
+    ],
+    [
+        "image",
+        "Distances alone are compared, and the image is spoiled: by motion, a full well, or a decision that comes too late.",
+        "Shorten the exposure, or ask `hadar size`, which judges the image.",
     ],
     [
         "no-limit",
@@ -345,7 +363,7 @@ mod tests {
         let range = |holds| RangeDecides {
             figure: "alternatives.temperature",
             stated: kelvin([0.0, 40.0]),
-            holds: kelvin(holds),
+            holds: Some(kelvin(holds)),
         };
         let said = range([-273.0, 44.0]).say();
         assert!(said.ends_with("(the answer holds down however far and up to 44.00 degC)"), "{said}");

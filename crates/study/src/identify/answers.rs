@@ -83,7 +83,7 @@ impl Study {
         number_of("--filters", filters, self.bands.len())?;
         let ledger = Ledger::open();
         let section = Thing::Sections;
-        let mut identification = self.identify_with_conditions()?;
+        let mut identification = self.identify()?;
         demand::add(&identification.stats);
         demand::computed(section, 1);
         let limiting = self.alternative(&identification.limiting);
@@ -111,6 +111,11 @@ impl Study {
         let scaling = if_asked(asked.scaling, section, 1, || self.scaling(watch.searched))?;
         let bands_that_matter =
             if_asked(asked.bands.is_some(), section, 1, || self.bands_that_matter(bands, filters))?;
+        if let Some(camera) = &self.camera {
+            let told = [matrix.as_ref().and_then(|matrix| matrix.apart.as_ref()), apart.as_ref()];
+            let told: Vec<&Apart> = told.into_iter().flatten().collect();
+            identification.conditions = self.conditions_of_pairs(camera, &identification.pairs, &told)?;
+        }
         identification.stats = ledger.close();
         Ok(Answers { identification, matrix, apart, scaling, bands_that_matter, exact })
     }

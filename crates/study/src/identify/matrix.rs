@@ -221,14 +221,15 @@ impl Study {
         })
     }
 
-    /// The same with what it rests on.
+    /// The same with what it rests on: of a 'yes' that takes all distances.
     ///
     /// # Errors
     /// As [`Study::check`].
     pub fn check_with_conditions(&self, skipping: Skipping) -> Result<Check> {
         let mut check = self.check(skipping)?;
         if let Some(camera) = &self.camera {
-            check.conditions = self.conditions_of_check(camera, check.identifiable, check.identifiable)?;
+            let pairs = if check.identifiable { self.identify()?.pairs } else { Vec::new() };
+            check.conditions = self.conditions_of_pairs(camera, &pairs, &[])?;
         }
         Ok(check)
     }

@@ -54,7 +54,7 @@ pub struct EmissivityErrors {
 
 impl Study {
     /// What errors of the emissivities put on the distance to `alternative`.
-    pub(super) fn emissivity_errors(
+    pub(crate) fn emissivity_errors(
         &self,
         camera: &Camera,
         alternative: &Surface,
