@@ -11,14 +11,13 @@
 //! | `[atmosphere]` | the air takes nothing away: [`Condition::NoAir`] |
 //! | `[[environment]]` | nothing lights the target: [`Condition::NoSurroundings`], or no more than is there: [`Condition::DarkRest`] |
 //! | `[alternatives]` ranges | all that physics allows, the worst; where a range that was set decides, [`Condition::Range`] |
-//! | `gain` or `environment-temperature` among `unknown.nuisances` | gain and temperatures of the surroundings are known: [`Condition::Calibrated`] |
+//! | `gain`, `environment-temperature` among `unknown.nuisances` | they are known: [`Condition::Calibrated`], [`Condition::SurroundingsKnown`] |
 //! | `requirement.speed` | nothing moves while frames and bands are read: [`Condition::StillScene`] |
 //! | `requirement.time` | the decision may wait: [`Condition::StillScene`], at a speed [`Condition::Waits`] |
 //! | reliability | d = 1, which the sentence tells |
 
 use crate::Shortfall;
 use crate::proviso::Proviso;
-use hadar::fisher::Nuisance;
 use hadar::instrument::Assumed;
 
 hadar::named! {
@@ -140,6 +139,10 @@ conditions! {
         /// Share of the draws.
         share_met: f64,
     } = "emissivities", Proviso, "sensitivity.emissivity_error";
+    /// The emissivity of what is measured is exactly as entered.
+    EmissivityKnown = "emissivity-known", Assumed, "sensitivity.emissivity_error";
+    /// What is ranged looks as in the one scene that is rendered.
+    OneScene = "one-scene", Assumed, "stereo";
     /// The target fills the pixel.
     FillsPixel {
         /// Side of what the pixel sees, m, where the distance is known.
@@ -195,11 +198,10 @@ conditions! {
         /// So long, s.
         time_s: f64,
     } = "acquisition-time", Proviso, "requirement.time";
-    /// What is not among the unknowns is known.
-    Calibrated {
-        /// What that is.
-        known: Vec<Nuisance>,
-    } = "calibrated", Assumed, "unknown.nuisances";
+    /// The temperatures of what is around the target are known.
+    SurroundingsKnown = "surroundings-known", Assumed, "unknown.nuisances";
+    /// The gain of the camera is known.
+    Calibrated = "calibrated", Assumed, "unknown.nuisances";
 }
 
 impl Condition {
@@ -341,7 +343,6 @@ impl Condition {
             Self::InOnePixel { fill } => Taken::Number(*fill),
             Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
-            Self::Calibrated { known, .. } => Taken::Texts(known.iter().map(|one| one.name()).collect()),
             Self::LeftOut { materials } => Taken::Texts(materials.iter().map(String::as_str).collect()),
             Self::Setting { value, .. } => Taken::Text(value),
             Self::Spoiled { by } => Taken::Text(by.code()),
@@ -349,6 +350,10 @@ impl Condition {
             | Self::FillsPixel { .. }
             | Self::NoFilterLight
             | Self::NoAir
+            | Self::EmissivityKnown
+            | Self::OneScene
+            | Self::SurroundingsKnown
+            | Self::Calibrated
             | Self::NoSurroundings => Taken::Nothing,
         }
     }

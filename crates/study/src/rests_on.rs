@@ -10,6 +10,7 @@ use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::{Assumed, Camera, Readout};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
+use hadar::spectrum::Bands;
 use hadar_scenario::{DistanceKind, Setting};
 
 /// Share of draws of the emissivities that settles a question.
@@ -33,6 +34,8 @@ pub(crate) struct Circumstances {
     pub(crate) of_rule: bool,
     /// Whether the time until all is read is judged.
     pub(crate) is_timed: bool,
+    /// Share of the hemisphere above the target that no object fills, at most.
+    pub(crate) unlit: f64,
 }
 
 /// What of a verdict its conditions depend on.
@@ -58,7 +61,7 @@ impl Study {
         found.extend(
             self.one_numbers(&pair.alternative).map(|emissivities| Condition::Constants { emissivities }),
         );
-        found.extend(self.of_pair(camera, pair, reached.errors));
+        found.extend(self.of_pair(camera, bounds_lower(pair), reached.errors));
         if met {
             found.extend(self.ranges_that_decide(true, &|range| self.holds_in(range))?);
         }
@@ -78,14 +81,14 @@ impl Study {
         let told = || pairs.iter().enumerate().filter(|(_, pair)| pair.told_apart == Some(true));
         let constants = told().find_map(|(_, pair)| self.one_numbers(&pair.alternative));
         found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
-        let least = |pair: &PairResult| pair.statistical_distance_bounds.map_or(0.0, |[lower, _]| lower);
+        let least = |pair: &PairResult| bounds_lower(pair).unwrap_or_default();
         let hardest = told().min_by(|(_, a), (_, b)| least(a).total_cmp(&least(b)));
         if let Some((index, pair)) = hardest {
             let own = self.against(index);
             let alternative = own.alternatives.get(index);
             let errors = alternative.map(|other| own.emissivity_errors(camera, other, index)).transpose()?;
             let errors = errors.map(|found| [found.error, found.share_met]);
-            found.extend(own.of_pair(camera, pair, errors));
+            found.extend(own.of_pair(camera, bounds_lower(pair), errors));
         }
         // Distances alone are compared here.
         let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
@@ -107,13 +110,18 @@ impl Study {
         Ok(found)
     }
 
-    /// What the distance of a pair hangs on.
-    fn of_pair(&self, camera: &Camera, pair: &PairResult, errors: Option<[f64; 2]>) -> Vec<Condition> {
+    /// What the distance of a pair hangs on, of which so much is proved. `errors` as in [`Reached`].
+    pub(crate) fn of_pair(
+        &self,
+        camera: &Camera,
+        lower: Option<f64>,
+        errors: Option<[f64; 2]>,
+    ) -> Vec<Condition> {
         let mut found = Vec::new();
         if let Some([error, share_met]) = errors.filter(|[_, share_met]| *share_met < SETTLED) {
             found.push(Condition::Emissivities { error, share_met });
         }
-        if let (false, Some([lower, _])) = (camera.photon_bunching, pair.statistical_distance_bounds) {
+        if let (false, Some(lower)) = (camera.photon_bunching, lower) {
             let hottest = self.state.environment_k.iter().copied().fold(self.state.temperature_k, f64::max);
             // Each mode adds no more than occupancy to the variance of the photons.
             let occupancy = planck::occupancy(self.bands.range_cm1().0, hottest);
@@ -124,13 +132,30 @@ impl Study {
         found
     }
 
+    /// What meeting a clause of a rule rests on, `more` of which only the clause knows.
+    pub(crate) fn conditions_of_clause(
+        &self,
+        (camera, brightest): (&Camera, f64),
+        asked: Circumstances,
+        more: Vec<Condition>,
+        met: bool,
+    ) -> Vec<Condition> {
+        let mut found = more;
+        found.extend(self.of_camera(camera, brightest));
+        found.extend(self.of_scene(camera, asked));
+        found.retain(|one| one.counts(met));
+        hardest_first(&mut found);
+        found
+    }
+
     /// What nobody stated of camera and scene.
     pub(crate) fn unstated(&self, camera: &Camera, brightest: f64) -> Vec<Condition> {
         let mut found = self.of_camera(camera, brightest);
         let speed_m_s = self.scenario.requirement.speed_m_s;
         let (distance_m, is_timed) =
             (self.scenario.target.distance_m, self.scenario.requirement.time_s.is_some());
-        let asked = Circumstances { speed_m_s, distance_m, of_rule: false, is_timed };
+        let unlit = 1.0 - self.state.lighting.iter().sum::<f64>();
+        let asked = Circumstances { speed_m_s, distance_m, of_rule: false, is_timed, unlit };
         found.extend(self.of_scene(camera, asked));
         found
     }
@@ -166,10 +191,7 @@ impl Study {
             found.push(Condition::BeyondRange { outside, bands: self.bands.len() });
         }
         found.extend(self.sampled_cm1().map(|width_cm1| Condition::Sampled { width_cm1 }));
-        let blur_m = longest_wavelength_m(&self.bands) * camera.f_number;
-        if camera.pixel_m < blur_m {
-            found.push(Condition::Diffraction { blur_m });
-        }
+        found.extend(diffraction(camera, &self.bands));
         if camera.spectral_bands == Some(1) && self.bands.len() > 1 && camera.readout != Readout::Sequential {
             found.push(Condition::Modelled { bands: self.bands.len() });
         }
@@ -179,18 +201,14 @@ impl Study {
         if self.surroundings.objects().is_empty() {
             found.push(Condition::NoSurroundings);
         }
-        let share = 1.0 - self.state.lighting.iter().sum::<f64>();
-        if share > UNLIT && !self.surroundings.objects().is_empty() {
-            found.push(Condition::DarkRest { share });
+        if asked.unlit > UNLIT && !self.surroundings.objects().is_empty() {
+            found.push(Condition::DarkRest { share: asked.unlit });
         }
-        let known = [Nuisance::Gain, Nuisance::EnvironmentTemperature];
-        let is_there = |one: &Nuisance| {
-            *one != Nuisance::EnvironmentTemperature || !self.surroundings.objects().is_empty()
-        };
-        let known: Vec<Nuisance> =
-            known.into_iter().filter(|one| !self.is_unknown(*one)).filter(is_there).collect();
-        if !known.is_empty() {
-            found.push(Condition::Calibrated { known });
+        if !self.is_unknown(Nuisance::EnvironmentTemperature) && !self.surroundings.objects().is_empty() {
+            found.push(Condition::SurroundingsKnown);
+        }
+        if !self.is_unknown(Nuisance::Gain) {
+            found.push(Condition::Calibrated);
         }
         if !self.left_out.is_empty() {
             found.push(Condition::LeftOut { materials: self.left_out.clone() });
@@ -201,7 +219,7 @@ impl Study {
 
     /// Ranges of the alternatives' states that the scenario sets and without which the answer would be another; `farther`, with how far each
     /// may go.
-    fn ranges_that_decide(
+    pub(crate) fn ranges_that_decide(
         &self,
         farther: bool,
         holds_in: &dyn Fn(StateRange) -> Result<bool>,
@@ -268,6 +286,17 @@ impl Study {
             ..self.clone()
         }
     }
+}
+
+/// What is proved of the statistical distance of a pair.
+fn bounds_lower(pair: &PairResult) -> Option<f64> {
+    pair.statistical_distance_bounds.map(|[lower, _]| lower)
+}
+
+/// That the lens blurs a point over more than a pixel.
+pub(crate) fn diffraction(camera: &Camera, bands: &Bands) -> Option<Condition> {
+    let blur_m = longest_wavelength_m(bands) * camera.f_number;
+    (camera.pixel_m < blur_m).then_some(Condition::Diffraction { blur_m })
 }
 
 /// Figures of a camera of so many bands that nobody stated and that count.

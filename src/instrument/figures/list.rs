@@ -227,7 +227,7 @@ macro_rules! every_figure {
         /// When the bands are exposed.
         => Readout,
         row("readout", "readout", Kind::Readout(slot!(readout)), "\"sequential\"",
-            "Whether all bands are read in one exposure or one after the other; simultaneous where it is not stated.",
+            "Whether all bands are read in one exposure or one after the other; one after the other where nobody states it.",
             "exposures until all bands are known; light of filters (S8, S9)").elsewhere();
 
         /// Bands that it has of its own; with one of them a spectrum takes filters.

@@ -1,7 +1,7 @@
 //! What a verdict rests on. A favourable condition completes 'yes, if ', another says what was taken.
 
 use super::Say;
-use super::text::numbers::{celsius, in_a_row, listed};
+use super::text::numbers::{celsius, listed};
 use hadar::instrument::Assumed;
 use hadar::words::{length, quantity, share, significant};
 use hadar_study::{Condition, Proviso, RangeDecides};
@@ -142,25 +142,17 @@ impl Say for Condition {
             }
             Self::NoAir => "the air on the path takes nothing away".into(),
             Self::NoSurroundings => "nothing around the target lights it".into(),
-            Self::DarkRest { share: rest } => {
-                format!(
-                    "what fills the other {} of the hemisphere above the target is black and cold",
-                    share(*rest)
-                )
-            }
+            Self::DarkRest { share: rest } => format!(
+                "what no object fills of the hemisphere above the target ({} at most) is black and cold",
+                share(*rest)
+            ),
             Self::Waits { time_s } => {
                 format!("the decision may wait {} until all is read", quantity(*time_s, "s"))
             }
-            Self::Calibrated { known, .. } => {
-                let known: Vec<&str> = known
-                    .iter()
-                    .map(|one| match one {
-                        hadar::fisher::Nuisance::EnvironmentTemperature => "temperature of the surroundings",
-                        other => other.name(),
-                    })
-                    .collect();
-                format!("{} {} known", in_a_row(&known, "and"), if known.len() == 1 { "is" } else { "are" })
-            }
+            Self::EmissivityKnown => "the emissivity of what is measured is exactly as entered".into(),
+            Self::OneScene => "what is ranged has the texture of the one scene that is rendered".into(),
+            Self::SurroundingsKnown => "the temperatures of the surroundings are known".into(),
+            Self::Calibrated => "the gain of the camera is known".into(),
             Self::LeftOut { materials } => {
                 format!("what was left out is never met ({})", listed(materials))
             }
@@ -173,7 +165,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 22] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 25] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -267,8 +259,23 @@ pub(crate) const EXPLAINED: [[&str; 3]; 22] = [
     ],
     [
         "calibrated",
-        "What is not among the unknowns is known: the gain of the camera, the temperatures of the surroundings.",
-        "Write unknown.nuisances, with \"gain\" and \"environment-temperature\" where they are not known.",
+        "The gain of the camera is not among the unknowns, and so is known.",
+        "Write \"gain\" into unknown.nuisances where it is not.",
+    ],
+    [
+        "surroundings-known",
+        "The temperatures of what is around the target are not among the unknowns, and so are known.",
+        "Write \"environment-temperature\" into unknown.nuisances where they are not.",
+    ],
+    [
+        "emissivity-known",
+        "The emissivity of what is measured is exactly as entered: what it may be off by is not in the bound of the temperature.",
+        "Write [sensitivity] with emissivity_error: the clause is undecided then.",
+    ],
+    [
+        "one-scene",
+        "A distance is known as well as the texture allows, and the texture is that of the one scene that is rendered.",
+        "Accept it, or ask `hadar range` about scenes of your own.",
     ],
     [
         "materials-left-out",

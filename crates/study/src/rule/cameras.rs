@@ -3,6 +3,7 @@
 use crate::{bands, camera, camera_bands};
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
+use hadar::spectrum::Bands;
 use hadar_scenario::rule::RuleCamera;
 use hadar_scenario::{CameraSpec, Rule, Scenario};
 use std::collections::BTreeMap;
@@ -21,8 +22,13 @@ pub(super) struct Named {
 impl Named {
     /// How many bands of a scenario it reads.
     pub(super) fn bands(&self, scenario: &Scenario) -> Result<usize> {
+        Ok(self.read(scenario)?.len())
+    }
+
+    /// The bands of a scenario that it reads.
+    pub(super) fn read(&self, scenario: &Scenario) -> Result<Bands> {
         let asked = camera_bands::asked(&scenario.bands.source, Some((&self.camera, &self.spec)));
-        Ok(bands::at_centres(&asked, &scenario.source)?.len())
+        bands::at_centres(&asked, &scenario.source)
     }
 }
 

@@ -10,6 +10,7 @@ use super::apart::steps;
 use super::approach::{Approach, Moving, is_timed, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use crate::condition::Condition;
 use crate::grade::Grade;
 use crate::range::{Overfull, RangePlan, RangeStudy, Signal, SignalBounds};
 use crate::rests_on::{of_figures, of_measured};
@@ -195,7 +196,9 @@ impl DepthClause {
         };
         let passes = verdict == Verdict::Meets;
         let (camera, bands) = (&before.named.camera, before.bands);
-        let figures = of_figures(camera, bands, None);
+        let mut figures = of_figures(camera, bands, None);
+        figures.extend((!before.air).then_some(Condition::NoAir));
+        figures.push(Condition::OneScene);
         let conditions = of_measured(figures, (camera, bands), before.asked, &self.set, passes);
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),

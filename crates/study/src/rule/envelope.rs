@@ -206,6 +206,11 @@ pub(crate) fn brightest(ranges: &Ranges) -> State {
     }
 }
 
+/// Share of the hemisphere above the target that no object fills, at most.
+pub(crate) fn unlit(ranges: &Ranges) -> f64 {
+    1.0 - ranges.lighting().iter().map(|range| range[0]).sum::<f64>()
+}
+
 /// Every range of an envelope: the target's temperature, then temperature and lighting of each object.
 pub(crate) fn all(ranges: &Ranges) -> Vec<[f64; 2]> {
     let objects = ranges.environment_k().iter().zip(ranges.lighting()).flat_map(|(t, v)| [*t, *v]);

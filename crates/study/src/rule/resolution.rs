@@ -11,10 +11,11 @@ use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, Measure
 use super::uncertainty::{Judged, Uncertain};
 use crate::Shortfall;
 use crate::grade::Grade;
-use crate::rests_on::of_measured;
+use crate::rests_on::{diffraction, of_measured};
 use crate::warn::contradiction;
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
+use hadar::spectrum::Bands;
 use hadar_scenario::Rule;
 use hadar_scenario::rule::{Clause, StopSpec, Verdict};
 
@@ -27,8 +28,8 @@ pub(super) struct Resolution {
     stop: Option<StopSpec>,
     moving: Option<Moving>,
     rule: Rule,
-    /// With the number of its bands.
-    cameras: Vec<(Named, usize)>,
+    /// With its bands.
+    cameras: Vec<(Named, Bands)>,
 }
 
 impl Resolution {
@@ -45,14 +46,14 @@ impl Resolution {
             let instead = "write distance = [\"5 m\", \"30 m\"] in [envelope], or [stop]";
             Error::malformed(found, instead).at(scenario.place("envelope.distance"))
         })?;
-        let counted = |named: &Named| Ok((named.clone(), named.bands(scenario)?));
+        let counted = |named: &Named| Ok((named.clone(), named.read(scenario)?));
         let cameras = cameras.iter().map(counted).collect::<Result<_>>()?;
         let rule = rule.clone();
         Ok(Self { pixels, size_m, farthest_m, stop: clause.stop, moving: Moving::of(clause), rule, cameras })
     }
 
     pub(super) fn answer(&self) -> Result<MeasuredAnswer> {
-        let judged = |(named, bands): &(Named, usize)| self.judged(named, *bands);
+        let judged = |(named, bands): &(Named, Bands)| self.judged(named, bands);
         let cameras = self.cameras.iter().map(judged).collect::<Result<_>>()?;
         let definition = Definition::Pixels { pixels: self.pixels, size_m: self.size_m };
         Ok(MeasuredAnswer { quantity: Measure::Pixels, demanded: self.pixels, definition, cameras })
@@ -88,7 +89,8 @@ impl Resolution {
         unknown.then_some(Shortfall::MotionUnknown).into_iter().chain(late).collect()
     }
 
-    fn judged(&self, named: &Named, bands: usize) -> Result<MeasuredVerdict> {
+    fn judged(&self, named: &Named, read: &Bands) -> Result<MeasuredVerdict> {
+        let bands = read.len();
         let (distance_m, value) = self.reached(&named.camera, bands);
         let place = |key: &str| self.rule.camera_place(named.index, key);
         let uncertain = Uncertain::of(named, (self.rule.coverage_factor, false), &place)?;
@@ -106,7 +108,7 @@ impl Resolution {
         let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
         let set = &self.rule.scenario.source.settings;
         let conditions = of_measured(
-            Vec::new(),
+            diffraction(&named.camera, read).into_iter().collect(),
             (&named.camera, bands),
             (speed_m_s, is_timed(self.stop.as_ref().map(StopSpec::stop))),
             set,

@@ -7,10 +7,10 @@
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
-use super::envelope::{Estimate, Sighted, brightest};
+use super::envelope::{Estimate, Sighted, brightest, unlit};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
-use crate::condition::{Condition, hardest_first};
+use crate::condition::Condition;
 use crate::grade::Grade;
 use crate::proviso::Proviso;
 use crate::rests_on::Circumstances;
@@ -19,6 +19,7 @@ use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
+use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::{Camera, Readout};
 use hadar::order;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
@@ -29,6 +30,8 @@ use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
 pub(super) const TOLERANCE: f64 = 0.01;
+/// The same where it is hardly above that demanded.
+const FINEST: f64 = 1e-4;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
@@ -56,6 +59,14 @@ struct Image {
     longest_exposure_s: Option<f64>,
     /// What is wrong with it.
     spoiled: Vec<Shortfall>,
+}
+
+/// The scene and the pair that decide.
+struct Limit<'a> {
+    at: &'a Study,
+    surface: &'a Surface,
+    /// What is proved of the statistical distance.
+    lower_bound: Option<f64>,
 }
 
 /// What the reader of a verdict must know beside it.
@@ -104,8 +115,12 @@ impl TellApart {
             }
             None => None,
         };
-        let Judged { verdict, fails_by, undecided_by } =
+        let Judged { mut verdict, fails_by, mut undecided_by } =
             uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
+        // 'Can' is said of what is proved: between that and the worst scene found it is undecided.
+        if verdict == Verdict::Meets && worst.lower_bound.is_some_and(|bound| bound < self.required) {
+            (verdict, undecided_by) = (Verdict::Undecided, vec![Shortfall::Distance]);
+        }
         let passes = verdict == Verdict::Meets;
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
         let certificate =
@@ -146,7 +161,8 @@ impl TellApart {
                 fixes = Some(self.fixes(candidate, &at, camera, surface)?);
             }
         }
-        let conditions = self.conditions(candidate, passes, &image, limiting.placeholders);
+        let conditions =
+            self.conditions(candidate, passes, &image, &Limit { at: &at, surface, lower_bound })?;
         let warnings = self.remarks(candidate, &Noted { unproved, noisier, fragile }, &at, surface);
         let bands = at.bands.len();
         Ok(CameraVerdict {
@@ -184,26 +200,44 @@ impl TellApart {
         candidate: &Candidate,
         met: bool,
         image: &Image,
-        constants: Option<[f64; 2]>,
-    ) -> Vec<Condition> {
+        limit: &Limit<'_>,
+    ) -> Result<Vec<Condition>> {
         let Some((near, camera)) =
             candidate.near.first().and_then(|near| Some((near, near.camera.as_ref()?)))
         else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let farthest_m = candidate.distance_m.map(|[_, most]| most);
         let asked = Circumstances {
+            unlit: near.ranges(&self.envelope).map_or(1.0, |ranges| unlit(&ranges)),
             speed_m_s: self.pace_m_s(),
             distance_m: farthest_m,
             of_rule: true,
             is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
         };
-        let mut found = near.of_camera(camera, image.reading);
-        found.extend(near.of_scene(camera, asked));
-        found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
-        found.retain(|one| one.counts(met));
-        hardest_first(&mut found);
-        found
+        let Limit { at, surface, lower_bound } = limit;
+        let constants = at.target.placeholders(surface);
+        let mut own: Vec<Condition> =
+            constants.map(|emissivities| Condition::Constants { emissivities }).into_iter().collect();
+        if met {
+            // A rule that states errors is guarded against them.
+            let unstated = self.scenario.sensitivity.is_none();
+            let errors = unstated.then(|| at.emissivity_errors(camera, surface, usize::MAX)).transpose()?;
+            let errors = errors.map(|found| [found.error, found.share_met]);
+            own.extend(at.of_pair(camera, *lower_bound, errors));
+            own.extend(near.ranges_that_decide(false, &|range| self.meets_in(candidate, range))?);
+        }
+        Ok(near.conditions_of_clause((camera, image.reading), asked, own, met))
+    }
+
+    /// Whether a camera meets the demand where the states of the alternatives are of such a range.
+    fn meets_in(&self, candidate: &Candidate, range: StateRange) -> Result<bool> {
+        let mut wider = candidate.clone();
+        for sighted in wider.sighted.iter_mut().chain(&mut wider.between) {
+            sighted.study.range = range;
+        }
+        let found = self.worst(&wider, true, &|_, _| true, &|_| ())?;
+        Ok(found.is_none_or(|(worst, _)| worst.pair.distance >= self.required))
     }
 
     fn proviso(&self, candidate: &Candidate) -> Option<Proviso> {
@@ -332,17 +366,18 @@ impl TellApart {
             }
             let sighted = &candidate.sighted[pair.sighted];
             let enough = if alone { self.required } else { best };
-            let mut tolerance = (1.0 - enough / pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+            let mut tolerance = self.tolerance(enough, pair.distance);
             let mut searched = search(sighted, pair, tolerance)?;
             best = best.min(searched.pair.distance);
             // A worst case below the estimate may leave a bound that does not reach what is enough.
-            let short = |searched: &Searched, enough: f64| {
-                let exact = searched.pair.distance * (1.0 - TOLERANCE);
-                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - TOLERANCE)))
+            let short = |searched: &Searched, enough: f64, finest: f64| {
+                let exact = searched.pair.distance * (1.0 - finest);
+                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - finest)))
             };
             let enough = if alone { self.required } else { best };
-            if tolerance > TOLERANCE && short(&searched, enough) {
-                tolerance = (1.0 - enough / searched.pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+            let finest = self.finest(searched.pair.distance);
+            if tolerance > finest && short(&searched, enough, finest) {
+                tolerance = self.tolerance(enough, searched.pair.distance);
                 searched = search(sighted, searched.pair, tolerance)?;
                 best = best.min(searched.pair.distance);
             }
@@ -383,6 +418,17 @@ impl TellApart {
         };
         let lower_bound = lower.map(|bound| bound * candidate.share);
         Ok(Some((Searched { lower_bound, certificate, ..worst }, near)))
+    }
+
+    /// How far below the distance of a pair a bound may be, as a share of it, where so much is enough.
+    fn tolerance(&self, enough: f64, distance: f64) -> f64 {
+        (1.0 - enough / distance).clamp(self.finest(distance), 1.0 - TOLERANCE)
+    }
+
+    /// The same at least: no bound needs to be closer, but for a distance hardly above that demanded.
+    fn finest(&self, distance: f64) -> f64 {
+        let above = 0.5 * (1.0 - self.required / distance);
+        if above > 0.0 { above.clamp(FINEST, TOLERANCE) } else { TOLERANCE }
     }
 
     /// The worst of the pairs that are more than two numbers, where one of numbers alone is the worst of all.

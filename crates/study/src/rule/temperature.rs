@@ -8,11 +8,12 @@
 use super::approach::{Approach, Moving, is_timed, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
-use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
+use super::envelope::{Sighted, all, brightest, scattered_places, scene_at, unlit};
 use super::uncertainty::{Judged, Uncertain};
 use super::{apart, cameras};
+use crate::condition::Condition;
 use crate::grade::Grade;
-use crate::rests_on::{of_figures, of_measured};
+use crate::rests_on::Circumstances;
 use crate::warn::contradiction;
 use crate::{Shortfall, Study};
 use hadar::error::Result;
@@ -48,6 +49,15 @@ struct Before {
     named: Named,
     sighted: Vec<Sighted>,
     approach: Option<Approach>,
+}
+
+impl Before {
+    /// From where the target is looked at the farthest, m.
+    fn farthest_m(&self, envelope: &Envelope) -> Option<f64> {
+        let range = self.approach.as_ref().map(|approach| approach.distance_m).or(envelope.distance_m);
+        let own = self.sighted.first().and_then(|sighted| sighted.study.scenario.target.distance_m);
+        range.map(|[_, most]| most).or(own)
+    }
 }
 
 /// A scene with its bound, K.
@@ -168,16 +178,18 @@ impl TemperatureClause {
             let study = Study { camera: Some(named.camera.clone()), ..sighted.study.clone() };
             study.camera_result(study.photon_radiance()).map(|seen| seen.brightest_reading)
         });
-        let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
-        let set = &self.rule.scenario.source.settings;
-        let figures = of_figures(&named.camera, bands, brightest);
-        let conditions = of_measured(
-            figures,
-            (&named.camera, bands),
-            (speed_m_s, is_timed(self.stop.as_ref().map(StopSpec::stop))),
-            set,
-            passes,
-        );
+        let conditions = before.sighted.first().map_or_else(Vec::new, |sighted| {
+            let asked = Circumstances {
+                speed_m_s: self.moving.map(|moving| moving.speed_m_s),
+                distance_m: before.farthest_m(&self.envelope),
+                of_rule: true,
+                is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
+                unlit: unlit(&sighted.ranges),
+            };
+            let own = vec![Condition::EmissivityKnown];
+            let brightest = brightest.unwrap_or_default();
+            sighted.study.conditions_of_clause((&named.camera, brightest), asked, own, passes)
+        });
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,
