@@ -122,14 +122,19 @@ impl Study {
             found.push(Condition::Emissivities { error, share_met });
         }
         if let (false, Some(lower)) = (camera.photon_bunching, lower) {
-            let hottest = self.state.environment_k.iter().copied().fold(self.state.temperature_k, f64::max);
             // Each mode adds no more than occupancy to the variance of the photons.
-            let occupancy = planck::occupancy(self.bands.range_cm1().0, hottest);
+            let occupancy = self.occupancy();
             if lower < self.required * (1.0 + occupancy).sqrt() {
                 found.push(Condition::Bunching { occupancy });
             }
         }
         found
+    }
+
+    /// Photons per mode of the hottest at the longest wavelength.
+    pub(crate) fn occupancy(&self) -> f64 {
+        let hottest = self.state.environment_k.iter().copied().fold(self.state.temperature_k, f64::max);
+        planck::occupancy(self.bands.range_cm1().0, hottest)
     }
 
     /// What meeting a clause of a rule rests on, `more` of which only the clause knows.

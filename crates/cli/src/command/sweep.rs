@@ -89,7 +89,7 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
     }
     plan.check(&file, &|written| question.read(written))?;
     let library = global.library()?;
-    let columns: Vec<String> = args.columns.iter().map(|name| name.trim().to_owned()).collect();
+    let columns = question.with_conditions(args.columns.iter().map(|name| name.trim().to_owned()));
     let remembered = Remembered::default();
     let asking = Asking {
         library: &library,

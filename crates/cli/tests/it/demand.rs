@@ -140,8 +140,9 @@ fn the_ledger_counts_what_was_done() {
     let answer = |asked: &Asked| study.answer(asked, &Watch::NONE).unwrap().identification.stats;
     let work = answer(&asked);
     assert_eq!((work.possible(Thing::Sections), work.computed(Thing::Sections)), (7, 1));
-    // For each alternative by shot noise, back, and by the camera; local, and local with unknown gain.
-    assert_eq!(work.computed(Thing::NearestSearches), 3 * 3);
+    // For each alternative by shot noise, back, and by the camera; 64 draws of the emissivities of the hardest pair that is told, and the
+    // pair without; local, and local with unknown gain.
+    assert_eq!(work.computed(Thing::NearestSearches), 3 * 3 + 65);
     assert_eq!(work.computed(Thing::LocalDistances), 2 * 3);
     let columns = |nuisances: &[Nuisance]| {
         let unknowns = Unknowns::new(nuisances.iter().copied()).unwrap();
@@ -156,12 +157,12 @@ fn the_ledger_counts_what_was_done() {
     // Six pairs, both ways.
     for skipping in [Skipping::On, Skipping::Off] {
         let more = answer(&Asked { apart: true, skipping, ..asked });
-        assert_eq!(more.possible(Thing::NearestSearches), 9 + 12);
-        let all = more.computed(Thing::NearestSearches) == 9 + 12;
+        assert_eq!(more.possible(Thing::NearestSearches), 9 + 65 + 12);
+        let all = more.computed(Thing::NearestSearches) == 9 + 65 + 12;
         assert_eq!(all, skipping == Skipping::Off);
     }
     let matrix = answer(&Asked { matrix: true, ..asked });
-    assert_eq!(matrix.computed(Thing::NearestSearches), 9 + 12 + 12);
+    assert_eq!(matrix.computed(Thing::NearestSearches), 9 + 65 + 12 + 12);
     assert_eq!(matrix.computed(Thing::LocalDistances), 6 + 12);
     // Nuisances of each target are formed once, for three alternatives.
     let shared = 2 * (12 - 4);

@@ -136,3 +136,118 @@ fn a_table_of_pairs_lists_what_its_yes_rests_on() {
     let (told, codes) = of("temperature = [\"36.9 degC\", \"37.1 degC\"]");
     assert!(told > 1 && codes.contains(&"range".to_owned()), "{told} {codes:?}");
 }
+
+/// The parts of a scene, each of which may be left out or be another.
+const PARTS: [[&str; 2]; 5] = [
+    [
+        "[[environment]]\ntemperature = \"10 degC\"\nlighting = 0.5\n",
+        "[[environment]]\ntemperature = \"10 degC\"\nlighting = 1.0\n",
+    ],
+    ["[atmosphere]\nmodel = \"us-standard\"\n", ""],
+    [
+        "[unknown]\nnuisances = [\"temperature\", \"lighting\", \"gain\"]\n",
+        "[unknown]\nnuisances = [\"temperature\"]\n",
+    ],
+    [
+        "materials = [\"aluminium\", \"polycarbonate\"]\n",
+        "materials = [\"aluminium\", \"polycarbonate\"]\ntemperature = [\"25 degC\", \"40 degC\"]\n",
+    ],
+    ["f_number = 1.0\nfull_well = 1e12\nflicker_fraction = 0.0\n", "f_number = 2.0\n"],
+];
+
+fn scene(which: usize, demand: f64, own: &str) -> String {
+    let part = |index: usize| PARTS[index][which >> index & 1];
+    format!(
+        "{own}[target]\nmaterial = \"skin\"\ntemperature = \"33 degC\"\ndistance = \"8 m\"\n{}{}{}\
+         [bands]\nranges = [[\"8 um\", \"9 um\"], [\"9 um\", \"10 um\"], [\"10 um\", \"11 um\"], [\"11 um\", \"12 um\"], [\"12 um\", \"13 um\"]]\n\
+         [alternatives]\n{}[requirement]\ndistance = {demand}\n[CAMERA]\nframes = 60\n{}",
+        part(0),
+        part(1),
+        part(2),
+        part(3),
+        part(4)
+    )
+}
+
+/// Whatever a scene leaves open: a rule of this one scene rests on what `size` rests on in it, and a temperature measured in it on the scene too.
+#[test]
+fn a_rule_of_one_scene_rests_on_what_its_camera_does_in_it() {
+    let sorted = |list: &Value| {
+        let mut codes: Vec<String> = list
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|one| one["favourable"] == true)
+            .map(|one| one["code"].as_str().unwrap().to_owned())
+            .collect();
+        codes.sort();
+        codes
+    };
+    let (mut yes, mut ranges) = (0, 0);
+    for which in 0..32 {
+        for demand in [2.0, 20.0] {
+            let camera = "[camera]\npreset = \"flir-boson-plus-640\"\nfocal_length = \"14 mm\"\nfield_of_view = \"32 deg\"";
+            let folder = Folder::with(&scene(which, demand, "").replace("[CAMERA]", camera));
+            let size = folder.json(&["size", "a.toml"]);
+            let rule = scene(which, demand, "")
+                .replace("[CAMERA]", &camera.replace("[camera]", "[[camera]]\nname = \"b\""));
+            folder.file("r.toml", &format!("{rule}[envelope]\ndistance = [\"8 m\", \"8 m\"]\n"));
+            let rule = folder.run(&["rule", "r.toml", "--check", "--json"]);
+            let rule: Value = serde_json::from_str(&rule.stdout).unwrap();
+            let verdict = &rule["cameras"][0];
+            if size["verdict"]["answer"] != "yes" || verdict["passes"] != true {
+                continue;
+            }
+            yes += 1;
+            let codes = sorted(&verdict["conditions"]);
+            ranges += u32::from(codes.contains(&"range".to_owned()));
+            assert_eq!(codes, sorted(&size["verdict"]["conditions"]), "{which} {demand}");
+        }
+    }
+    assert!(yes > 20 && ranges > 0, "{yes} {ranges}");
+}
+
+/// A temperature and pixels on the target rest on scene and lens as well, and a table of chosen columns keeps what its verdicts rest on.
+#[test]
+fn what_is_measured_rests_on_scene_and_lens() {
+    let folder = Folder::with(&scene(4, 2.0, "").replace(
+        "[CAMERA]",
+        "[camera]\npreset = \"flir-boson-plus-640\"\nfocal_length = \"14 mm\"\nfield_of_view = \"32 deg\"",
+    ));
+    let rule = "[target]\nmaterial = \"skin\"\ntemperature = \"33 degC\"\n\
+        [[environment]]\ntemperature = \"20 degC\"\nlighting = 0.7\n[alternatives]\nmaterials = [\"fabric\"]\n\
+        [bands]\nranges = [[\"8 um\", \"13 um\"]]\nUNKNOWN[envelope]\nlighting = [0.2, 0.7]\ndistance = [\"1 m\", \"2 m\"]\n\
+        [[clause]]\nname = \"t\"\nkind = \"temperature-error\"\n[clause.requirement]\ntemperature_error = \"5 K\"\n\
+        [[clause]]\nname = \"p\"\nkind = \"resolution\"\n[clause.requirement]\npixels = 2\nsize = \"0.5 m\"\n\
+        [[camera]]\nname = \"b\"\npreset = \"flir-boson-plus-640\"\nf_number = 1.0\nfocal_length = \"14 mm\"\nfield_of_view = \"32 deg\"\n\
+        full_well = 1e12\nflicker_fraction = 0.0\n";
+    let of = |unknown: &str| {
+        folder.file("r.toml", &rule.replace("UNKNOWN", unknown));
+        let answer = folder.json(&["rule", "r.toml"]);
+        let clauses = answer["clauses"].as_array().unwrap();
+        let codes = |index: usize| -> Vec<(String, Value)> {
+            let list = clauses[index]["cameras"][0]["conditions"].as_array().unwrap();
+            list.iter().map(|one| (one["code"].as_str().unwrap().to_owned(), one["value"].clone())).collect()
+        };
+        (codes(0), codes(1))
+    };
+    let has = |codes: &[(String, Value)], code: &str| codes.iter().any(|one| one.0 == code);
+    let (temperature, pixels) = of("[unknown]\nnuisances = [\"temperature\"]\n");
+    for code in ["no-air", "fills-pixel", "calibrated", "surroundings-known", "emissivity-known", "dark-rest"]
+    {
+        assert!(has(&temperature, code), "{code}: {temperature:?}");
+    }
+    // The darkest scene of the envelope leaves 80 %.
+    let dark = temperature.iter().find(|one| one.0 == "dark-rest").unwrap();
+    assert!((dark.1.as_f64().unwrap() - 0.8).abs() < 1e-12, "{dark:?}");
+    assert!(has(&pixels, "diffraction"), "{pixels:?}");
+    let (temperature, _) = of("[unknown]\nnuisances = [\"temperature\", \"gain\"]\n");
+    assert!(!has(&temperature, "calibrated") || temperature.is_empty(), "{temperature:?}");
+
+    let sweep =
+        ["sweep", "a.toml", "--vary", "target.distance=8 m,9 m", "--columns", "verdict.met", "--out", "rows"];
+    assert_eq!(folder.run(&sweep).code, 0);
+    let table = std::fs::read_to_string(folder.path().join("rows/sweep.csv")).unwrap();
+    assert!(table.lines().next().unwrap().ends_with("verdict.met,verdict.conditions"), "{table}");
+    assert!(table.contains("still-scene"), "{table}");
+}

@@ -143,7 +143,7 @@ impl Say for Condition {
             Self::NoAir => "the air on the path takes nothing away".into(),
             Self::NoSurroundings => "nothing around the target lights it".into(),
             Self::DarkRest { share: rest } => format!(
-                "what no object fills of the hemisphere above the target ({} at most) is black and cold",
+                "up to {} of the hemisphere above the target, which no object fills, are black and cold",
                 share(*rest)
             ),
             Self::Waits { time_s } => {

@@ -32,6 +32,8 @@ use std::collections::BTreeMap;
 pub(super) const TOLERANCE: f64 = 0.01;
 /// The same where it is hardly above that demanded.
 const FINEST: f64 = 1e-4;
+/// Relative difference of distances that is rounding.
+const ROUNDING: f64 = 1e-9;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
@@ -353,6 +355,7 @@ impl TellApart {
         order::ascending(&mut pairs, |a| a.distance);
         let count = pairs.len();
         let mut found: Vec<Searched> = Vec::with_capacity(count);
+        let decisive = self.decisive(candidate);
         let mut best = f64::INFINITY;
         let mut all = true;
         for (done, pair) in pairs.into_iter().enumerate() {
@@ -365,16 +368,17 @@ impl TellApart {
                 break;
             }
             let sighted = &candidate.sighted[pair.sighted];
-            let enough = if alone { self.required } else { best };
+            let enough = if alone { decisive } else { best };
             let mut tolerance = self.tolerance(enough, pair.distance);
             let mut searched = search(sighted, pair, tolerance)?;
             best = best.min(searched.pair.distance);
             // A worst case below the estimate may leave a bound that does not reach what is enough.
             let short = |searched: &Searched, enough: f64, finest: f64| {
                 let exact = searched.pair.distance * (1.0 - finest);
-                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - finest)))
+                let spared = if alone { 0.0 } else { finest };
+                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - spared)))
             };
-            let enough = if alone { self.required } else { best };
+            let enough = if alone { decisive } else { best };
             let finest = self.finest(searched.pair.distance);
             if tolerance > finest && short(&searched, enough, finest) {
                 tolerance = self.tolerance(enough, searched.pair.distance);
@@ -418,6 +422,16 @@ impl TellApart {
         };
         let lower_bound = lower.map(|bound| bound * candidate.share);
         Ok(Some((Searched { lower_bound, certificate, ..worst }, near)))
+    }
+
+    /// What is to be proved where no more is asked for: the demand, whatever bunching that is left out would add to the variance.
+    fn decisive(&self, candidate: &Candidate) -> f64 {
+        let occupancy = candidate.near.first().map_or(0.0, |near| {
+            let bright =
+                near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |all| brightest(&all));
+            Study { state: bright, ..near.clone() }.occupancy()
+        });
+        self.required * (1.0 + occupancy).sqrt() * (1.0 + ROUNDING) / candidate.share
     }
 
     /// How far below the distance of a pair a bound may be, as a share of it, where so much is enough.

@@ -96,6 +96,30 @@ impl Question {
         Self::ALL.into_iter().find(|question| question.name() == name).ok_or_else(unknown)
     }
 
+    /// The chosen columns, and of each that is a part of a verdict what that rests on.
+    #[must_use]
+    pub fn with_conditions(self, chosen: impl IntoIterator<Item = String>) -> Vec<String> {
+        let mut columns: Vec<String> = chosen.into_iter().collect();
+        let conditions = |column: &String| {
+            let part = column.split_once('.').map(|(part, _)| part);
+            let of_pair = column.starts_with("pairs[") && (part.is_none() || column.ends_with(".told_apart"));
+            match self {
+                Self::Size if part == Some("verdict") => Some("verdict.conditions".to_owned()),
+                Self::Identify if part == Some("identifiability") || of_pair => Some("conditions".to_owned()),
+                Self::Rule => {
+                    part.filter(|part| part.starts_with("cameras[")).map(|part| format!("{part}.conditions"))
+                }
+                _ => None,
+            }
+        };
+        for column in columns.iter().filter_map(conditions).collect::<Vec<_>>() {
+            if !columns.contains(&column) {
+                columns.push(column);
+            }
+        }
+        columns
+    }
+
     /// The question that a file asks.
     ///
     /// # Errors
@@ -160,7 +184,8 @@ impl Question {
                 let study = study(written, asking)?;
                 let asked = SizeAsked {
                     solutions: asking.wants("solve_for"),
-                    sensitivity: asking.wants("sensitivity"),
+                    // A verdict rests on errors of the emissivities too.
+                    sensitivity: asking.wants("sensitivity") || asking.wants("verdict"),
                 };
                 let found = study.size_with(asked)?;
                 self.told(&found, &found.stats, asking)
