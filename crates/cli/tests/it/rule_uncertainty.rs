@@ -224,3 +224,29 @@ fn a_temperature_of_uncertain_emissivities_is_undecided() {
     assert!(found.undecided_by.iter().any(|by| by.code() == "temperature-error"));
     assert_eq!(text(errors, "1 mK").verdict, Verdict::Fails);
 }
+
+/// The worst scene of a noisier camera may be another one: cold, where the gain hardly matters, in the place of hot. The interval of the uncertain
+/// camera holds the margins of the cameras at its ends, each with a worst scene of its own.
+#[test]
+fn the_worst_scene_of_another_camera_is_looked_at() {
+    let rule = |netd: &str| {
+        measured(&format!(
+            "[target]\nmaterial = \"skin\"\ntemperature = \"50 degC\"\ndistance = \"2 m\"\n\
+             [[environment]]\ntemperature = \"20 degC\"\nlighting = 1.0\n[alternatives]\nmaterials = [\"fabric\"]\n\
+             [bands]\nranges = [[\"8 um\", \"13 um\"]]\n[unknown]\nnuisances = [\"temperature\", \"gain\"]\npriors = {{ gain = 0.01 }}\n\
+             [envelope]\ntemperature = [\"0 degC\", \"100 degC\"]\n[[clause]]\nname = \"t\"\nkind = \"temperature-error\"\n\
+             [clause.requirement]\ntemperature_error = \"2.3 K\"\ncoverage_factor = 2\n\
+             [[camera]]\npreset = \"flir-a325sc-25um\"\nnetd = {netd}\n"
+        ))
+    };
+    let nominal = rule("\"0.35 K\"");
+    let uncertain = rule("{ value = \"0.35 K\", u = \"0.15 K\" }");
+    let (noisy, quiet) = (rule("\"0.65 K\""), rule("\"0.05 K\""));
+    let hot = |one: &hadar_study::MeasuredVerdict| one.limiting.temperature_k.unwrap() > 300.0;
+    assert!(hot(&nominal) && !hot(&noisy) && noisy.margin < 1.0 && nominal.margin > 1.05, "{}", noisy.margin);
+    let found = uncertain.uncertainty.as_ref().unwrap();
+    // Ends of what ±2 deviations hold, found by draws.
+    assert!(found.low < 1.01 * noisy.margin, "{} {}", found.low, noisy.margin);
+    assert!(found.high > 0.99 * quiet.margin, "{} {}", found.high, quiet.margin);
+    assert_eq!(uncertain.verdict, Verdict::Undecided);
+}

@@ -19,6 +19,7 @@ use crate::warning::by_code;
 use crate::{Shortfall, Warning};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
+use hadar::parallel;
 use hadar_scenario::range::{Demand, RangeScenario, Subject};
 use hadar_scenario::rule::{Clause, DepthDemand, DepthObject, StopSpec, Verdict};
 use hadar_scenario::{BandsSpec, Rule, Setting};
@@ -109,8 +110,11 @@ impl DepthClause {
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
         let mut verdicts = Vec::with_capacity(self.cameras.len());
         for (done, camera) in self.cameras.iter().enumerate() {
-            let seen = camera.studies.iter().map(|(distance_m, study)| self.seen(*distance_m, study));
-            verdicts.push(self.judged(camera, seen.collect::<Result<_>>()?)?);
+            let seen = parallel::booked(camera.studies.len(), |index| {
+                let (distance_m, study) = &camera.studies[index];
+                self.seen(*distance_m, study)
+            })?;
+            verdicts.push(self.judged(camera, seen)?);
             progress(done + 1);
         }
         let share = self.demand.requirement.share;

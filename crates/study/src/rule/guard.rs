@@ -22,6 +22,17 @@ struct Scene {
     state: State,
 }
 
+impl Scene {
+    /// Whether another is the same.
+    fn is_like(&self, other: &Self) -> bool {
+        let place = |scene: &Self| scene.sighted.study.scenario.target.distance_m;
+        let target = |scene: &Self| scene.sighted.study.target.name.clone();
+        self.alternative == other.alternative
+            && self.state == other.state
+            && (place(self), target(self)) == (place(other), target(other))
+    }
+}
+
 impl TellApart {
     /// How well the margin of a camera is known, in its worst scene `at` and in those of other pairs that come `near` it.
     pub(super) fn guarded(
@@ -33,7 +44,11 @@ impl TellApart {
         at: &Study,
     ) -> Result<MarginUncertainty> {
         let distance = worst.pair.distance;
-        let scenes = self.scenes(candidate, worst, near);
+        let mut scenes = self.scenes(candidate, worst, near);
+        for camera in uncertain.ends()? {
+            let found = self.worst_of(candidate, &camera)?;
+            scenes.extend(found.filter(|found| !scenes.iter().any(|known| known.is_like(found))));
+        }
         let ripple = self
             .scenario
             .sensitivity
@@ -81,6 +96,25 @@ impl TellApart {
             state: pair.state,
         }));
         scenes
+    }
+
+    /// The worst of a few scenes before a camera.
+    fn worst_of(&self, candidate: &Candidate, camera: &Camera) -> Result<Option<Scene>> {
+        let mut worst: Option<Estimate> = None;
+        for (index, sighted) in candidate.sighted.iter().enumerate() {
+            let seen =
+                sighted.before(camera, self.seen_from_m(candidate, sighted, camera), &self.envelope)?;
+            for pair in seen.estimates(index)?.0 {
+                if worst.as_ref().is_none_or(|known| pair.distance < known.distance) {
+                    worst = Some(pair);
+                }
+            }
+        }
+        Ok(worst.map(|Estimate { sighted, alternative, state, .. }| Scene {
+            sighted: candidate.sighted[sighted].clone(),
+            alternative,
+            state,
+        }))
     }
 
     /// The distance of a scene; of one from where the first frame is taken, where the camera takes it now.

@@ -52,6 +52,18 @@ struct Before {
 }
 
 impl Before {
+    /// The scene of the largest bound, of those that are found before each material from each distance.
+    fn worst(&self, found: impl Fn(&Sighted) -> Result<Found>) -> Result<Option<(Found, &Sighted)>> {
+        let mut worst: Option<(Found, &Sighted)> = None;
+        for sighted in &self.sighted {
+            let found = found(sighted)?;
+            if worst.as_ref().is_none_or(|(known, _)| found.sigma_k > known.sigma_k) {
+                worst = Some((found, sighted));
+            }
+        }
+        Ok(worst)
+    }
+
     /// From where the target is looked at the farthest, m.
     fn farthest_m(&self, envelope: &Envelope) -> Option<f64> {
         let range = self.approach.as_ref().map(|approach| approach.distance_m).or(envelope.distance_m);
@@ -103,13 +115,7 @@ impl TemperatureClause {
     }
 
     fn judged(&self, before: &Before) -> Result<MeasuredVerdict> {
-        let mut worst: Option<(Found, &Sighted)> = None;
-        for sighted in &before.sighted {
-            let found = largest(sighted)?;
-            if worst.as_ref().is_none_or(|(known, _)| found.sigma_k > known.sigma_k) {
-                worst = Some((found, sighted));
-            }
-        }
+        let worst = before.worst(largest)?;
         let sigma_k = worst.as_ref().map_or(f64::INFINITY, |(found, _)| found.sigma_k);
         let value = Some(self.coverage_factor * sigma_k).filter(|value| value.is_finite());
         let margin = value.map_or(0.0, |value| self.error_k / value);
@@ -130,23 +136,35 @@ impl TemperatureClause {
             found.extend(full.then_some(Shortfall::FullWell));
             found
         };
-        let of = |camera: &Camera| {
-            let Some((found, sighted)) = &worst else { return Ok(0.0) };
-            // The first frame is taken where this camera takes it.
+        // The first frame is taken where this camera takes it.
+        let seen_by = |sighted: &Sighted, camera: &Camera| {
             let own = sighted.study.scenario.target.distance_m;
             let farthest = before.approach.as_ref().map(|approach| approach.distance_m[1]);
             let distance_m = match self.stop {
                 Some(spec) if own == farthest => Some(Approach::of(spec.stop(), camera, bands).distance_m[1]),
                 _ => own,
             };
-            let sighted = sighted.before(camera, distance_m, &self.envelope)?;
-            let sigma_k = solver(&sighted).bound(
-                &sighted.study.target.emissivity,
-                &found.state,
-                &sighted.counting,
-                Parameter::Temperature,
-            )?;
-            Ok(self.error_k / (self.coverage_factor * sigma_k.sigma))
+            sighted.before(camera, distance_m, &self.envelope)
+        };
+        let mut scenes: Vec<(State, &Sighted)> =
+            worst.iter().map(|(found, sighted)| (found.state.clone(), *sighted)).collect();
+        for camera in uncertain.as_ref().map_or_else(|| Ok(Vec::new()), Uncertain::ends)? {
+            if let Some((Found { state, .. }, sighted)) =
+                before.worst(|sighted| largest(&seen_by(sighted, &camera)?))?
+                && !scenes.iter().any(|(known, from)| *known == state && std::ptr::eq(*from, sighted))
+            {
+                scenes.push((state, sighted));
+            }
+        }
+        let of = |camera: &Camera| {
+            let mut sigma_k = 0.0f64;
+            for (state, sighted) in &scenes {
+                let seen = seen_by(sighted, camera)?;
+                let own = &seen.study.target.emissivity;
+                let bound = solver(&seen).bound(own, state, &seen.counting, Parameter::Temperature)?;
+                sigma_k = sigma_k.max(bound.sigma);
+            }
+            Ok(self.error_k / (self.coverage_factor * sigma_k))
         };
         let by = (Shortfall::TemperatureError, true);
         let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, &named.camera, &spoils, &of)?;

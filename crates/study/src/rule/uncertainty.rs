@@ -10,8 +10,8 @@
 //! * draws: all figures at once, Gaussian, at the points of a lattice; their deviation, and the interval that holds as much as
 //!   ±k deviations of a Gaussian do.
 //!
-//! m is taken anew in the worst scenes of all pairs of materials that come near the worst of all, for which to first order it does not
-//! matter that they move. The interval is the wider one of the two. A camera meets a demand if the interval is above 1, fails if it is
+//! m is taken anew in the worst scenes of all pairs of materials that come near the worst of all, and in those of the camera with its
+//! figures at their ends: another camera may have another worst scene. The interval is the wider one of the two. A camera meets a demand if the interval is above 1, fails if it is
 //! below, and is undecided between: the limits are guarded by k u on both sides.
 //!
 //! Source: JCGM 100:2008 (GUM) 5.1 (first order), JCGM 101:2008 (draws), JCGM 106:2012 8.3 (guard bands).
@@ -34,6 +34,8 @@ const DRAWS: usize = 512;
 const RANDOM_DRAWS: usize = 2048;
 /// Uncertain figures of a camera at most.
 const MOST_FIGURES: usize = 8;
+/// Uncertain figures of which all ends together are looked at, at most.
+const FEW_FIGURES: usize = 3;
 /// Draws go as many deviations far at most.
 const FARTHEST: f64 = 4.0;
 
@@ -185,6 +187,15 @@ impl<'a> Uncertain<'a> {
             };
             self.camera(&(0..count).map(side).collect::<Vec<_>>())
         })
+    }
+
+    /// All figures on either side, or, where these are many, each of them alone: the worst scene of such a camera may be another one.
+    pub(super) fn ends(&self) -> Result<Vec<Camera>> {
+        if self.figures.len() <= FEW_FIGURES {
+            return self.sides().collect();
+        }
+        let sides = [-self.coverage_factor, self.coverage_factor];
+        (0..self.figures.len()).flat_map(|index| sides.map(|side| self.moved(index, side))).collect()
     }
 
     /// The verdict on a margin, taken anew by `of`, that fails `by` itself; `other` says what else is wrong with a camera.
