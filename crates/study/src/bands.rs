@@ -97,7 +97,7 @@ pub(super) fn check_detector(bands: &Bands, camera: &Camera, scenario: &Scenario
     };
     let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
     let found = format!(
-        "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low} to {high} cm^-1",
+        "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low:.0} to {high:.0} cm^-1",
         band.low_cm1, band.high_cm1
     );
     Err(Error::malformed(found, "leave it out, or take another camera").at(scenario.place("bands")))

@@ -5,8 +5,9 @@ use hadar::grid::Grid;
 use hadar::instrument::figures::{self, Kind, NOISES, NoiseFigures, Part, StatedNoise, TABLE};
 use hadar::instrument::presets::{self, Preset};
 use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec};
+use hadar::words::quantity;
 use hadar_formats::file::text_of_file;
-use hadar_scenario::{CameraSpec, Source};
+use hadar_scenario::{CameraSpec, Scenario, Source};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,6 +19,17 @@ pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
 /// What a camera is called in a message: a known one by its name, whatever was changed of it.
 pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
     spec.preset.clone().unwrap_or_else(|| camera.name.clone())
+}
+
+/// Refuses a time of the decision in which the camera does not even expose once.
+pub(super) fn check_time(camera: &Camera, scenario: &Scenario) -> Result<()> {
+    let Some(time_s) = scenario.requirement.time_s.filter(|time_s| *time_s < camera.exposure_s) else {
+        return Ok(());
+    };
+    let [time, exposure] = [time_s, camera.exposure_s].map(|seconds| quantity(seconds, "s"));
+    let found = format!("a decision after {time}, and one exposure of {} takes {exposure}", camera.name);
+    let instead = format!("write {exposure} or more, or shorten camera.exposure");
+    Err(Error::malformed(found, instead).at(scenario.place("requirement.time")))
 }
 
 /// What is known of the camera that a spec names, one of the user's own or of the program's; nothing where it names none.

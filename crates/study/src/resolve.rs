@@ -7,6 +7,7 @@ use self::defaults::{check_range, fill, state_range, unknowns};
 use self::finder::Finder;
 use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
+use super::camera::check_time;
 use super::classes::Members;
 use super::{Study, Surface, camera, camera_bands};
 use hadar::demand::Skipping;
@@ -80,6 +81,7 @@ impl Study {
         }
         if let (Some(camera), Some(spec)) = (&camera, &scenario.camera) {
             check_detector(&bands, camera, &scenario)?;
+            check_time(camera, &scenario)?;
             let place = |key: &str| scenario.place(key);
             finder.warnings.extend(camera_bands::check(camera, spec, &asked, &bands, &place)?);
         }

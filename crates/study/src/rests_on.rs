@@ -79,7 +79,10 @@ impl Study {
     ) -> Result<Vec<Condition>> {
         let mut found = self.unstated(camera, self.brightest_member(camera));
         let told = || pairs.iter().enumerate().filter(|(_, pair)| pair.told_apart == Some(true));
-        let constants = told().find_map(|(_, pair)| self.one_numbers(&pair.alternative));
+        let others = apart.iter().flat_map(|found| &found.told_apart);
+        let constants = told()
+            .find_map(|(_, pair)| self.one_numbers(&pair.alternative))
+            .or_else(|| others.clone().find_map(|pair| self.one_numbers_of(pair)));
         found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
         let least = |pair: &PairResult| bounds_lower(pair).unwrap_or_default();
         let hardest = told().min_by(|(_, a), (_, b)| least(a).total_cmp(&least(b)));
@@ -95,7 +98,6 @@ impl Study {
         found.extend(spoiled.into_iter().map(|by| Condition::Spoiled { by }));
         let of_told = self.only(&told().map(|(index, _)| index).collect::<Vec<_>>());
         let mut ranges = of_told.ranges_that_decide(true, &|range| of_told.holds_in(range))?;
-        let others = apart.iter().flat_map(|found| &found.told_apart);
         if ranges.is_empty() && others.clone().next().is_some() {
             let hold_in = |range: StateRange| {
                 let told = Self { range, ..self.clone() }.told_apart(Skipping::On, &|_, _| ())?.told_apart;
@@ -108,6 +110,12 @@ impl Study {
         found.retain(|one| one.counts(met));
         hardest_first(&mut found);
         Ok(found)
+    }
+
+    /// Emissivities of two of all materials, where each is entered as one number.
+    fn one_numbers_of(&self, [one, other]: &[String; 2]) -> Option<[f64; 2]> {
+        let of = |name: &String| self.all_members().find(|surface| surface.name == *name);
+        of(one)?.placeholders(of(other)?)
     }
 
     /// What the distance of a pair hangs on, of which so much is proved. `errors` as in [`Reached`].

@@ -88,7 +88,7 @@ fn who_compares_distances_alone_says_so() {
             "",
             "[requirement]\nspeed = \"5 m/s\"\n",
             "full_well = 1e7\n",
-            "[requirement]\nspeed = \"5 m/s\"\ntime = \"100 ms\"\n",
+            "frames = 3\n[requirement]\nspeed = \"5 m/s\"\ntime = \"2 s\"\n",
         ] {
             let folder = Folder::with(&scene(exposure, more));
             let size = folder.json(&["size", "a.toml"]);
@@ -250,4 +250,22 @@ fn what_is_measured_rests_on_scene_and_lens() {
     let table = std::fs::read_to_string(folder.path().join("rows/sweep.csv")).unwrap();
     assert!(table.lines().next().unwrap().ends_with("verdict.met,verdict.conditions"), "{table}");
     assert!(table.contains("still-scene"), "{table}");
+}
+
+/// A time below one exposure is no demand but a mistake, told by its key.
+#[test]
+fn a_time_below_one_exposure_is_refused() {
+    let camera =
+        "[camera]\npreset = \"flir-boson-plus-640\"\nfocal_length = \"14 mm\"\nfield_of_view = \"32 deg\"";
+    let folder = Folder::with(&scene(4, 2.0, "").replace("[CAMERA]", camera));
+    let exposure_s = folder.json(&["size", "a.toml"])["camera"]["exposure_s"].as_f64().unwrap();
+    let with = |share: f64| format!("requirement.time=\"{} ms\"", 1e3 * share * exposure_s);
+    for command in ["size", "identify"] {
+        let said = folder.refusal(&[command, "a.toml", "--set", &with(0.99)]);
+        assert!(
+            said.contains("requirement.time: a decision after ") && said.contains("one exposure of"),
+            "{said}"
+        );
+        assert_eq!(folder.run(&[command, "a.toml", "--set", &with(1.01)]).code, 0);
+    }
 }

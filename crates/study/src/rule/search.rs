@@ -9,7 +9,7 @@ use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
 use super::envelope::{Estimate, Sighted, brightest, unlit};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
-use super::uncertainty::{self, Judged};
+use super::uncertainty::{self, Judged, Uncertain};
 use crate::condition::Condition;
 use crate::grade::Grade;
 use crate::proviso::Proviso;
@@ -108,15 +108,12 @@ impl TellApart {
         let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
         let image = at.camera.as_ref().map(|camera| self.image(candidate, camera)).unwrap_or_default();
         let mut others = vec![image.spoiled.clone()];
-        let uncertainty = match uncertain.filter(|_| distance > 0.0) {
-            Some(uncertain) => {
-                for camera in uncertain.sides() {
-                    others.push(self.image(candidate, &camera?).spoiled);
-                }
-                Some(self.guarded(&uncertain, candidate, &worst, near, &at)?)
-            }
-            None => None,
-        };
+        let uncertain = uncertain.filter(|_| distance > 0.0);
+        for camera in uncertain.iter().flat_map(Uncertain::sides) {
+            others.push(self.image(candidate, &camera?).spoiled);
+        }
+        let guarded = |uncertain: &Uncertain<'_>| self.guarded(uncertain, candidate, &worst, near, &at);
+        let uncertainty = uncertain.as_ref().map(guarded).transpose()?;
         let Judged { mut verdict, fails_by, mut undecided_by } =
             uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
         // 'Can' is said of what is proved: between that and the worst scene found it is undecided.
@@ -133,9 +130,7 @@ impl TellApart {
         let lower_bound = worst.lower_bound.map(|bound| (bound - guard * self.required).max(0.0));
         grade = grade.guarded(verdict, uncertainty.as_ref());
         let unproved = passes && lower_bound.is_none_or(|bound| bound < self.required);
-        if unproved {
-            grade = grade.max(Grade::Searched);
-        }
+        grade = if unproved { grade.max(Grade::Searched) } else { grade };
         let noisier = at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added);
         // A scene that fails with more noise than it has itself may do with its own.
         if noisier && fails_by.as_slice() == [Shortfall::Distance] {

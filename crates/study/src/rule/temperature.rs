@@ -192,22 +192,7 @@ impl TemperatureClause {
         // One scene in which it cannot be shows that it fails.
         let grade = if verdict != Verdict::Fails || !own_noise { Grade::Searched } else { Grade::Proved };
         let grade = grade.guarded(verdict, uncertainty.as_ref());
-        let brightest = before.sighted.first().and_then(|sighted| {
-            let study = Study { camera: Some(named.camera.clone()), ..sighted.study.clone() };
-            study.camera_result(study.photon_radiance()).map(|seen| seen.brightest_reading)
-        });
-        let conditions = before.sighted.first().map_or_else(Vec::new, |sighted| {
-            let asked = Circumstances {
-                speed_m_s: self.moving.map(|moving| moving.speed_m_s),
-                distance_m: before.farthest_m(&self.envelope),
-                of_rule: true,
-                is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
-                unlit: unlit(&sighted.ranges),
-            };
-            let own = vec![Condition::EmissivityKnown];
-            let brightest = brightest.unwrap_or_default();
-            sighted.study.conditions_of_clause((&named.camera, brightest), asked, own, passes)
-        });
+        let conditions = self.conditions(before, passes);
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,
@@ -224,6 +209,25 @@ impl TemperatureClause {
             approach: before.approach.as_ref().map(|approach| approach.result),
             warnings,
         })
+    }
+}
+
+impl TemperatureClause {
+    /// What a 'yes' rests on: the scene, as where materials are told apart, and an emissivity that is known.
+    fn conditions(&self, before: &Before, met: bool) -> Vec<Condition> {
+        let Some(sighted) = before.sighted.first() else { return Vec::new() };
+        let camera = &before.named.camera;
+        let study = Study { camera: Some(camera.clone()), ..sighted.study.clone() };
+        let seen = study.camera_result(study.photon_radiance());
+        let asked = Circumstances {
+            speed_m_s: self.moving.map(|moving| moving.speed_m_s),
+            distance_m: before.farthest_m(&self.envelope),
+            of_rule: true,
+            is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
+            unlit: unlit(&sighted.ranges),
+        };
+        let brightest = seen.map_or(0.0, |seen| seen.brightest_reading);
+        study.conditions_of_clause((camera, brightest), asked, vec![Condition::EmissivityKnown], met)
     }
 }
 

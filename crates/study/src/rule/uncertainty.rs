@@ -11,8 +11,8 @@
 //!   ±k deviations of a Gaussian do.
 //!
 //! m is taken anew in the worst scenes of all pairs of materials that come near the worst of all, and in those of the camera with its
-//! figures at their ends: another camera may have another worst scene. The interval is the wider one of the two. A camera meets a demand if the interval is above 1, fails if it is
-//! below, and is undecided between: the limits are guarded by k u on both sides.
+//! figures at their ends: another camera may have another worst scene. The interval is the wider one of the two. A camera meets a
+//! demand if the interval is above 1, fails if it is below, and is undecided between: the limits are guarded by k u on both sides.
 //!
 //! Source: JCGM 100:2008 (GUM) 5.1 (first order), JCGM 101:2008 (draws), JCGM 106:2012 8.3 (guard bands).
 
