@@ -154,7 +154,16 @@ impl Camera {
     /// The exposure with which all bands are exposed once in `time_s`; not positive where the frames alone take longer.
     #[must_use]
     pub fn exposure_of_sweep_s(&self, bands: usize, time_s: f64) -> f64 {
-        let exposures = self.readout.exposures(bands) as f64;
+        self.exposure_of_series_s(self.readout.exposures(bands) as f64, time_s)
+    }
+
+    /// The exposure with which all bands of all frames are read in `time_s`; not positive where the frames alone take longer.
+    #[must_use]
+    pub fn exposure_of_acquisition_s(&self, bands: usize, time_s: f64) -> f64 {
+        self.exposure_of_series_s(self.readout.exposures(bands) as f64 * f64::from(self.frames), time_s)
+    }
+
+    fn exposure_of_series_s(&self, exposures: f64, time_s: f64) -> f64 {
         match self.frame_s() {
             Some(frame_s) if time_s < exposures * frame_s => time_s - (exposures - 1.0) * frame_s,
             _ => time_s / exposures,

@@ -16,6 +16,7 @@
 pub mod bayes;
 pub mod bracket;
 mod curvature;
+pub mod decision;
 pub mod detection;
 pub mod lattice;
 pub mod likelihood;

@@ -44,6 +44,9 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         if let Some(statistical) = &matrix.statistical_distance {
             bundle.add_table("matrix_camera.csv", square(matrix, statistical, STATISTICAL))?;
         }
+        if let Some(lower) = matrix.statistical_distance_lower.as_ref().filter(|_| matrix.unproved > 0) {
+            bundle.add_table("matrix_camera_lower.csv", square(matrix, lower, STATISTICAL))?;
+        }
         bundle.add_table("targets.csv", targets(matrix))?;
         plots.push(figures::distance_matrix(matrix));
         plots.push(figures::minimum_distances(matrix));

@@ -31,6 +31,11 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
             ("information_bits_camera", &|pair| optional(pair.information_bits)),
             ("condition_number", &|pair| optional(pair.condition_number)),
             ("distance_nearest_lower_per_sqrt_photon", &|pair| number(pair.distance_nearest_lower)),
+            ("distance_return_lower_per_sqrt_photon", &|pair| number(pair.distance_return_lower)),
+            ("statistical_distance_camera_lower", &|pair| {
+                optional(pair.statistical_distance_bounds.map(|[lower, _]| lower))
+            }),
+            ("photons_required_proved", &|pair| optional(pair.photons_required)),
             ("relative_error_nearest", &|pair| number(pair.relative_error_nearest)),
             ("relative_error_return", &|pair| number(pair.relative_error_return)),
             ("relative_error_local", &|pair| number(pair.relative_error)),

@@ -144,6 +144,7 @@ impl Study {
     ) -> Result<((Surface, Surface), ClassAnswer)> {
         let found = self.member_distances(own, other, skipping)?;
         let statistical = self.camera.is_some();
+        let required = self.required_of_members(own);
         let sure = |pair: &MemberPair| match pair.distance {
             Some(distance) => self.sure(distance, pair.lower) * (1.0 - pair.relative_error),
             None => pair.lower,
@@ -170,7 +171,7 @@ impl Study {
             };
             own.weights.iter().enumerate().map(pair).sum::<f64>()
         };
-        let told = |pair: &MemberPair| f64::from(u8::from(sure(pair) >= self.required));
+        let told = |pair: &MemberPair| f64::from(u8::from(sure(pair) >= required));
         let share_told = statistical.then(|| weighed(&told).clamp(0.0, 1.0));
         let mean_probability = statistical.then(|| {
             let most = |pair: &MemberPair| pair.distance.map_or(1.0, detection::probability);
@@ -201,7 +202,7 @@ impl Study {
             worst: [target.name.clone(), alternative.name.clone()],
             distance,
             distance_lower: worst.as_ref().map_or(0.0, sure),
-            told_apart: statistical.then(|| found.pairs.iter().all(|pair| sure(pair) >= self.required)),
+            told_apart: statistical.then(|| found.pairs.iter().all(|pair| sure(pair) >= required)),
             share_of_pairs_told: share_told,
             mean_detection_probability: mean_probability,
             leave_one_out,
@@ -213,11 +214,20 @@ impl Study {
             let (pair, mixtures) = self.worst_mixture(own, other, (a, b), distance)?;
             (target, alternative) = pair;
             if let Some(told) = &mut answer.told_apart {
-                *told &= mixtures.distance_lower >= self.required;
+                *told &= mixtures.distance_lower >= required;
             }
             answer.mixtures = Some(mixtures);
         }
         Ok(((target, alternative), answer))
+    }
+
+    /// The statistical distance that surely suffices for every member of the target's class.
+    fn required_of_members(&self, own: &Members) -> f64 {
+        let of = |target: &Surface| {
+            let study = Self { target: target.clone(), ..self.clone() };
+            study.counting().map_or(self.required, |counting| study.surely_required(&counting))
+        };
+        own.surfaces.iter().map(of).fold(self.required, f64::max)
     }
 
     /// Distances of all pairs of members, by the distance that decides: with a camera statistical.
@@ -233,7 +243,7 @@ impl Study {
             let (targets, alternatives) = (spectra(&own.surfaces), spectra(&other.surfaces));
             let scene = self.library_scene();
             let classes = Classes { scene: &scene, targets: &targets, alternatives: &alternatives };
-            let required = self.camera.as_ref().map(|_| self.required);
+            let required = self.camera.as_ref().map(|_| self.required_of_members(own));
             return classes.distances(countings.as_deref(), required, skipping, &|_, _| ());
         }
         // Local distances take less time than bounds on them would; priors have no part in a proof.

@@ -14,12 +14,13 @@ use hadar_scenario::DistanceKind;
 const TOLERANCE: f64 = 1e-6;
 const TOLERANCE_OF_MANY: f64 = 1e-3;
 
-/// A statistical distance with what rounding may have done to it.
+/// A statistical distance: what a state that was found shows, what is proved of it, and what rounding may have done to both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Statistical {
+    /// Of the nearest state that was found: no camera does more.
     pub(super) distance: f64,
-    /// What a state that was found shows: no camera does more.
-    pub(super) upper: f64,
+    /// What a verdict may rest on ([`Study::sure`]).
+    pub(super) lower: f64,
     /// Where the solver tells it.
     pub(super) relative_error: Option<f64>,
 }
@@ -28,12 +29,7 @@ impl Statistical {
     /// What it is at least, and at most, whatever rounding did to it.
     pub(super) fn bounds(self) -> [f64; 2] {
         let error = self.relative_error.unwrap_or(0.0);
-        [(self.distance * (1.0 - error)).max(0.0), self.upper * (1.0 + error)]
-    }
-
-    /// Whether the distance is enough whatever rounding did to it.
-    pub(super) fn reaches(self, required: f64) -> bool {
-        self.bounds()[0] >= required
+        [(self.lower * (1.0 - error)).max(0.0), self.distance * (1.0 + error)]
     }
 }
 
@@ -137,7 +133,7 @@ impl Study {
         Ok(NearestDistance { distance: share * back.distance, lower: share * back.lower, ..back })
     }
 
-    /// Statistical distance d of a kind at given counts and noise.
+    /// Statistical distance d of a kind at given counts and noise, as a state that was found shows it.
     pub(super) fn statistical_distance(
         &self,
         kind: DistanceKind,
@@ -147,32 +143,39 @@ impl Study {
         self.statistical(kind, alternative, counting).map(|found| found.distance)
     }
 
-    /// The same with its rounding error.
+    /// The same with what is proved of it and its rounding error.
     pub(super) fn statistical(
         &self,
         kind: DistanceKind,
         alternative: &Surface,
         counting: &Counting,
     ) -> Result<Statistical> {
+        self.statistical_at(kind, alternative, counting).map(|(found, _)| found)
+    }
+
+    /// The same with the nearest state, where that is what decides.
+    pub(super) fn statistical_at(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        counting: &Counting,
+    ) -> Result<(Statistical, Option<State>)> {
         self.book_distances(kind, 1);
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
         let local = |unknowns: Unknowns| {
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
             let found = solver.with_counting(target, other, &self.state, counting)?;
-            Ok(Statistical {
-                distance: found.distance,
-                upper: found.distance,
-                relative_error: Some(found.relative_error),
-            })
+            let distance = found.distance;
+            let relative_error = Some(found.relative_error);
+            Ok((Statistical { distance, lower: distance, relative_error }, None))
         };
         match kind {
             DistanceKind::Nearest => {
                 let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
-                Ok(Statistical {
-                    distance: self.sure(found.distance, found.lower),
-                    upper: found.distance,
-                    relative_error: Some(found.relative_error),
-                })
+                let lower = self.sure(found.distance, found.lower);
+                let relative_error = Some(found.relative_error);
+                let NearestDistance { distance, state, .. } = found;
+                Ok((Statistical { distance, lower, relative_error }, Some(state)))
             }
             DistanceKind::Local => local(self.unknowns.clone()),
             DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),

@@ -26,13 +26,15 @@ pub use scaling::{BandNumber, LibrarySize, Scaling};
 use super::classes::MixtureAnswer;
 use super::distances::Statistical;
 use super::remembered::PerPhoton;
-use super::{Study, Surface, Warning, warn};
+use super::{Study, Surface, Warning, YesNo, warn};
 use hadar::demand::{self, Ledger};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::Status;
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::identifiability::detection;
 use hadar::identifiability::multi;
+use hadar::identifiability::nearest::NearestDistance;
 use hadar::instrument::Camera;
 use hadar::parallel;
 use hadar::policy;
@@ -86,16 +88,26 @@ impl Study {
         Ok(found)
     }
 
-    /// The pair that is hardest to tell apart. It is found by its place: two alternatives may have the same name.
+    /// The pair that decides, by its place, since two alternatives may have the same name: the nearest that was found of those surely not
+    /// told, else that of which the least is proved.
     pub(super) fn limiting(&self, pairs: &[PairResult]) -> Option<usize> {
         let kind = self.scenario.requirement.by;
         let decisive = |i: &usize| {
-            let mixtures = self.classes.get(*i).and_then(|answer| answer.mixtures.as_ref());
-            let own = pairs[*i].statistical_distance.unwrap_or_else(|| pairs[*i].distance(kind));
+            let (pair, mixtures) =
+                (&pairs[*i], self.classes.get(*i).and_then(|answer| answer.mixtures.as_ref()));
+            let not_told = pair.told == Some(YesNo::No);
+            let own = match pair.statistical_distance_bounds {
+                Some([lower, _]) if !not_told => lower,
+                Some([_, upper]) => upper,
+                None => pair.distance(kind),
+            };
             // Of mixtures what is proved decides.
-            mixtures.map_or(own, |found| own.min(found.distance_lower))
+            (!not_told, mixtures.map_or(own, |found| own.min(found.distance_lower)))
         };
-        (0..pairs.len()).min_by(|a, b| decisive(a).total_cmp(&decisive(b)))
+        (0..pairs.len()).min_by(|a, b| {
+            let (a, b) = (decisive(a), decisive(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        })
     }
 
     /// What the pairs say together.
@@ -104,6 +116,9 @@ impl Study {
         let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
         let statistical: Option<Vec<f64>> = pairs.iter().map(|pair| pair.statistical_distance).collect();
         let minimum = statistical.clone().map(least);
+        let bounds: Option<Vec<[f64; 2]>> =
+            pairs.iter().map(|pair| pair.statistical_distance_bounds).collect();
+        let end = |of: usize| bounds.as_ref().map(|all| least(all.iter().map(|ends| ends[of]).collect()));
         let prediction = statistical.as_ref().map(|distances| {
             let names = std::iter::once(&self.target.name).chain(pairs.iter().map(|pair| &pair.alternative));
             let shares = names.zip(multi::prediction(distances));
@@ -112,6 +127,7 @@ impl Study {
         Identifiability {
             distance_minimum: least(pairs.iter().map(|pair| pair.distance(kind)).collect()),
             statistical_distance_minimum: minimum,
+            statistical_distance_minimum_bounds: end(0).zip(end(1)).map(|(lower, upper)| [lower, upper]),
             detection_probability_minimum: minimum.map(detection::probability),
             identifiability_bits: minimum.map(detection::information_bits),
             identifiable: minimum.map(|_| pairs.iter().all(|pair| pair.told_apart == Some(true))),
@@ -166,11 +182,16 @@ impl Study {
             local: required(local.distance),
             local_unknown_gain: required(unknown_gain.distance),
         });
-        let statistical =
-            counting.as_ref().map(|counting| self.statistical(kind, alternative, counting)).transpose()?;
+        let decided =
+            counting.as_ref().map(|counting| self.decided(kind, alternative, counting)).transpose()?;
+        let (statistical, decision) =
+            (decided.map(|(found, _)| found), decided.map(|(_, decision)| decision));
         // What is proved of all mixtures may not suffice where the worst that was found does.
         let proved = mixtures.is_none_or(|all| all.distance_lower >= self.required);
-        let told_apart = statistical.map(|found| found.reaches(self.required) && proved);
+        let told = decision.map(|decision| match decision.told {
+            YesNo::Yes if !proved => YesNo::Undecided,
+            told => told,
+        });
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
         let bounds = statistical.map(Statistical::bounds);
         let statistical = statistical.map(|found| found.distance);
@@ -188,6 +209,16 @@ impl Study {
             };
             shortcut(counting, &signal, distance)
         });
+        // Counts so few that Φ(d) does not hold.
+        let few = decision
+            .filter(|decision| decision.decided_by != DecisionLaw::Gaussian)
+            .map(|decision| decision.probability);
+        let enough = match kind {
+            DistanceKind::Nearest if with_priors.is_none() => {
+                required(self.sure(nearest.distance, nearest.lower))
+            }
+            _ => required_by.of(kind),
+        };
         let condition = local.condition_number();
         let blind = (local.status == Status::Blind).then(|| {
             local.imitation.iter().map(|(parameter, change)| (parameter_name(*parameter), *change)).collect()
@@ -203,11 +234,7 @@ impl Study {
             distance_no_nuisance: local.distance_no_nuisance,
             distance_nearest: nearest.distance,
             distance_nearest_lower: nearest.lower,
-            proof: if nearest.is_proved_to(self.tolerance()) {
-                NearestProof::Proved
-            } else {
-                NearestProof::Searched
-            },
+            proof: self.proof_of(&nearest),
             relative_error_nearest: nearest.relative_error,
             nearest_state: NearestState {
                 temperature_k: nearest.state.temperature_k,
@@ -217,20 +244,34 @@ impl Study {
             },
             nearest_at_edge: nearest.at_edge.iter().map(|parameter| parameter_name(*parameter)).collect(),
             distance_return: back.distance,
+            distance_return_lower: back.lower,
+            proof_return: self.proof_of(&back),
             relative_error_return: back.relative_error,
-            photons_required: required_by.of(kind),
+            photons_required: enough,
+            photons_required_bounds: [required_by.of(kind), enough],
             photons_required_by: required_by,
             statistical_distance: statistical,
             statistical_distance_nearest: limit,
             statistical_distance_bounds: bounds,
-            told_apart,
+            told,
+            told_apart: told.map(|told| told == YesNo::Yes),
+            decided_by: decision.map(|decision| decision.decided_by),
             relative_error_statistical,
             statistical_distance_shortcut: shortcut,
-            detection_probability: statistical.map(detection::probability),
-            miss_probability: statistical.map(detection::miss_probability),
-            information_bits: statistical.map(detection::information_bits),
-            mutual_information_bits: statistical.map(detection::mutual_information_bits),
-            two_sided_probability: statistical.map(|d| detection::two_sided_probability(d, ratio)),
+            detection_probability: few
+                .map_or(statistical.map(detection::probability), |of_few| Some(of_few[1])),
+            detection_probability_bounds: decision.map(|decision| decision.probability),
+            miss_probability: few
+                .map_or(statistical.map(detection::miss_probability), |of_few| Some(1.0 - of_few[1])),
+            information_bits: few.map_or(statistical.map(detection::information_bits), |of_few| {
+                Some((2.0 * of_few[1]).log2())
+            }),
+            mutual_information_bits: statistical
+                .filter(|_| few.is_none())
+                .map(detection::mutual_information_bits),
+            two_sided_probability: statistical
+                .filter(|_| few.is_none())
+                .map(|d| detection::two_sided_probability(d, ratio)),
             error_bracket: statistical
                 .filter(|_| kind == DistanceKind::Nearest)
                 .map(detection::error_bracket),
@@ -245,6 +286,11 @@ impl Study {
             warn::of_pair(&result, &local, &nearest, kind, &self.range, self.unknowns.has_priors());
         warnings.extend(self.placeholders(alternative));
         Ok((result, warnings))
+    }
+
+    /// Whether a distance is proved as well as is asked for.
+    fn proof_of(&self, found: &NearestDistance) -> NearestProof {
+        if found.is_proved_to(self.tolerance()) { NearestProof::Proved } else { NearestProof::Searched }
     }
 
     /// Photons required by each kind of distance, where prior knowledge makes it depend on their number.

@@ -28,6 +28,7 @@ mod condition;
 mod cube_bands;
 mod cube_noise;
 mod cube_unit;
+mod decision;
 pub mod decompose;
 mod distances;
 mod grade;

@@ -7,7 +7,6 @@ use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
-use hadar::policy::caps::{self, Circumstances};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
 use hadar_scenario::{DistanceKind, Scenario};
 use serde::ser::{SerializeMap, Serializer};
@@ -15,6 +14,7 @@ use serde::ser::{SerializeMap, Serializer};
 mod curves;
 mod reach;
 pub(crate) mod sensitivity;
+mod solved;
 mod trade_offs;
 mod verdict;
 
@@ -86,10 +86,14 @@ pub struct RequirementResult {
     pub distance: f64,
     /// Detection probability demanded, Φ of it.
     pub detection_probability: f64,
-    /// Photons at the detector, shot noise only.
+    /// Photons at the detector by what is proved, shot noise only; `None` where none suffice, or where nothing is proved.
     pub photons: Option<f64>,
-    /// H_req = t A_p/((1+γ)F²) by the paper's inequality, m² s, lossless optics.
+    /// The least number that may do, as a state that was found shows, and that which is proved to do.
+    pub photons_bounds: [Option<f64>; 2],
+    /// H_req = t A_p/((1+γ)F²) by the paper's inequality, m² s, lossless optics; of the photons.
     pub hardware_m2_s: Option<f64>,
+    /// The same of their bounds.
+    pub hardware_bounds_m2_s: [Option<f64>; 2],
     /// Photons by each reading of the distance.
     pub photons_by: PhotonsRequired,
     /// H_req by each reading, m² s.
@@ -195,7 +199,7 @@ impl Study {
         if let Some(camera) = &camera {
             warnings.extend(own.camera_result_warnings(camera, pair));
         }
-        if solve_for.is_some() && self.classes.get(index).is_some_and(|answer| answer.pairs > 1) {
+        if solve_for.is_some() && self.classes.get(index).is_some_and(|answer| answer.mixtures.is_some()) {
             warnings.push(Warning::SolvedForOnePair {
                 target: pair.target.clone(),
                 alternative: pair.alternative.clone(),
@@ -249,7 +253,9 @@ impl Study {
             distance: self.required,
             detection_probability: detection::probability(self.required),
             photons: pair.photons_required,
+            photons_bounds: pair.photons_required_bounds,
             hardware_m2_s: hardware(pair.photons_required.map(photons_of_any)),
+            hardware_bounds_m2_s: pair.photons_required_bounds.map(|one| hardware(one.map(photons_of_any))),
             photons_by: by,
             hardware_by_m2_s: PhotonsRequired {
                 nearest: hardware(by.nearest.map(photons_of_any)),
@@ -323,38 +329,35 @@ impl Study {
         self.targets().map(reading).fold(0.0, f64::max)
     }
 
-    pub(super) fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
-        let task = self.task(camera);
-        let brightest = |trial: &Trial| self.brightest(trial);
-        let speed_m_s = self.scenario.requirement.speed_m_s;
-        let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
-        let mut reach = Reach::new(self, alternative);
-        let mut solved = Vec::with_capacity(Quantity::ALL.len());
-        for quantity in Quantity::ALL {
-            let mut solution = reach.solve(&task, quantity)?;
-            if let Some(value) = solution.value {
-                solution.caps = caps::broken(quantity, value, &task, &given)?;
-            }
-            solved.push((quantity, solution));
-        }
-        Ok(Solutions(solved))
-    }
-
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
     pub(crate) fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
         let Some(camera) = camera else { return Vec::new() };
-        let mut spoiled = Vec::new();
-        match (self.scenario.requirement.speed_m_s, camera.motion_blur_pixels) {
-            (Some(_), None) => spoiled.push(Shortfall::MotionUnknown),
-            (_, Some(blur)) if blur >= 1.0 => spoiled.push(Shortfall::MotionBlur),
-            _ => {}
-        }
-        if self.scenario.requirement.time_s.is_some_and(|time_s| camera.acquisition_s > time_s) {
-            spoiled.push(Shortfall::DecisionTime);
-        }
         // Of a class every member must fit into the well.
         let brightest = self.brightest_member(&camera.camera).max(camera.brightest_reading);
-        if camera.camera.full_well.is_some_and(|full| brightest > full) {
+        self.spoiled_by(&camera.camera, self.scenario.target.distance_m, brightest)
+    }
+
+    /// The same of a camera at a distance, whose fullest reading is so many counts.
+    pub(crate) fn spoiled_by(
+        &self,
+        camera: &Camera,
+        distance_m: Option<f64>,
+        brightest: f64,
+    ) -> Vec<Shortfall> {
+        let (requirement, bands) = (&self.scenario.requirement, self.bands.len());
+        let mut spoiled = Vec::new();
+        if let Some(speed) = requirement.speed_m_s {
+            let time_s = camera.sweep_s(bands);
+            match Motion::of(camera, distance_m).map(|motion| motion.blur_pixels(speed, time_s)) {
+                None => spoiled.push(Shortfall::MotionUnknown),
+                Some(blur) if blur >= 1.0 => spoiled.push(Shortfall::MotionBlur),
+                Some(_) => {}
+            }
+        }
+        if requirement.time_s.is_some_and(|time_s| camera.acquisition_s(bands) > time_s) {
+            spoiled.push(Shortfall::DecisionTime);
+        }
+        if camera.full_well.is_some_and(|full| brightest > full) {
             spoiled.push(Shortfall::FullWell);
         }
         spoiled

@@ -4,8 +4,9 @@
 //! |---|---|---|
 //! | `diffraction` | pixel ≥ λF, F ≤ pixel/λ | λ the longest wavelength of the bands |
 //! | `full-well` | counts of the fullest reading ≤ full well | on exposure, pixel, f-number |
-//! | `motion` | time until all bands are exposed ≤ r θ/(v_⊥ L) | [`super::motion`]; the speed that the scenario demands |
+//! | `motion` | time until all bands are exposed ≤ r θ/(v_⊥ L) | [`super::motion`]; on exposure, pixel, distance, and speed, where one is demanded |
 //! | `frame-rate` | exposure ≤ 1/frame rate | |
+//! | `decision-time` | time until all frames are read ≤ that which is demanded | on exposure and frames |
 //! | `impractical` | exposure ≤ 1 s, pixel ≤ 100 µm, time of all frames ≤ 60 s | or what the camera itself has |
 //! | `lowest-noise` | σ ≥ √(ρ² + q²/12) | read noise ρ and steps q of the converter stay whatever the detector |
 //!
@@ -74,6 +75,8 @@ pub struct Circumstances<'a> {
     pub bands: &'a Bands,
     /// Speed that is demanded, m s⁻¹.
     pub speed_m_s: Option<f64>,
+    /// Time after which a decision must stand, s.
+    pub time_s: Option<f64>,
     /// Counts of the fullest reading.
     pub brightest: &'a dyn Fn(&Trial) -> Result<f64>,
 }
@@ -117,12 +120,20 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
             if let Some(frame) = camera.frame_s() {
                 push(CapCode::FrameRate, frame, false, "a frame is no longer".into());
             }
+            if let Some(time_s) = given.time_s {
+                let longest = camera.exposure_of_acquisition_s(given.bands.len(), time_s);
+                let reason = format!("all must be read within {}", in_unit(time_s, "s"));
+                push(CapCode::DecisionTime, longest.max(0.0), false, reason);
+            }
             let longest = LONGEST_EXPOSURE_S.max(camera.exposure_s);
             push(CapCode::Impractical, longest, false, "no thermal array is exposed for longer".into());
         }
         Quantity::Pixel => {
             let reason = format!("{blur} blurs over lambda F");
             push(CapCode::Diffraction, wavelength_m * camera.f_number, true, reason);
+            if let Some(least) = still_pixel_m(trial, given)? {
+                push(CapCode::Motion, least, true, "in a smaller one the target moves by a pixel".into());
+            }
             let largest = LARGEST_PIXEL_M.max(camera.pixel_m);
             push(CapCode::Impractical, largest, false, "no thermal array has larger ones".into());
         }
@@ -148,8 +159,21 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
             let most = (LONGEST_ACQUISITION_S / one_s).floor().max(f64::from(camera.frames));
             let reason = format!("more take longer than {}", in_unit(LONGEST_ACQUISITION_S, "s"));
             push(CapCode::Impractical, most, false, reason);
+            if let Some(time_s) = given.time_s {
+                let most = f64::from(camera.frames_within(time_s, bands));
+                let reason = format!("more are not read within {}", in_unit(time_s, "s"));
+                push(CapCode::DecisionTime, most, false, reason);
+            }
         }
-        Quantity::Distance => {}
+        Quantity::Distance => {
+            // The blur falls with the distance.
+            if let (Some(speed), Some(motion), Some(z)) =
+                (given.speed_m_s, Motion::of(camera, trial.distance_m), trial.distance_m)
+            {
+                let least = z * motion.blur_pixels(speed, camera.sweep_s(given.bands.len()));
+                push(CapCode::Motion, least, true, "nearer the target moves by a pixel".into());
+            }
+        }
     }
     if let Some(full) = camera.full_well
         && let Some((value, is_least)) = fills(quantity, trial, full, given)?
@@ -185,6 +209,25 @@ pub fn broken(
         broken.extend(caps.map(|cap| Cap { limit: value * taken.camera.exposure_s / cap.limit, ..cap }));
     }
     Ok(broken)
+}
+
+/// The least pixel in which a target at the demanded speed does not move by a pixel; `None` where no speed is demanded or no pixel
+/// is large enough.
+fn still_pixel_m(trial: &Trial, given: &Circumstances<'_>) -> Result<Option<f64>> {
+    let Some(speed) = given.speed_m_s else { return Ok(None) };
+    let camera = &trial.camera;
+    let time_s = camera.sweep_s(given.bands.len());
+    // ln of the room for motion as the pixel grows.
+    let room = |log: f64| -> Result<f64> {
+        let changed = Camera { pixel_m: camera.pixel_m * log.exp(), ..camera.clone() };
+        let blur =
+            Motion::of(&changed, trial.distance_m).map_or(0.0, |motion| motion.blur_pixels(speed, time_s));
+        Ok(-blur.max(1e-300).ln())
+    };
+    if room(LOG_RANGE)? <= 0.0 || room(-LOG_RANGE)? >= 0.0 {
+        return Ok(None);
+    }
+    crossing(-LOG_RANGE, LOG_RANGE, room).map(|log| Some(camera.pixel_m * log.exp()))
 }
 
 /// The value at which the fullest reading fills the well.
@@ -239,7 +282,8 @@ mod tests {
         let brightest = |trial: &Trial| {
             Ok(trial.camera.brightest_reading(&bands, &[1e19, 3e19], &View::at(trial.distance_m)))
         };
-        let given = Circumstances { bands: &bands, speed_m_s: Some(13.4112), brightest: &brightest };
+        let given =
+            Circumstances { bands: &bands, speed_m_s: Some(13.4112), time_s: None, brightest: &brightest };
         limits(quantity, trial, &given).unwrap()
     }
 

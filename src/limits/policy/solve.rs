@@ -25,6 +25,9 @@ use crate::root::crossing;
 const LOG_RANGE: f64 = 69.0;
 /// Relative step by which a solution may be moved so that it meets the demand in spite of rounding.
 const SAFE_SIDE: f64 = 1e-11;
+/// Share by which a speed stays below that of a whole pixel.
+const SHORT: f64 = 1e-9;
+
 impl CameraTask<'_> {
     /// Solves for `quantity`; `distance` evaluates the statistical distance of a trial.
     ///
@@ -126,9 +129,12 @@ impl CameraTask<'_> {
             return Ok(Solution::new(None, camera, f64::NAN, Some(reason)));
         };
         let exposure = self.solve(Quantity::Exposure, distance)?;
-        let value = exposure.value.map(|exposure_s| motion.fastest_m_s(self.time_s(exposure_s)));
+        // A whole pixel is too much.
+        let value =
+            exposure.value.map(|exposure_s| (1.0 - SHORT) * motion.fastest_m_s(self.time_s(exposure_s)));
         let reason = exposure.reason.map(|reason| format!("not even at rest: {reason}"));
-        Ok(Solution::new(value, camera, exposure.statistical_distance, reason))
+        let exposure_s = exposure.value;
+        Ok(Solution { exposure_s, ..Solution::new(value, camera, exposure.statistical_distance, reason) })
     }
 }
 

@@ -337,7 +337,8 @@ mod tests {
             distance_m: Some(30.0),
             size_m: None,
         };
-        let given = Circumstances { bands: &bands, speed_m_s: Some(10.0), brightest: &|_| Ok(0.0) };
+        let given =
+            Circumstances { bands: &bands, speed_m_s: Some(10.0), time_s: None, brightest: &|_| Ok(0.0) };
         let alone = task.solve(x, shot).unwrap().value;
         trace(&task, (x, y), shot(&task.own()).unwrap(), alone, &given, POINTS, &mut |task, quantity| {
             task.solve(quantity, shot)

@@ -239,6 +239,7 @@ const fn words(code: CapCode, limited: Quantity) -> &'static str {
         CapCode::Motion if matches!(limited, Quantity::Speed) => "speed demanded",
         CapCode::Diffraction => "pixel = λF",
         CapCode::Motion => "motion of one pixel",
+        CapCode::DecisionTime => "time demanded",
         CapCode::FrameRate => "a whole frame",
         CapCode::FullWell => "full well",
         CapCode::Impractical => "practice",

@@ -11,11 +11,11 @@ use self::exact::exact;
 use self::matrix::{apart, matrix};
 use self::terms::{camera, does_not_tell, no_limit};
 use crate::text::footing::footing;
-use crate::text::numbers::{numbers, photons, significant};
+use crate::text::numbers::{numbers, significant};
 use crate::text::pairs::pair_table;
 use crate::words::{Say, classes, conditions, probability as words};
 use hadar::order;
-use hadar_study::{Answers, Check, Identification, Study};
+use hadar_study::{Answers, Check, Identification, NearestProof, Study, YesNo};
 use std::fmt::Write as _;
 
 /// Entries of the prediction vector that are shown.
@@ -94,13 +94,24 @@ fn verdict(result: &Identification, study: &Study) -> String {
             numbers(" and V ", &state.lighting, 2)
         );
     }
+    let open = result.pairs.iter().filter(|pair| pair.told == Some(YesNo::Undecided)).count();
     if let Some(told) = result.identifiability.told_from {
         let name = camera(study);
         let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
         let sentence = match (all, told) {
             (1, 1) => format!("{yes}: {name} tells {target} from {alternative}"),
+            // Neither shown nor ruled out.
+            (1, _) if pair.told == Some(YesNo::Undecided) => {
+                format!("Undecided: whether {name} tells {target} from {alternative}")
+            }
             (1, _) => format!("No: {name} {} {target} from {alternative}", does_not_tell(study)),
             (_, told) if told == all => format!("{yes}: {name} tells {target} from all {all} alternatives"),
+            (_, told) if open > 0 => {
+                let start = if told + open == all { "Undecided" } else { "No" };
+                format!(
+                    "{start}: {name} is shown to tell {target} from {told} of {all} alternatives, {open} more are undecided,"
+                )
+            }
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };
@@ -118,12 +129,19 @@ fn verdict(result: &Identification, study: &Study) -> String {
             );
         }
     }
-    let needed = match pair.photons_required {
-        Some(_) => {
+    let needed = match pair.photons_required_bounds {
+        [Some(fewest), enough] => {
             let least = if no_limit(study).is_empty() { "at least " } else { "" };
-            format!("it takes {least}{} photons, by shot noise alone", photons(pair.photons_required))
+            let proved = match (pair.proof, enough) {
+                (NearestProof::Proved, _) => String::new(),
+                (NearestProof::Searched, Some(enough)) => {
+                    format!(" ({} by what is proved)", significant(enough, 3))
+                }
+                (NearestProof::Searched, None) => " (nothing is proved)".into(),
+            };
+            format!("it takes {least}{}{proved} photons, by shot noise alone", significant(fewest, 3))
         }
-        None => "no number of photons suffices".into(),
+        [None, _] => "no number of photons suffices".into(),
     };
     let _ =
         writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));

@@ -6,7 +6,7 @@ mod text;
 
 pub use text::{check, text};
 
-use super::probability::{demanded, reliability};
+use super::probability::{demanded, percent, reliability};
 use super::shortfall::clauses;
 use super::text::numbers::in_a_row;
 use super::{Say, conditions};
@@ -14,6 +14,9 @@ use hadar::fisher::Nuisance;
 use hadar::words::significant;
 use hadar_scenario::DistanceKind;
 use hadar_study::{Answer, Finding, MixtureAnswer};
+
+/// Share by which two numbers of photons are one in the digits shown.
+const ROUNDED: f64 = 4e-3;
 
 impl Say for Finding {
     fn say(&self) -> String {
@@ -104,20 +107,30 @@ fn answered(finding: &Finding) -> String {
             };
             format!("{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
         }
-        Answer::Takes { photons, .. } => format!(
-            "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
-            significant(*photons, 3)
-        ),
-        Answer::Judged { enough: false, spoiled, reached: Some(reached), proved: Some(proved), .. }
-            if spoiled.is_empty() && *reached >= finding.required =>
-        {
-            let [proved, reached] = [proved, reached].map(|d| reliability(*d));
+        Answer::Takes { photons, enough, .. } => {
+            let more = match enough {
+                Some(enough) if *enough <= *photons * (1.0 + ROUNDED) => String::new(),
+                Some(enough) => format!("; by what is proved it may take {}", significant(*enough, 3)),
+                None => "; nothing is proved to suffice".into(),
+            };
+            format!(
+                "Telling {target} from {other} with {wanted} reliability takes at least {} photons{more}.",
+                significant(*photons, 3)
+            )
+        }
+        Answer::Judged {
+            undecided: true, reached: Some(reached), proved: Some(proved), probability, ..
+        } => {
+            let [proved, reached] = match probability {
+                Some(of_few) => of_few.map(percent),
+                None => [proved, reached].map(|d| reliability(*d)),
+            };
             format!(
                 "Undecided: whether {camera} can tell {target} from {other} with {wanted} reliability; {proved} are proved, and no state \
                  was found in which it is less than {reached}."
             )
         }
-        Answer::Judged { enough, spoiled, reached, .. } => {
+        Answer::Judged { enough, spoiled, reached, probability, .. } => {
             let (yes, can) = match (enough, spoiled.is_empty()) {
                 (true, true) => (yes(finding), "can"),
                 (true, false) => ("No".into(), "could"),
@@ -125,6 +138,10 @@ fn answered(finding: &Finding) -> String {
             };
             let end = match reached {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
+                Some(_) if probability.is_some() => {
+                    let most = probability.map_or_else(String::new, |[_, most]| percent(most));
+                    format!("; it reaches {most} at most, of counts so few that this is their own law.")
+                }
                 Some(reached) => {
                     let one = if finding.pixels.is_some() { "a pixel" } else { "it" };
                     let all = of_pixels(finding, *reached);
@@ -167,7 +184,7 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
                  unknown."
             )
         }
-        Answer::Takes { photons, limit } => {
+        Answer::Takes { photons, limit, .. } => {
             let photons = significant(*photons, 3);
             let limit = limit.map_or_else(|| "no number suffices".into(), |limit| significant(limit, 3));
             format!(
@@ -229,7 +246,15 @@ mod tests {
     }
 
     fn judged(enough: bool, spoiled: Vec<Shortfall>) -> Finding {
-        finding(Answer::Judged { enough, spoiled, reached: Some(2.0), proved: Some(2.0), limit: Some(2.0) })
+        finding(Answer::Judged {
+            enough,
+            undecided: false,
+            spoiled,
+            reached: Some(2.0),
+            proved: Some(2.0),
+            probability: None,
+            limit: Some(2.0),
+        })
     }
 
     #[test]
@@ -254,9 +279,11 @@ mod tests {
     fn what_is_not_proved_is_undecided() {
         let found = Answer::Judged {
             enough: false,
+            undecided: true,
             spoiled: Vec::new(),
             reached: Some(1.1),
             proved: Some(0.8),
+            probability: None,
             limit: Some(1.1),
         };
         let said = finding(found).say();

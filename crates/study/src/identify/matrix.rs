@@ -4,7 +4,7 @@ mod results;
 
 pub use results::{Apart, Check, Matrix, Rows, TargetVerdict};
 
-use crate::{Study, Surface};
+use crate::{Study, Surface, YesNo};
 use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
@@ -77,11 +77,14 @@ impl Study {
         let (by_kind, error_by_kind) = match kind {
             DistanceKind::Nearest => (nearest.clone(), None),
             DistanceKind::Local => (local.clone(), Some(relative_error.clone())),
-            DistanceKind::LocalUnknownGain => of(kind, None)?,
+            DistanceKind::LocalUnknownGain => {
+                let all = of(kind, None)?;
+                (all.found, all.errors)
+            }
         };
-        // What the camera reaches whatever rounding did to it.
-        let reached = statistical.as_ref().map(|(d, errors)| surely(d, errors.as_deref()));
-        let statistical = statistical.map(|(d, _)| d);
+        // What is proved that the camera reaches, whatever rounding did to it.
+        let reached = statistical.as_ref().map(|all| surely(&all.lower, all.errors.as_deref()));
+        let statistical = statistical.map(|all| all.found);
         let distances_asked = count * (count - 1);
         self.book_passes(solver.passes(), distances_asked);
         demand::computed(Thing::NearestSearches, distances_asked as u64);
@@ -91,12 +94,15 @@ impl Study {
         if kind == DistanceKind::LocalUnknownGain {
             self.book_distances(kind, distances_asked);
         }
-        let required = self.required;
+        let required = match &counting {
+            Some(counting) => self.surely_required(counting),
+            None => self.required,
+        };
         let targets = (0..count)
             .map(|target| {
                 let decisive = |other: &usize| {
                     let at = target * count + other;
-                    statistical.as_ref().map_or(by_kind[at], |d| d[at])
+                    reached.as_ref().map_or(by_kind[at], |d| d[at])
                 };
                 let others = (0..count).filter(|&other| other != target);
                 let limiting = others.min_by(|a, b| decisive(a).total_cmp(&decisive(b))).unwrap_or(target);
@@ -106,6 +112,9 @@ impl Study {
                     limiting: names[limiting].clone(),
                     distance_minimum: by_kind[target * count + limiting],
                     statistical_distance_minimum: least,
+                    statistical_distance_minimum_lower: reached
+                        .as_ref()
+                        .map(|d| d[target * count + limiting]),
                     identifiable: reached.as_ref().map(|reached| {
                         (0..count)
                             .filter(|&other| other != target)
@@ -131,7 +140,8 @@ impl Study {
                 .filter(|_| kind == DistanceKind::LocalUnknownGain)
                 .map(|errors| rows(&errors, count)),
             statistical_distance: statistical.map(|d| rows(&d, count)),
-            required_distance: required,
+            statistical_distance_lower: reached.map(|d| rows(&d, count)),
+            required_distance: self.required,
             targets,
             apart,
             unproved,
@@ -167,18 +177,17 @@ impl Study {
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let names: Vec<String> = materials.iter().map(|m| m.name.clone()).collect();
         let counting = self.needed_counting()?;
-        let kind = self.scenario.requirement.by;
+        let (kind, required) = (self.scenario.requirement.by, self.surely_required(&counting));
         if kind == DistanceKind::Nearest {
             let scene = self.library_scene();
-            let found = scene.told_apart(&emissivities, &counting, self.required, skipping, progress)?;
+            let found = scene.told_apart(&emissivities, &counting, required, skipping, progress)?;
             return Ok(sorted_out(&names, |a, b| found.told_apart(a, b)));
         }
         // All local distances together take less time than bounds on each would.
-        let (d, errors) = self.all_distances(kind, &emissivities, Some(&counting), progress)?;
-        let d = surely(&d, errors.as_deref());
+        let all = self.all_distances(kind, &emissivities, Some(&counting), progress)?;
+        let d = surely(&all.lower, all.errors.as_deref());
         let count = names.len();
-        let told =
-            |a: usize, b: usize| d[a * count + b] >= self.required && d[b * count + a] >= self.required;
+        let told = |a: usize, b: usize| d[a * count + b] >= required && d[b * count + a] >= required;
         self.book_distances(kind, count * (count - 1));
         Ok(sorted_out(&names, told))
     }
@@ -194,7 +203,7 @@ impl Study {
         demand::add(&self.looked_up);
         let failed = if self.has_classes() {
             self.classes.iter().position(|answer| answer.told_apart != Some(true))
-        } else if kind == DistanceKind::Nearest {
+        } else if kind == DistanceKind::Nearest && self.counts_are_many(&self.bands, &counting) {
             let emissivities: Vec<&[f64]> =
                 std::iter::once(&self.target).chain(&self.alternatives).map(|m| &m.emissivity[..]).collect();
             let scene = self.library_scene();
@@ -205,8 +214,8 @@ impl Study {
                 self.alternatives.iter().enumerate(),
                 &[Thing::LocalDistances],
                 |(i, alternative)| {
-                    let found = self.statistical(kind, alternative, &counting)?;
-                    Ok((!found.reaches(self.required)).then_some(i))
+                    let (_, decision) = self.decided(kind, alternative, &counting)?;
+                    Ok((decision.told != YesNo::Yes).then_some(i))
                 },
             )?
         };
@@ -250,26 +259,27 @@ impl Study {
         emissivities: &[&[f64]],
         counting: Option<&Counting>,
         progress: Progress<'_>,
-    ) -> Result<(Vec<f64>, Option<Vec<f64>>)> {
+    ) -> Result<All> {
         let local = |unknowns: Unknowns| {
             let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, unknowns);
             let found = match counting {
                 Some(counting) => matrix.with_counting(emissivities, &self.state, counting),
                 None => matrix.per_photon(emissivities, &self.state),
             }?;
-            let errors = matrix.relative_errors(&found);
-            Ok((found, Some(errors)))
+            let errors = Some(matrix.relative_errors(&found));
+            Ok(All { lower: found.clone(), found, errors })
+        };
+        let proved = |found: NearestMatrix| All {
+            lower: self.all_sure(&found),
+            found: found.distance,
+            errors: counting.is_some().then_some(found.relative_error),
         };
         let scene = self.library_scene();
         let found = match (kind, counting) {
             (DistanceKind::Nearest, Some(counting)) => {
-                let found = scene.nearest_with_counting(emissivities, counting, progress);
-                found.map(|found| (self.all_sure(&found), None))
+                scene.nearest_with_counting(emissivities, counting, progress).map(proved)
             }
-            (DistanceKind::Nearest, None) => {
-                let found = scene.nearest_per_photon(emissivities, progress);
-                found.map(|found| (self.all_sure(&found), None))
-            }
+            (DistanceKind::Nearest, None) => scene.nearest_per_photon(emissivities, progress).map(proved),
             (DistanceKind::Local, _) => local(self.unknowns.clone()),
             (DistanceKind::LocalUnknownGain, _) => local(self.unknowns.with(Nuisance::Gain)),
         };
@@ -281,6 +291,14 @@ impl Study {
         let sure = |i| self.sure(found.distance[i], found.lower[i]);
         (0..found.distance.len()).map(sure).collect()
     }
+}
+
+/// Distances of all against all, row-major: as they were found, and what a verdict may rest on.
+pub(crate) struct All {
+    pub(crate) found: Vec<f64>,
+    pub(crate) lower: Vec<f64>,
+    /// Their relative errors, where the solver tells them.
+    pub(crate) errors: Option<Vec<f64>>,
 }
 
 /// What distances are at least, whatever rounding did to them.

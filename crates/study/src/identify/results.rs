@@ -1,8 +1,9 @@
 //! What is known of every pair, and of the target against all alternatives, as data.
 
-use super::super::{ClassAnswer, Condition, PriorAverage, Warning};
+use super::super::{ClassAnswer, Condition, PriorAverage, Warning, YesNo};
 use hadar::demand::Work;
 use hadar::identifiability::Status;
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::identifiability::detection::ErrorBracket;
 use hadar_scenario::{DistanceKind, Scenario};
 use std::collections::BTreeMap;
@@ -41,8 +42,10 @@ pub struct Identification {
 pub struct Identifiability {
     /// Least distance per √photon, by the distance that decides (S33).
     pub distance_minimum: f64,
-    /// Least statistical distance with the camera.
+    /// Least statistical distance with the camera, as a state that was found shows it.
     pub statistical_distance_minimum: Option<f64>,
+    /// What is proved of the least, and that which was found.
+    pub statistical_distance_minimum_bounds: Option<[f64; 2]>,
     /// Φ of it.
     pub detection_probability_minimum: Option<f64>,
     /// Identifiability log₂ 2P of the paper, bits.
@@ -144,24 +147,37 @@ pub struct PairResult {
     pub nearest_at_edge: Vec<String>,
     /// Distance from that state back to the target's material, per √photon of the target.
     pub distance_return: f64,
+    /// What is proved of it: no state of the target's material is nearer.
+    pub distance_return_lower: f64,
+    /// Whether that is as near to it as is asked for.
+    pub proof_return: NearestProof,
     /// Estimated relative rounding error of it.
     pub relative_error_return: f64,
-    /// Photons for the requirement by the chosen distance, shot noise only; none suffice where `None`.
+    /// Photons for the requirement by what is proved of the chosen distance, shot noise only; `None` where none suffice, or where nothing
+    /// is proved.
     pub photons_required: Option<f64>,
-    /// The same by all three readings.
+    /// The least number that may do, as a state that was found shows, and that which is proved to do; none suffice where the first is `None`.
+    pub photons_required_bounds: [Option<f64>; 2],
+    /// Photons for the requirement by all three readings, as they were found.
     pub photons_required_by: PhotonsRequired,
-    /// Statistical distance of the camera by the chosen distance, with its noise.
+    /// Statistical distance of the camera by the chosen distance, with its noise, as a state that was found shows it.
     pub statistical_distance: Option<f64>,
     /// The same by the nearest distance: the limit, whichever decides.
     pub statistical_distance_nearest: Option<f64>,
     /// What that of the chosen distance is at least, as proved, and at most, as a state that was found shows.
     pub statistical_distance_bounds: Option<[f64; 2]>,
-    /// Whether that of the chosen distance reaches the requirement.
+    /// Whether the requirement is reached: *undecided* where what is proved does not and what was found does.
+    pub told: Option<YesNo>,
+    /// Whether it is proved that it is reached.
     pub told_apart: Option<bool>,
+    /// By which law counts are decided: Φ(d) of many, the exact one of few, or a bracket.
+    pub decided_by: Option<DecisionLaw>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
     pub statistical_distance_shortcut: Option<f64>,
-    /// Φ(d).
+    /// Φ(d), or that of counts so few that Φ does not hold.
     pub detection_probability: Option<f64>,
+    /// What it is at least, as proved, and at most.
+    pub detection_probability_bounds: Option<[f64; 2]>,
     /// 1 − Φ(d).
     pub miss_probability: Option<f64>,
     /// log₂ 2P.

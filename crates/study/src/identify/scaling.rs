@@ -76,7 +76,7 @@ impl Study {
         let materials = self.materials()?;
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let count = materials.len();
-        let (distances, _) = self.all_distances(kind, &emissivities, None, progress)?;
+        let distances = self.all_distances(kind, &emissivities, None, progress)?.found;
         self.book_distances(kind, count * (count - 1));
         let curves: Vec<Vec<f64>> = (0..count)
             .map(|target| {

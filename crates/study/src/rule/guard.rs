@@ -9,6 +9,7 @@ use crate::Study;
 use crate::size::sensitivity::{linear, ripple::Ripple, scatter::Scatter};
 use hadar::error::{Place, Result};
 use hadar::instrument::Camera;
+use hadar::policy::{Quantity, Solution};
 use hadar::scene::State;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -16,13 +17,29 @@ use rand::rngs::ChaCha8Rng;
 const SEED: u64 = 1;
 
 /// A scene in which a margin is taken anew.
-struct Scene {
+pub(super) struct Scene {
     sighted: Sighted,
     alternative: usize,
     state: State,
 }
 
 impl Scene {
+    /// A figure of the camera solved for in it; `None` where it has none.
+    pub(super) fn solved(
+        &self,
+        rule: &TellApart,
+        candidate: &Candidate,
+        camera: &Camera,
+        quantity: Quantity,
+    ) -> Result<Option<Solution>> {
+        let distance_m = rule.seen_from_m(candidate, &self.sighted, camera);
+        let mut study = self.sighted.before(camera, distance_m, &rule.envelope)?.study;
+        study.state = self.state.clone();
+        let surface = study.alternatives[self.alternative].clone();
+        let mut found = study.solutions_of(camera, &surface, &[quantity])?.0;
+        Ok(found.pop().map(|(_, solution)| solution))
+    }
+
     /// Whether another is the same.
     fn is_like(&self, other: &Self) -> bool {
         let place = |scene: &Self| scene.sighted.study.scenario.target.distance_m;
@@ -46,7 +63,7 @@ impl TellApart {
         let distance = worst.pair.distance;
         let mut scenes = self.scenes(candidate, worst, near);
         for camera in uncertain.ends()? {
-            let found = self.worst_of(candidate, &camera)?;
+            let found = self.worst_of(candidate, &camera)?.map(|(scene, _)| scene);
             scenes.extend(found.filter(|found| !scenes.iter().any(|known| known.is_like(found))));
         }
         let ripple = self
@@ -98,8 +115,8 @@ impl TellApart {
         scenes
     }
 
-    /// The worst of a few scenes before a camera.
-    fn worst_of(&self, candidate: &Candidate, camera: &Camera) -> Result<Option<Scene>> {
+    /// The worst of a few scenes before a camera, and its distance.
+    pub(super) fn worst_of(&self, candidate: &Candidate, camera: &Camera) -> Result<Option<(Scene, f64)>> {
         let mut worst: Option<Estimate> = None;
         for (index, sighted) in candidate.sighted.iter().enumerate() {
             let seen =
@@ -110,10 +127,8 @@ impl TellApart {
                 }
             }
         }
-        Ok(worst.map(|Estimate { sighted, alternative, state, .. }| Scene {
-            sighted: candidate.sighted[sighted].clone(),
-            alternative,
-            state,
+        Ok(worst.map(|Estimate { sighted, alternative, state, distance, .. }| {
+            (Scene { sighted: candidate.sighted[sighted].clone(), alternative, state }, distance)
         }))
     }
 

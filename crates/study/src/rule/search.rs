@@ -4,7 +4,7 @@
 //! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
 //! that is above that, not its own worst case to 1 %.
 
-use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
+use super::super::{NearestState, Shortfall, Study, Surface, Warning, YesNo, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
 use super::envelope::{Estimate, Sighted, brightest, unlit};
@@ -37,6 +37,8 @@ const ROUNDING: f64 = 1e-9;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
+/// Worst scenes that a figure is solved for at most.
+const SCENES: usize = 6;
 /// Share of the worst distance up to which the scenes of other pairs count where figures are uncertain.
 const NEAR: f64 = 1.5;
 
@@ -114,11 +116,21 @@ impl TellApart {
         }
         let guarded = |uncertain: &Uncertain<'_>| self.guarded(uncertain, candidate, &worst, near, &at);
         let uncertainty = uncertain.as_ref().map(guarded).transpose()?;
-        let Judged { mut verdict, fails_by, mut undecided_by } =
+        let Judged { mut verdict, mut fails_by, mut undecided_by } =
             uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
-        // 'Can' is said of what is proved: between that and the worst scene found it is undecided.
-        if verdict == Verdict::Meets && worst.lower_bound.is_some_and(|bound| bound < self.required) {
+        // 'Can' is said of what is proved, and of few counts by their own law: between that and the worst scene found it is undecided.
+        let counting = at.counting();
+        let surely = counting.as_ref().map_or(self.required, |counting| at.surely_required(counting));
+        let bound = worst.lower_bound.or((surely > self.required).then_some(distance));
+        let few_counts_may_do = match &counting {
+            Some(counting) if surely > self.required && fails_by == [Shortfall::Distance] => {
+                at.decided(self.scenario.requirement.by, surface, counting)?.1.told != YesNo::No
+            }
+            _ => false,
+        };
+        if few_counts_may_do || verdict == Verdict::Meets && bound.is_some_and(|bound| bound < surely) {
             (verdict, undecided_by) = (Verdict::Undecided, vec![Shortfall::Distance]);
+            fails_by.clear();
         }
         let passes = verdict == Verdict::Meets;
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
@@ -242,12 +254,25 @@ impl TellApart {
         Proviso::of(near.camera.as_ref()?, near.bands.len(), self.pace_m_s()?)
     }
 
-    /// What each figure of the camera would have to be in the limiting scene, and what that would spoil.
+    /// What each figure of the camera would have to be in the limiting scene and in those that are the worst of a few at its solution, and
+    /// what that would spoil.
     fn fixes(&self, candidate: &Candidate, at: &Study, camera: &Camera, surface: &Surface) -> Result<Fixes> {
         let task = at.task(camera);
-        let mut quantities = at.solutions(camera, surface)?;
         // Where the target is and how fast it moves is the rule's to say.
-        quantities.0.retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
+        let mut quantities = at.solutions_of(camera, surface, &Quantity::OF_CAMERA)?;
+        for (quantity, solution) in &mut quantities.0 {
+            for _ in 0..SCENES {
+                let Some(value) = solution.value else { break };
+                let changed = task.forward(*quantity, value).camera;
+                let Some((scene, distance)) = self.worst_of(candidate, &changed)? else { break };
+                if distance >= self.required * (1.0 - ROUNDING) {
+                    break;
+                }
+                let found = scene.solved(self, candidate, camera, *quantity)?;
+                let Some(found) = found else { break };
+                *solution = found.or_harder(solution.clone(), *quantity);
+            }
+        }
         let mut any = false;
         let mut spoils = BTreeMap::new();
         for (quantity, solution) in &quantities.0 {
@@ -260,7 +285,7 @@ impl TellApart {
                 CapCode::Diffraction => Some(Shortfall::Diffraction),
                 CapCode::Impractical => Some(Shortfall::Impractical),
                 CapCode::LowestNoise => Some(Shortfall::LowestNoise),
-                CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
+                CapCode::DecisionTime | CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
             }));
             any |= spoiled.is_empty();
             if !spoiled.is_empty() {

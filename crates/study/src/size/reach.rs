@@ -1,14 +1,16 @@
 //! Statistical distances of one camera after another against one alternative, as a quantity is solved for.
 //!
 //! From trial to trial the nearest state is followed: it moves little, and a refinement takes a fraction of a search.
-//! What was solved for is searched anew at the end; where another state is nearer there, that one is followed.
+//! What was solved for is searched anew at the end; where another state is nearer there, that one is followed. Where what is proved
+//! stays behind what was found, more is asked for until what is proved is enough too.
 
 use super::super::{Study, Surface};
+use crate::distances::Statistical;
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::nearest::NearestSolver;
+use hadar::identifiability::nearest::{Nearer, NearestSolver};
 use hadar::policy::{CameraTask, Quantity, Solution, Trial};
 use hadar::scene::State;
 use hadar::spectrum::Bands;
@@ -18,6 +20,10 @@ use hadar_scenario::DistanceKind;
 const SAME: f64 = 1e-10;
 /// How often another state may turn out nearer before every trial is searched in full.
 const TURNS: usize = 4;
+/// How often more is asked for until what is proved suffices.
+const RAISES: usize = 8;
+/// Share of what is required that is rounding of what was solved for, and by how much more than it lacks is asked for.
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// The solvers of one set of bands.
 pub(crate) struct Solvers<'a> {
@@ -40,15 +46,27 @@ impl<'a> Solvers<'a> {
     pub(crate) fn reached(
         &mut self,
         study: &Study,
-        [target, other]: [&[f64]; 2],
+        pair: [&[f64]; 2],
         counting: &Counting,
         start: Option<&State>,
     ) -> Result<(f64, Option<State>)> {
+        self.found(study, pair, counting, start).map(|(found, state)| (found.distance, state))
+    }
+
+    /// The same with what is proved of it, which is nothing where a state was followed.
+    fn found(
+        &mut self,
+        study: &Study,
+        [target, other]: [&[f64]; 2],
+        counting: &Counting,
+        start: Option<&State>,
+    ) -> Result<(Statistical, Option<State>)> {
         if study.scenario.requirement.by != DistanceKind::Nearest {
             let unknowns = study.decisive_unknowns();
             study.book_local(&unknowns, 1);
             let local = self.local.with_counting(target, other, &study.state, counting)?;
-            return Ok((local.distance, None));
+            let found = Statistical { distance: local.distance, lower: local.distance, relative_error: None };
+            return Ok((found, None));
         }
         let nearest = match start {
             Some(start) => {
@@ -60,7 +78,9 @@ impl<'a> Solvers<'a> {
                 self.nearest.with_counting(target, other, &study.state, counting)?
             }
         };
-        Ok((nearest.distance, Some(nearest.state)))
+        let lower = study.sure(nearest.distance, nearest.lower);
+        let found = Statistical { distance: nearest.distance, lower, relative_error: None };
+        Ok((found, Some(nearest.state)))
     }
 }
 
@@ -83,51 +103,126 @@ impl<'a> Reach<'a> {
 
     /// The statistical distance of a trial, its nearest state followed from the trial before.
     pub(crate) fn followed(&mut self, trial: &Trial) -> Result<f64> {
-        self.evaluate(trial, true)
+        let start = self.state.take();
+        self.evaluate(trial, start.as_ref()).map(|[_, found]| found)
     }
 
-    /// The statistical distance of a trial, its nearest state searched in full.
-    pub(crate) fn anew(&mut self, trial: &Trial) -> Result<f64> {
-        self.evaluate(trial, false)
+    /// The statistical distance of a trial, as proved and as found, its nearest state searched in full.
+    pub(crate) fn anew(&mut self, trial: &Trial) -> Result<[f64; 2]> {
+        self.evaluate(trial, None)
     }
 
-    fn evaluate(&mut self, trial: &Trial, follow: bool) -> Result<f64> {
-        let study = self.study;
-        let start = self.state.take().filter(|_| follow);
-        let start = start.as_ref();
-        let pair = [study.target.emissivity.as_slice(), self.alternative.emissivity.as_slice()];
-        let (distance, state) = if trial.distance_m == study.scenario.target.distance_m {
-            let counting = study.counting_of(&trial.camera);
-            self.own.reached(study, pair, &counting, start)?
-        } else {
-            let there = match self.elsewhere.take().filter(|(from, ..)| *from == trial.distance_m) {
-                Some(there) => there,
-                None => {
-                    let (bands, air) = study.received(Some(&trial.camera), trial.distance_m)?;
-                    (trial.distance_m, bands, air)
+    fn evaluate(&mut self, trial: &Trial, start: Option<&State>) -> Result<[f64; 2]> {
+        let (study, alternative) = (self.study, self.alternative);
+        self.state = None;
+        let mut state = None;
+        let distances = self.with_solvers(trial, |solvers, bands, counting| {
+            let pair = [study.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
+            let (found, nearest) = solvers.found(study, pair, counting, start)?;
+            let distances = match &nearest {
+                Some(nearest) => {
+                    let decision = study.decision(
+                        DistanceKind::Nearest,
+                        alternative,
+                        (bands, counting),
+                        found,
+                        nearest,
+                    )?;
+                    decision.distances(found)
                 }
+                None => found.bounds(),
             };
-            let (distance_m, bands, air) = self.elsewhere.insert(there);
-            let counting =
-                trial.camera.counting(bands, &study.view_through(&trial.camera, bands, *distance_m, air));
-            Solvers::new(study, bands).reached(study, pair, &counting, start)?
-        };
+            state = nearest;
+            Ok(distances)
+        })?;
         self.state = state;
-        Ok(distance)
+        Ok(distances)
     }
 
-    /// Solves a task for a quantity; the nearest state at the solution is searched in full.
+    /// Whether it is proved that a trial reaches what is required; where a state is nearer, or may be, it does not.
+    pub(crate) fn is_met(&mut self, trial: &Trial, required: f64) -> Result<bool> {
+        let (study, alternative) = (self.study, self.alternative);
+        let enough = required * (1.0 - ROUNDING);
+        let found = self.with_solvers(trial, |solvers, bands, counting| {
+            let by_nearest = study.scenario.requirement.by == DistanceKind::Nearest;
+            if !by_nearest || study.unknowns.has_priors() || !study.counts_are_many(bands, counting) {
+                return Ok(None);
+            }
+            demand::computed(Thing::NearestSearches, 1);
+            let (own, other) = (&study.target.emissivity, &alternative.emissivity);
+            solvers.nearest.nearer_than(own, other, &study.state, counting, enough, None).map(Some)
+        })?;
+        match found {
+            Some(found) => Ok(found == Nearer::Nowhere),
+            None => Ok(self.anew(trial)?[0] >= enough),
+        }
+    }
+
+    /// Hands the solvers of a trial on, with the bands that they are of, and what is counted in them.
+    fn with_solvers<T>(
+        &mut self,
+        trial: &Trial,
+        ask: impl FnOnce(&mut Solvers<'_>, &Bands, &Counting) -> Result<T>,
+    ) -> Result<T> {
+        let study = self.study;
+        if trial.distance_m == study.scenario.target.distance_m {
+            let counting = study.counting_of(&trial.camera);
+            return ask(&mut self.own, &study.bands, &counting);
+        }
+        let there = match self.elsewhere.take().filter(|(from, ..)| *from == trial.distance_m) {
+            Some(there) => there,
+            None => {
+                let (bands, air) = study.received(Some(&trial.camera), trial.distance_m)?;
+                (trial.distance_m, bands, air)
+            }
+        };
+        let (distance_m, bands, air) = self.elsewhere.insert(there);
+        let counting =
+            trial.camera.counting(bands, &study.view_through(&trial.camera, bands, *distance_m, air));
+        ask(&mut Solvers::new(study, bands), bands, &counting)
+    }
+
+    /// Solves a task for a quantity; the nearest state at the solution is searched in full. `necessary` is by the states that were found,
+    /// the value by what is proved.
     pub(crate) fn solve(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
+        let found = self.solve_found(task, quantity)?;
+        let Some(necessary) = found.value else { return Ok(found) };
+        let mut solution = found.clone();
+        let mut required = task.required;
+        for _ in 0..RAISES {
+            let Some(value) = solution.value else { break };
+            let [proved, _] = self.anew(&task.forward(quantity, value))?;
+            if proved >= task.required * (1.0 - ROUNDING) {
+                return Ok(Solution { necessary: Some(necessary), ..solution });
+            }
+            // More is asked for, by the share that the proof stays behind.
+            let raised = required * (task.required / proved) * (1.0 + ROUNDING);
+            if !(raised.is_finite() && raised > required) {
+                break;
+            }
+            required = raised;
+            let harder = CameraTask { required, ..task.clone() };
+            solution = self.solve_found(&harder, quantity)?;
+        }
+        let reason = Some(NOT_PROVED.to_owned());
+        Ok(Solution { value: None, necessary: Some(necessary), reason, ..found })
+    }
+
+    /// Solves by the states that are found.
+    fn solve_found(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
         for _ in 0..TURNS {
             let solution = task.solve(quantity, |trial| self.followed(trial))?;
             let Some(value) = solution.value else { return Ok(solution) };
             // A speed is that of an exposure, which is where the search ended.
-            let anew = self.anew(&task.forward(quantity, value))?;
+            let [_, anew] = self.anew(&task.forward(quantity, value))?;
             if anew >= solution.statistical_distance * (1.0 - SAME) {
                 return Ok(solution);
             }
             // Another state is nearer at this noise: it is followed from now on.
         }
-        task.solve(quantity, |trial| self.anew(trial))
+        task.solve(quantity, |trial| Ok(self.anew(trial)?[1]))
     }
 }
+
+/// Why there is no value where states that were found allow one.
+const NOT_PROVED: &str = "none is proved to suffice";

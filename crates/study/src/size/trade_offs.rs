@@ -4,7 +4,6 @@ use crate::Study;
 use crate::size::{Reach, Sizing};
 use hadar::error::Result;
 use hadar::parallel;
-use hadar::policy::caps::Circumstances;
 use hadar::policy::trade_off::{self, PAIRS, POINTS, TradeOff};
 use hadar::policy::{Motion, Quantity, Trial};
 
@@ -52,8 +51,7 @@ impl Study {
             return Ok(None);
         };
         let brightest = |trial: &Trial| self.brightest(trial);
-        let speed_m_s = self.scenario.requirement.speed_m_s;
-        let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
+        let given = self.circumstances(&brightest);
         let mut solved = result.solve_for.iter().flat_map(|solutions| &solutions.0);
         let alone = solved.find(|(quantity, _)| *quantity == pair.0).and_then(|(_, found)| found.value);
         let as_now = result.verdict.statistical_distance.unwrap_or(0.0);

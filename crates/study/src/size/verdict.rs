@@ -10,6 +10,7 @@ use hadar::demand::{Skipping, Work};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
 use hadar::identifiability::Status;
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::instrument::Camera;
 use hadar_scenario::{DistanceKind, Scenario};
 
@@ -128,8 +129,10 @@ pub enum Answer {
     },
     /// There is no camera to judge.
     Takes {
-        /// Photons by the distance that decides.
+        /// Photons by the distance that decides, as it was found: fewer do not suffice.
         photons: f64,
+        /// Photons by what is proved of it; `None` where nothing is.
+        enough: Option<f64>,
         /// Photons that any camera needs, by the nearest; none suffice where `None`.
         limit: Option<f64>,
     },
@@ -137,12 +140,16 @@ pub enum Answer {
     Judged {
         /// Whether the statistical distance is reached.
         enough: bool,
+        /// Whether what is proved does not reach it and what was found does.
+        undecided: bool,
         /// What is wrong with the image.
         spoiled: Vec<Shortfall>,
         /// Statistical distance that a state which was found allows, where it is known.
         reached: Option<f64>,
         /// What is proved of it.
         proved: Option<f64>,
+        /// Probability of a right answer, at least and at most, of counts so few that Φ(d) does not hold.
+        probability: Option<[f64; 2]>,
         /// That of the nearest distance, where it is known.
         limit: Option<f64>,
     },
@@ -166,6 +173,15 @@ impl Study {
         if spoiled.is_empty() && (check.identifiable || !by_proof) {
             return Ok(None);
         }
+        if let (true, Some(index), Some(counting)) = (spoiled.is_empty(), check.failed, self.counting()) {
+            // Not to be proved is not to be impossible.
+            let own = self.against(index);
+            let kind = self.scenario.requirement.by;
+            let (_, decision) = own.decided(kind, &own.alternatives[index], &counting)?;
+            if decision.told != YesNo::No {
+                return Ok(None);
+            }
+        }
         let alternative = match (&check.not_told_from, self.alternatives.as_slice()) {
             (Some(name), _) => Some(name.clone()),
             (None, [only]) => Some(only.name.clone()),
@@ -174,9 +190,11 @@ impl Study {
         let index = check.failed.or((self.alternatives.len() == 1).then_some(0));
         let judged = Answer::Judged {
             enough: check.identifiable,
+            undecided: false,
             spoiled: spoiled.clone(),
             reached: None,
             proved: None,
+            probability: None,
             limit: None,
         };
         let brightest = self.brightest_member(camera);
@@ -229,14 +247,13 @@ impl Study {
         let proved = mixtures.map(|found| found.distance_lower);
         let far_enough = pair.told_apart;
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
+        let probability = pair
+            .detection_probability_bounds
+            .filter(|_| pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian));
         let bounds = pair.statistical_distance_bounds;
         let lower = bounds.map(|[lower, _]| proved.map_or(lower, |proved| lower.min(proved)));
         let upper = bounds.map(|[_, upper]| mixtures.map_or(upper, |found| upper.min(found.distance)));
-        let answer = far_enough.map(|enough| match upper {
-            _ if enough && spoiled.is_empty() => YesNo::Yes,
-            Some(upper) if !enough && spoiled.is_empty() && upper >= self.required => YesNo::Undecided,
-            _ => YesNo::No,
-        });
+        let answer = pair.told.map(|told| if spoiled.is_empty() { told } else { YesNo::No });
         let conditions = match &self.camera {
             Some(camera) => self.conditions(camera, met == Some(true), reached)?,
             None => Vec::new(),
@@ -244,16 +261,21 @@ impl Study {
         let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
         fails_by.extend(&spoiled);
         let few = self.too_few_bands().filter(|_| far_enough != Some(true));
-        let found = match (distance, requirement.photons, pair.status) {
+        let [least, enough] = requirement.photons_bounds;
+        let found = match (distance, least, pair.status) {
             (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
             (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
             (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
-            (None, Some(photons), _) => Answer::Takes { photons, limit: requirement.photons_by.nearest },
+            (None, Some(photons), _) => {
+                Answer::Takes { photons, enough, limit: requirement.photons_by.nearest }
+            }
             (Some(_), Some(_), _) => Answer::Judged {
                 enough: far_enough == Some(true),
+                undecided: pair.told == Some(YesNo::Undecided),
                 spoiled,
                 reached: upper,
                 proved: lower,
+                probability,
                 limit,
             },
         };

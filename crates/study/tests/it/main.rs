@@ -13,6 +13,7 @@ mod scenario_messages;
 mod search_inputs;
 mod sight;
 mod sizing;
+mod solved;
 mod trade_offs;
 mod units;
 

@@ -1,6 +1,10 @@
 //! Downhill from a start to the minimum of the valley that it lies in.
+//!
+//! Where a band of the alternative is dark, its root √N′ rises with infinite slope as light is let in, which no step of Newton's sees:
+//! a descent that has ended where a band is as good as dark is tried with more light, and goes on where that is nearer.
 
 use super::residual::{Comparison, NO_GAIN, Target};
+use crate::identifiability::space::{set, value};
 use crate::scene::{Parameter, State};
 
 /// Iterations of a refinement.
@@ -11,6 +15,8 @@ const STEP_TOLERANCE: f64 = 1e-9;
 const GAIN_TOLERANCE: f64 = 1e-9;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
+/// By a quarter each time, how much light is tried in bands that are dark: down to 10⁻³⁰ of what makes them as bright as the target.
+const HALVINGS: usize = 50;
 
 /// The nearest state of the alternative and its distance.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,9 +45,57 @@ impl NearestDistance {
     }
 }
 
-/// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come
-/// to a minimum that is `known`, or nearer than `enough`.
+/// Downhill within the bounds. It ends early where it has come to a minimum that is `known`, or nearer than `enough`.
 pub(super) fn refine(
+    comparison: &mut Comparison<'_>,
+    target: &Target<'_>,
+    start: State,
+    known: Option<&NearestDistance>,
+    enough: f64,
+) -> NearestDistance {
+    let mut found = newton(comparison, target, start, known, enough);
+    // Each time one more source is lit.
+    for _ in 0..=found.state.lighting.len() {
+        let Some(lit) = lit(comparison, target, &found) else { break };
+        let next = newton(comparison, target, lit, known, enough);
+        if next.distance >= found.distance {
+            break;
+        }
+        found = NearestDistance { iterations: found.iterations + next.iterations, ..next };
+    }
+    found
+}
+
+/// A state nearer than `found` with more light in bands that are as good as dark there, if there is one.
+fn lit(comparison: &mut Comparison<'_>, target: &Target<'_>, found: &NearestDistance) -> Option<State> {
+    let dark = comparison.dark(target, &found.state);
+    if dark.is_empty() {
+        return None;
+    }
+    let cost = found.distance * found.distance;
+    let lights = comparison.space.parameters.iter().copied().enumerate();
+    let lights: Vec<_> = lights.filter(|(_, one)| matches!(one, Parameter::Lighting(_))).collect();
+    let (mut best, mut least) = (None, cost * (1.0 - GAIN_TOLERANCE));
+    for (place, light) in lights {
+        let Some(mut more) = comparison.lighting_of(target, &found.state, place, &dark) else { continue };
+        for _ in 0..HALVINGS {
+            let mut tried = found.state.clone();
+            set(&mut tried, light, value(&found.state, light) + more);
+            let tried = comparison.space.within_range(&tried);
+            let cost = comparison.cost(target, &tried);
+            if cost < least {
+                (best, least) = (Some(tried), cost);
+            } else if best.is_some() {
+                break;
+            }
+            more *= 0.25;
+        }
+    }
+    best
+}
+
+/// Newton's method, damped as by Levenberg and Marquardt.
+fn newton(
     comparison: &mut Comparison<'_>,
     target: &Target<'_>,
     start: State,

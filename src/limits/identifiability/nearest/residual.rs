@@ -21,6 +21,9 @@ use crate::spectrum::Bands;
 /// What a step may promise, as a share of the cost, for the search to end before it.
 pub(super) const NO_GAIN: f64 = 2e-15;
 
+/// Share of the target's N + σ² below which a band is as good as dark.
+const DARK: f64 = 1e-6;
+
 /// What the counts are compared in.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Metric<'a> {
@@ -205,6 +208,32 @@ impl<'a> Comparison<'a> {
         let quotient =
             |(separation, sum): (&f64, f64)| if sum > 0.0 { target.counts * separation / sum } else { 0.0 };
         (self.work.separation.iter().zip(sums).map(quotient).collect(), other)
+    }
+
+    /// Bands of the target in which a state counts as good as nothing.
+    pub(super) fn dark(&mut self, target: &Target<'_>, state: &State) -> Vec<usize> {
+        self.separate(target, state, false);
+        let lines = self.lines(target);
+        let is_dark = |&w: &usize| {
+            let other = lines.counts.mul_add(lines.signal[w], lines.noise[w]);
+            other < DARK * lines.root[w] * lines.root[w]
+        };
+        (0..lines.root.len()).filter(is_dark).collect()
+    }
+
+    /// How much more of a parameter makes these bands, taken together, as bright as the target; `None` where it makes them no brighter.
+    pub(super) fn lighting_of(
+        &mut self,
+        target: &Target<'_>,
+        state: &State,
+        place: usize,
+        dark: &[usize],
+    ) -> Option<f64> {
+        self.separate(target, state, true);
+        let (column, own) = (self.surface.column(place), self.target.signal());
+        let sum = |spectrum: &[f64]| dark.iter().map(|&w| spectrum[w]).sum::<f64>();
+        let (more, all) = (sum(column), sum(own));
+        (more > 0.0 && all > 0.0).then(|| all / more).filter(|step| step.is_finite())
     }
 
     /// √(N + σ²) of the target.

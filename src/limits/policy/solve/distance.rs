@@ -22,21 +22,25 @@ const CLOSE_M: f64 = 5.0;
 /// Factor from one distance to the next as the crossing is bracketed.
 const STEP: f64 = std::f64::consts::SQRT_2;
 
+impl CameraTask<'_> {
+    /// The farthest distance that is looked at, m.
+    #[must_use]
+    pub fn looked_at_m(&self) -> f64 {
+        self.farthest_m.unwrap_or(FAR_M)
+    }
+}
+
 pub(super) fn solve(
     task: &CameraTask<'_>,
     mut distance: impl FnMut(&Trial) -> Result<f64>,
 ) -> Result<Solution> {
     let camera = task.value(Quantity::Distance);
     let mut at = |z: f64| distance(&task.forward(Quantity::Distance, z));
-    let none = |statistical_distance: f64, reason: String| Solution {
-        value: None,
-        camera,
-        statistical_distance,
-        reason: Some(reason),
-        caps: Vec::new(),
+    let none = |statistical_distance: f64, reason: String| {
+        Solution::new(None, camera, statistical_distance, Some(reason))
     };
     let near = NEAR_FOCAL_LENGTHS * task.camera.focal_length_m;
-    let far = task.farthest_m.unwrap_or(FAR_M);
+    let far = task.looked_at_m();
     let beyond = at(far)?;
     if beyond >= task.required {
         let reason = if task.farthest_m.is_some() {
@@ -71,7 +75,7 @@ pub(super) fn solve(
         let reason = first
             .filter(|first| *first > CLOSE_M && *first > STEP * near)
             .map(|first| format!("nearer than some {first:.2} m it is not met"));
-        return Ok(Solution { value: Some(value), camera, statistical_distance, reason, caps: Vec::new() });
+        return Ok(Solution::new(Some(value), camera, statistical_distance, reason));
     }
     let reason = if best == 0.0 { NEVER } else { "no distance is short enough" };
     Ok(none(best, reason.into()))

@@ -1,5 +1,7 @@
 //! What solving for a quantity comes to: its value, or why there is none, and the limits that the value breaks.
 
+use super::quantity::Quantity;
+
 /// Why no value suffices where the distance is 0.
 pub(super) const NEVER: &str = "nothing tells the two apart";
 
@@ -8,6 +10,8 @@ crate::base::named::named! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum CapCode {
+        /// All bands of all frames are read later than the decision must stand.
+        DecisionTime = "decision-time",
         /// The lens blurs a point over more than the pixel.
         Diffraction = "diffraction",
         /// An exposure is longer than a frame.
@@ -23,6 +27,14 @@ crate::base::named::named! {
     }
     /// The code, e.g. `full-well`.
     name
+}
+
+impl CapCode {
+    /// Whether a camera that breaks the limit does not meet the task; the others are told of and no more.
+    #[must_use]
+    pub const fn decides(self) -> bool {
+        matches!(self, Self::DecisionTime | Self::FullWell | Self::Motion)
+    }
 }
 
 /// A limit that a value breaks.
@@ -42,25 +54,51 @@ pub struct Cap {
 /// The value of a quantity at which the task is just met, or why there is none.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Solution {
-    /// The value (largest f-number, noise, distance or speed, least of the others); `None` if no value suffices.
+    /// The value (largest f-number, noise, distance or speed, least of the others) that is proved to suffice; `None` if none is.
     pub value: Option<f64>,
+    /// The value without which it surely does not: what states that were found ask for. `None` if no value suffices.
+    pub necessary: Option<f64>,
     /// The camera's own value; infinite or no number where it has none (`null` in JSON).
     pub camera: f64,
     /// Statistical distance at that value, or the best that the quantity alone can reach.
     pub statistical_distance: f64,
-    /// Why no value suffices.
+    /// Of a speed, the exposure that it holds at, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exposure_s: Option<f64>,
+    /// Why no value suffices, or what sets it beside the statistical distance.
     pub reason: Option<String>,
     /// Limits that shot noise does not know and the value breaks.
     pub caps: Vec<Cap>,
 }
 
 impl Solution {
+    /// The harder of this and another one of the same quantity: what suffices for both.
+    #[must_use]
+    pub fn or_harder(self, other: Self, quantity: Quantity) -> Self {
+        let farther = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) => Some(if quantity.is_least() { a.max(b) } else { a.min(b) }),
+            _ => None,
+        };
+        let necessary = farther(self.necessary, other.necessary);
+        let value = farther(self.value, other.value);
+        let kept = if self.value == value { self } else { other };
+        Self { necessary, ..kept }
+    }
+
     pub(super) fn new(
         value: Option<f64>,
         camera: f64,
         statistical_distance: f64,
         reason: Option<String>,
     ) -> Self {
-        Self { value, camera, statistical_distance, reason, caps: Vec::new() }
+        Self {
+            value,
+            necessary: value,
+            camera,
+            statistical_distance,
+            exposure_s: None,
+            reason,
+            caps: Vec::new(),
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::terms::{camera, no_limit};
 use crate::table::yes_no;
 use crate::text::columns::{Columns, left, right};
-use crate::text::numbers::{listed, shortened, significant};
+use crate::text::numbers::{between, listed, shortened, significant};
 use crate::words::probability as words;
 use hadar_study::{Apart, Matrix, Study};
 use std::collections::BTreeSet;
@@ -87,7 +87,8 @@ pub(super) fn matrix(matrix: &Matrix, study: &Study) -> String {
         let names = [&target.material, &target.limiting].map(|name| short.of(name).to_owned());
         let mut cells: Vec<String> = names.into_iter().chain([distance]).collect();
         if let (Some(d), Some(yes)) = (target.statistical_distance_minimum, target.identifiable) {
-            cells.extend([significant(d, 3), yes_no(yes)]);
+            let lower = target.statistical_distance_minimum_lower.unwrap_or(d);
+            cells.extend([between([lower, d], 3), yes_no(yes)]);
         }
         table.row(cells);
     }

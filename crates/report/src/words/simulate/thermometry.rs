@@ -274,8 +274,9 @@ fn reader(reader: &Reader) -> String {
     let rmse = trusted(reader.errors.rmse, reader.errors.rmse_interval);
     match (reader.bound_k, reader.efficiency) {
         (Some(bound), Some(found)) => {
+            let mark = if found.verdict == Verdict::Below { " below" } else { "" };
             format!(
-                "{rmse} ({}; {})",
+                "{rmse} ({}; {}{mark})",
                 significant(bound, 3),
                 trusted_ratio(found.ratio, found.ratio_interval)
             )

@@ -1,8 +1,9 @@
 //! The numbers of a sizing one by one: what each is called, its value with its unit, and the key of the JSON that it stands at.
 
-use crate::text::numbers::{quantity, significant};
+use crate::text::numbers::{between, quantity, significant};
 use crate::words::probability::probability;
 use crate::words::size::no_limit;
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::policy::{Quantity, Solution};
 use hadar_scenario::Units;
 use hadar_study::{PairResult, Sizing, Study};
@@ -56,7 +57,8 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
     if let Some(d) = pair.statistical_distance {
         let required = significant(result.verdict.required_distance, 4);
         let label = if by_local { "statistical distance, local" } else { "statistical distance reached" };
-        row(label, format!("{} (required {required})", significant(d, 3)), "verdict.statistical_distance");
+        let d = pair.statistical_distance_bounds.map_or_else(|| significant(d, 3), |ends| between(ends, 3));
+        row(label, format!("{d} (required {required})"), "verdict.statistical_distance");
     }
     if let (Some(d), Some(miss), Some(bits)) =
         (pair.statistical_distance, pair.miss_probability, pair.information_bits)
@@ -66,7 +68,14 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
             0.0 => "below 1e-300".to_owned(),
             miss => significant(miss, 3),
         };
-        row(label, format!("{} (error {error})", probability(d, 4)), "pairs.detection_probability");
+        let own = match (pair.decided_by, pair.detection_probability_bounds) {
+            (Some(law), Some([low, high])) if law != DecisionLaw::Gaussian => {
+                let between = between([low, high], 4);
+                format!("{between}, of counts so few that Phi(d) does not hold")
+            }
+            _ => probability(d, 4),
+        };
+        row(label, format!("{own} (error {error})"), "pairs.detection_probability");
         row("information log2 2P", format!("{} bit", significant(bits, 3)), "pairs.information_bits");
     }
     if let (true, Some(d)) = (by_local, pair.statistical_distance_nearest) {
@@ -113,13 +122,28 @@ pub fn solved(result: &Sizing, units: Units) -> Vec<Solved> {
     solutions.0.iter().filter(of_interest).map(row).collect()
 }
 
+/// Whether two values of a quantity are the same in the digits shown.
+fn same(one: f64, other: f64) -> bool {
+    (one - other).abs() <= 2e-3 * other.abs()
+}
+
 fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> Solved {
     let label = match solved {
         Quantity::Speed => "speed, at the exposure it takes",
         other => other.name(),
     };
     let value = match (solution.value, &solution.reason) {
+        (Some(value), _)
+            if solution.necessary.is_some_and(|other| !same(value, other)) && solution.reason.is_none() =>
+        {
+            let necessary = in_unit(solved, solution.necessary.unwrap_or(value), units);
+            format!("{}, {necessary} at least", in_unit(solved, value, units))
+        }
         (Some(value), _) => in_unit(solved, value, units),
+        (None, Some(reason)) if solution.necessary.is_some() => {
+            let necessary = in_unit(solved, solution.necessary.unwrap_or(f64::NAN), units);
+            format!("none: {reason} ({necessary} would tell the two apart)")
+        }
         (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
             format!("any: {reason}")
         }

@@ -9,7 +9,7 @@ use crate::words::probability::demanded_probability;
 use crate::words::{classes, companion, conditions};
 use hadar::words::share;
 use hadar_scenario::Units;
-use hadar_study::{PairResult, Sizing, Study};
+use hadar_study::{NearestProof, PairResult, Sizing, Study};
 use std::fmt::Write as _;
 
 /// Share of the draws that settles a question, and how many times the distance of the entries half of them must exceed to say
@@ -96,6 +96,14 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
         let hardware = hardware.map_or_else(|| "-".into(), |h| significant(h, 2));
         let distance = significant(distance, 3);
         let _ = writeln!(out, "{mark}{label:<34} {distance:>10}  {:>18}  {hardware:>14}", photons(count));
+    }
+    if pair.proof == NearestProof::Searched {
+        let enough = match requirement.photons {
+            Some(enough) => format!("{} photons suffice by that", significant(enough, 3)),
+            None => "by that no number of photons is known to suffice".into(),
+        };
+        let lower = significant(pair.distance_nearest_lower, 3);
+        let _ = writeln!(out, "  The nearest is the best of a search; proved is {lower}: {enough}.");
     }
     let state = &pair.nearest_state;
     let _ = writeln!(

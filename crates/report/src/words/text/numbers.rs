@@ -3,8 +3,26 @@
 pub use hadar::words::{quantity, significant};
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Share up to which two ends of an interval are one number: that to which a distance of many unknowns is proved.
+const SAME: f64 = 0.998;
+
 pub(crate) fn photons(count: Option<f64>) -> String {
     count.map_or_else(|| "no number suffices".into(), |count| significant(count, 3))
+}
+
+/// What is between two ends: one number where they are the same in the digits shown.
+pub(crate) fn between([low, high]: [f64; 2], digits: u32) -> String {
+    let [from, to] = [low, high].map(|end| significant(end, digits as usize));
+    if from == to || low >= SAME * high { to } else { format!("{from} to {to}") }
+}
+
+/// Photons that a task takes: the least number that may do, and that which is proved to.
+pub(crate) fn photons_between([least, enough]: [Option<f64>; 2]) -> String {
+    match (least, enough) {
+        (Some(least), Some(enough)) => between([least, enough], 3),
+        (Some(least), None) => format!("from {}", significant(least, 3)),
+        (None, _) => photons(None),
+    }
 }
 
 pub(crate) fn celsius(kelvin: f64) -> String {

@@ -34,8 +34,10 @@ pub struct Matrix {
     /// Estimated bound on its relative rounding error.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relative_error_unknown_gain: Option<Rows>,
-    /// Statistical distance of the camera by the distance that decides; `None` without a camera.
+    /// Statistical distance of the camera by the distance that decides, as states that were found show it; `None` without a camera.
     pub statistical_distance: Option<Rows>,
+    /// What is proved of it, whatever rounding did to it.
+    pub statistical_distance_lower: Option<Rows>,
     /// Statistical distance demanded.
     pub required_distance: f64,
     /// Every material as a target.
@@ -60,6 +62,8 @@ pub struct TargetVerdict {
     pub distance_minimum: f64,
     /// Its statistical distance with the camera.
     pub statistical_distance_minimum: Option<f64>,
+    /// What is proved of it.
+    pub statistical_distance_minimum_lower: Option<f64>,
     /// Whether the camera tells the material from every other one.
     pub identifiable: Option<bool>,
 }
