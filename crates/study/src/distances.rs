@@ -7,7 +7,6 @@ use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::{LocalDistance, LocalSolver};
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
-use hadar::scene::State;
 use hadar_scenario::DistanceKind;
 
 /// To what share of itself a nearest distance is proved where nobody asks: with one temperature to search at most, and more.
@@ -113,28 +112,23 @@ impl Study {
         )
     }
 
-    /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target.
+    /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target: the
+    /// nearest state may send none. Priors have no part in it.
     pub(super) fn return_distance(
         &self,
         alternative: &Surface,
         nearest: &NearestDistance,
     ) -> Result<NearestDistance> {
         demand::computed(Thing::NearestSearches, 1);
-        let back =
-            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), StateRange::default())
-                .proving(self.tolerance())
-                .per_photon(
-                    &alternative.emissivity,
-                    &self.target.emissivity,
-                    &nearest.state,
-                    f64::INFINITY,
-                )?;
-        // The search counts per photon of the state that it sets out from.
-        let photons = |surface: &Surface, state: &State| {
-            hadar::sum::sum(&self.bands.weigh(&self.surroundings.signal(&surface.emissivity, state)))
-        };
-        let share = (photons(alternative, &nearest.state) / photons(&self.target, &self.state)).sqrt();
-        Ok(NearestDistance { distance: share * back.distance, lower: share * back.lower, ..back })
+        let unknowns = self.unknowns.without_priors();
+        NearestSolver::new(&self.bands, &self.surroundings, unknowns, StateRange::default())
+            .proving(self.tolerance())
+            .with_counting(
+                &alternative.emissivity,
+                &self.target.emissivity,
+                &nearest.state,
+                &Counting::shot(1.0, &self.target_signal()),
+            )
     }
 
     /// Statistical distance d of a kind at given counts and noise.
@@ -225,12 +219,14 @@ impl Study {
         };
         // From a millionth of a photon to 10⁶⁰ of them.
         let (low, high) = (-14.0, 138.0);
-        if excess(high)? < 0.0 {
+        let most = excess(high)?;
+        if most < 0.0 {
             return Ok(None);
         }
-        if excess(low)? >= 0.0 {
+        let least = excess(low)?;
+        if least >= 0.0 {
             return Ok(Some(0.0));
         }
-        hadar::root::crossing(low, high, excess).map(|log| Some(log.exp()))
+        hadar::root::crossing_between([low, least], [high, most], excess).map(|log| Some(log.exp()))
     }
 }
