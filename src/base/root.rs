@@ -24,7 +24,8 @@ pub fn crossing_between(low: [f64; 2], high: [f64; 2], mut f: impl FnMut(f64) ->
     // Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection
     // (Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8).
     let ([mut a, mut fa], [mut b, mut fb]) = (low, high);
-    let nothing = |value: f64, other: f64| value == 0.0 || value.abs() <= ROUNDING * other.abs() && other.is_finite();
+    let nothing =
+        |value: f64, other: f64| value == 0.0 || value.abs() <= ROUNDING * other.abs() && other.is_finite();
     if nothing(fa, fb) || nothing(fb, fa) {
         return Ok(if fa.abs() <= fb.abs() { a } else { b });
     }

@@ -67,9 +67,12 @@ impl Study {
         photons: f64,
     ) -> Result<LocalDistance> {
         self.book_local(&unknowns, 1);
-        LocalSolver::new(&self.bands, &self.surroundings, unknowns)
+        let mut found = LocalSolver::new(&self.bands, &self.surroundings, unknowns)
             .per_photon(&self.target.emissivity, &alternative.emissivity, &self.state, photons)
-            .map_err(|error| error.at(self.scenario.place("bands")))
+            .map_err(|error| error.at(self.scenario.place("bands")))?;
+        found.relative_error += self.integration.share_of(found.distance);
+        found.relative_error_no_nuisance += self.integration.share_of(found.distance_no_nuisance);
+        Ok(found)
     }
 
     /// The same with gain unknown too.
@@ -104,12 +107,16 @@ impl Study {
 
     pub(super) fn nearest(&self, alternative: &Surface, photons: f64) -> Result<NearestDistance> {
         demand::computed(Thing::NearestSearches, 1);
-        self.nearest_solver().per_photon(
-            &self.target.emissivity,
-            &alternative.emissivity,
-            &self.state,
-            photons,
-        )
+        let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        let found = self.nearest_solver().per_photon(target, other, &self.state, photons)?;
+        Ok(self.with_integrals(found))
+    }
+
+    /// With the error that integrals over bands add to that of rounding.
+    fn with_integrals(&self, found: NearestDistance) -> NearestDistance {
+        let share = self.integration.share_of(found.distance);
+        let lower = found.lower.min(found.distance * (1.0 - share).max(0.0));
+        NearestDistance { lower, relative_error: found.relative_error + share, ..found }
     }
 
     /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target: the
@@ -129,6 +136,7 @@ impl Study {
                 &nearest.state,
                 &Counting::shot(1.0, &self.target_signal()),
             )
+            .map(|found| self.with_integrals(found))
     }
 
     /// Statistical distance d of a kind at given counts and noise.
@@ -150,13 +158,20 @@ impl Study {
     ) -> Result<Statistical> {
         self.book_distances(kind, 1);
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        let integrals = |distance: f64| match self.integration.relative_error {
+            0.0 => 0.0,
+            _ => {
+                let photons = counting.counts_per_radiance * self.photon_radiance();
+                self.integration.share_of(distance / photons.sqrt())
+            }
+        };
         let local = |unknowns: Unknowns| {
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
             let found = solver.with_counting(target, other, &self.state, counting)?;
             Ok(Statistical {
                 distance: found.distance,
                 upper: found.distance,
-                relative_error: Some(found.relative_error),
+                relative_error: Some(found.relative_error + integrals(found.distance)),
             })
         };
         match kind {
@@ -165,7 +180,7 @@ impl Study {
                 Ok(Statistical {
                     distance: self.sure(found.distance, found.lower),
                     upper: found.distance,
-                    relative_error: Some(found.relative_error),
+                    relative_error: Some(found.relative_error + integrals(found.distance)),
                 })
             }
             DistanceKind::Local => local(self.unknowns.clone()),

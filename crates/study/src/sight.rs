@@ -246,8 +246,11 @@ fn filter_light(camera: &Camera, bands: &Bands) -> Vec<(&'static str, Vec<f64>)>
         planck::photon_radiance_into(&[nu], temperature_k, &mut value);
         value[0] * counted(nu)
     };
-    let thrown_back = bands.over_filters(range, |nu, _, r| r * radiance(nu, sensor_k));
-    let emitted = bands.over_filters(range, |nu, t, r| (1.0 - t - r).max(0.0) * radiance(nu, filter_k));
+    let rows = camera.efficiency_curves.iter().flat_map(|curve| curve.wavenumbers_cm1());
+    let kinks: Vec<f64> = rows.copied().collect();
+    let thrown_back = bands.over_filters(range, &kinks, |nu, _, r| r * radiance(nu, sensor_k));
+    let emitted =
+        bands.over_filters(range, &kinks, |nu, t, r| (1.0 - t - r).max(0.0) * radiance(nu, filter_k));
     let lines = [("sensor emission thrown back by filters", thrown_back), ("emission of filters", emitted)];
     lines.into_iter().filter_map(|(label, light)| light.map(|light| (label, light))).collect()
 }
