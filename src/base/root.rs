@@ -2,17 +2,32 @@
 
 use crate::error::{Error, Result};
 
-/// Where an increasing function of x crosses zero, to the last few bits of x.
+/// Share of the value at one end below which the value at the other is zero but for rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Where an increasing function of x crosses zero, to the last few bits of x. An end where it is zero but for rounding is the
+/// crossing.
 ///
 /// # Errors
 /// An error of `f`, or ends that do not bracket the crossing.
 pub fn crossing(low: f64, high: f64, mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+    let (at_low, at_high) = (f(low)?, f(high)?);
+    crossing_between([low, at_low], [high, at_high], f)
+}
+
+/// The same where the function is known at both ends, each as x and value: what has decided that there is a crossing is not
+/// computed again, and cannot come out differently.
+///
+/// # Errors
+/// As [`crossing`].
+pub fn crossing_between(low: [f64; 2], high: [f64; 2], mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
     // Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection
     // (Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8).
-    let (mut a, mut b) = (low, high);
-    let (mut fa, mut fb) = (f(a)?, f(b)?);
-    if fa == 0.0 || fb == 0.0 {
-        return Ok(if fa == 0.0 { a } else { b });
+    let ([mut a, mut fa], [mut b, mut fb]) = (low, high);
+    let nothing =
+        |value: f64, other: f64| value == 0.0 || value.abs() <= ROUNDING * other.abs() && other.is_finite();
+    if nothing(fa, fb) || nothing(fb, fa) {
+        return Ok(if fa.abs() <= fb.abs() { a } else { b });
     }
     if !(fa < 0.0 && fb > 0.0) {
         let found = format!("what is solved for is {fa} and {fb} at the ends of all that is looked at");
@@ -57,5 +72,16 @@ mod tests {
             assert!((x - root).abs() <= 1e-15 * root.abs() + 1e-15, "{x} {root}");
         }
         assert!(crossing(0.0, 1.0, |x| Ok(x + 1.0)).is_err());
+    }
+
+    #[test]
+    fn an_end_that_is_zero_but_for_rounding_is_the_crossing() {
+        let last_bits = 5.551115123125783e-16;
+        assert_eq!(crossing_between([-69.0, -51.18], [2.5, -last_bits], Ok).unwrap(), 2.5);
+        assert_eq!(crossing_between([-3.0, last_bits], [1.0, 51.18], Ok).unwrap(), -3.0);
+        // Short of zero by more than rounding is no crossing, also of a function that is small everywhere.
+        assert!(crossing_between([-69.0, -51.18], [2.5, -1e-12], Ok).is_err());
+        assert!(crossing_between([-69.0, -3.0 * last_bits], [2.5, -last_bits], Ok).is_err());
+        assert!(crossing_between([-69.0, f64::NEG_INFINITY], [2.5, -1.0], Ok).is_err());
     }
 }

@@ -20,6 +20,8 @@
 //! noise': what goes beyond N of the band) and 8 W times every line of a reading. That is the multiplex advantage, W/8 of a
 //! sequential instrument's electronic variance in the same time, and its price where photons are the noise.
 //!
+//! Bands that are read together are exposed and read once: the lines of photons add up, dark counts and those below come once.
+//!
 //! Assumptions: electronic noise of the bands is independent, also between mirror positions; a converter's steps are small
 //! against the other noise, so that they act as noise.
 //!
@@ -56,6 +58,9 @@ pub struct BandLine {
     pub scaling: &'static str,
     /// What it follows from.
     pub source: &'static str,
+    /// Whether it comes with the photons of the band: it then adds up over bands that are read together, while the noise of
+    /// a reading comes once.
+    pub with_photons: bool,
 }
 
 /// The line of the target's own photons, which is the one that depends on what the target is.
@@ -92,6 +97,16 @@ impl Camera {
         Counting { counts_per_radiance, var_added }
     }
 
+    /// The part of [`Camera::counting`]'s variance that comes with photons, band by band, counts².
+    #[must_use]
+    pub fn var_with_photons(&self, bands: &Bands, view: &View) -> Vec<f64> {
+        let mut var = vec![0.0; bands.len()];
+        for line in self.added_noise(bands, view).iter().filter(|line| line.with_photons) {
+            var.iter_mut().zip(&line.var_counts).for_each(|(sum, one)| *sum += one);
+        }
+        var
+    }
+
     /// Every line but the target's own shot noise, band by band; those of no variance are left out.
     #[must_use]
     pub fn added_noise(&self, bands: &Bands, view: &View) -> Vec<BandLine> {
@@ -107,19 +122,29 @@ impl Camera {
         let spread = if interferometer { 8.0 * bands.len() as f64 } else { 1.0 };
         let every = |var: f64| vec![var * spread; bands.len()];
         let mut lines = Vec::new();
-        let mut push = |label, var_counts: Vec<f64>, scaling, source| {
-            if var_counts.iter().any(|var| *var > 0.0) {
-                lines.push(BandLine { label, var_counts, scaling, source });
+        let mut push = |line: BandLine| {
+            if line.var_counts.iter().any(|var| *var > 0.0) {
+                lines.push(line);
             }
         };
+        let line = |with_photons: bool| {
+            move |label, var_counts, scaling, source| BandLine {
+                label,
+                var_counts,
+                scaling,
+                source,
+                with_photons,
+            }
+        };
+        let (of_photons, of_reading) = (line(true), line(false));
         if interferometer {
             let total = 4.0 * kappa * crate::sum::sum(&view.signal);
             let beyond = view.signal.iter().map(|signal| total - kappa * signal).collect();
-            push("multiplexed shot noise", beyond, "t", "photons of all bands in every reading");
+            push(of_photons("multiplexed shot noise", beyond, "t", "photons of all bands in every reading"));
         }
         for light in &view.light {
             let counts = light.radiance.iter().map(|radiance| of_light * radiance).collect();
-            push(light.label, photons(counts), "t", "light that tells nothing of the target");
+            push(of_photons(light.label, photons(counts), "t", "light that tells nothing of the target"));
         }
         if self.photon_bunching && view.occupancy.len() == view.signal.len() {
             let counts = |w: usize, signal: f64| kappa * signal + of_light * view.other_light(w);
@@ -128,10 +153,11 @@ impl Camera {
                 .iter()
                 .enumerate()
                 .map(|(w, signal)| bunching::added_variance(counts(w, *signal), view.occupancy[w]));
-            push(BUNCHING, photons(added.collect()), "t", "counted photons per mode (S11, S12)");
+            push(of_photons(BUNCHING, photons(added.collect()), "t", "counted photons per mode (S11, S12)"));
         }
         let frames = f64::from(self.frames);
-        push("dark counts", every(self.dark_rate_per_s * self.integration_s()), "t", "dark_rate");
+        let dark = every(self.dark_rate_per_s * self.integration_s());
+        push(of_reading("dark counts", dark, "t", "dark_rate"));
         if let Some(mut sigma) = self.reading_sigma(bands) {
             if let NoiseSpec::SpectralRadiance { .. } = self.noise {
                 // Stated in front of the optics: what the path takes away does not make it less.
@@ -142,12 +168,16 @@ impl Camera {
             let stretch = self.integration_s() / self.noise_exposure_s;
             let source = self.noise.key();
             let grown = |factor: f64| sigma.iter().map(|sigma| sigma * sigma * factor * spread).collect();
-            push("Johnson noise", grown((1.0 - self.flicker_fraction) * stretch), "t", source);
-            push("flicker noise", grown(self.flicker_fraction * stretch * stretch), "t^2", source);
+            let johnson = grown((1.0 - self.flicker_fraction) * stretch);
+            push(of_reading("Johnson noise", johnson, "t", source));
+            let flicker = grown(self.flicker_fraction * stretch * stretch);
+            push(of_reading("flicker noise", flicker, "t^2", source));
         }
-        push("read noise", every(frames * self.read_noise_counts.powi(2)), "frames", "read_noise");
+        let read = every(frames * self.read_noise_counts.powi(2));
+        push(of_reading("read noise", read, "frames", "read_noise"));
         let step = self.quantisation_step_counts().unwrap_or(0.0);
-        push("quantisation", every(frames * step * step / 12.0), "frames", "full_well, quantisation_bits");
+        let rounding = every(frames * step * step / 12.0);
+        push(of_reading("quantisation", rounding, "frames", "full_well, quantisation_bits"));
         lines
     }
 
@@ -181,6 +211,7 @@ impl Camera {
             var_counts: signal.iter().map(|signal| kappa * signal).collect(),
             scaling: "t",
             source: "photons of the target",
+            with_photons: true,
         };
         let mean = |var: &[f64]| crate::sum::sum(var) / bands.len() as f64;
         std::iter::once(shot)

@@ -58,6 +58,12 @@ impl EfficiencyCurve {
         &self.name
     }
 
+    /// Wavenumbers of the rows, ascending, cm⁻¹.
+    #[must_use]
+    pub fn wavenumbers_cm1(&self) -> &[f64] {
+        &self.wavenumbers_cm1
+    }
+
     /// First and last wavenumber, cm⁻¹.
     #[must_use]
     pub fn range_cm1(&self) -> (f64, f64) {

@@ -95,6 +95,12 @@ impl Unknowns {
         Ok(self)
     }
 
+    /// The same nuisances, with nothing known of them beforehand.
+    #[must_use]
+    pub fn without_priors(&self) -> Self {
+        Self { priors: Vec::new(), ..self.clone() }
+    }
+
     /// Declares the total of the lighting factors known (S48).
     ///
     /// # Errors

@@ -237,6 +237,12 @@ impl Atmosphere {
         Ok((between(&depths)?, between(&growths)?))
     }
 
+    /// Wavenumbers of the rows, ascending, cm⁻¹.
+    #[must_use]
+    pub fn wavenumbers_cm1(&self) -> &[f64] {
+        &self.table.wavenumbers_cm1
+    }
+
     /// The shortest path of the table, m: below it the growth is extrapolated.
     #[must_use]
     pub fn shortest_m(&self) -> f64 {

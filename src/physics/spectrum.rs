@@ -4,8 +4,9 @@
 //! cm⁻¹ times transmittance. One code path covers every case:
 //!
 //! * the paper's band-centre sum: one node per band, w = Δν (Methods, 'HADAR estimation theory');
-//! * a filter: the rows of its curve, w = T_q(ν_j)·Δν_j (S8 without back reflection);
-//! * `bands.integrate = true`: Gauss–Legendre nodes between breakpoints ([`Bands::integrated`]).
+//! * a filter: w = T_q(ν_j)·Δν_j (S8 without back reflection);
+//! * integrals: Gauss–Legendre nodes between breakpoints ([`Bands::integrated_where`]), for filters, ranges, and bands within which
+//!   a spectrum has rows of its own.
 //!
 //! Bands are kept in ascending wavenumber whatever the order of the input rows.
 
@@ -16,5 +17,5 @@ mod rows;
 
 pub use bands::{Band, Bands};
 pub use filter::FilterCurve;
-pub use integrate::INTEGRATION_TOLERANCE;
+pub use integrate::{INTEGRATION_TOLERANCE, Integrated};
 pub use rows::interpolated;

@@ -18,8 +18,9 @@ const MOST_BANDS: f64 = 1e6;
 pub struct BandsSpec {
     /// Where the bands come from.
     pub source: BandSource,
-    /// Whether the spectrum is integrated over each band; else its value at the centre counts.
-    pub integrate: bool,
+    /// Whether the spectrum is integrated over each band of a grid or of rows, or its value at the centre counts; where nothing is
+    /// said it is integrated over bands in which a spectrum has rows nearer to each other than the band is wide.
+    pub integrate: Option<bool>,
     /// Relative tolerance of that integral.
     pub tolerance: f64,
 }
@@ -49,7 +50,7 @@ pub enum BandSource {
 
 impl Default for BandsSpec {
     fn default() -> Self {
-        Self { source: BandSource::Unsaid, integrate: false, tolerance: 1e-9 }
+        Self { source: BandSource::Unsaid, integrate: None, tolerance: 1e-9 }
     }
 }
 
@@ -88,7 +89,7 @@ impl BandsSpec {
         };
         Ok(Self {
             source: source.unwrap_or(default.source),
-            integrate: section.read("integrate", Entry::boolean)?.unwrap_or(default.integrate),
+            integrate: section.read("integrate", Entry::boolean)?,
             tolerance: section.number("tolerance")?.unwrap_or(default.tolerance),
         })
     }
@@ -112,7 +113,7 @@ impl BandsSpec {
                 entries.put_written("ranges", dimension, pairs)
             }
         };
-        entries.put("integrate", self.integrate).put("tolerance", self.tolerance)
+        entries.put_if("integrate", self.integrate).put("tolerance", self.tolerance)
     }
 }
 

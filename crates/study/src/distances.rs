@@ -7,7 +7,6 @@ use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::{LocalDistance, LocalSolver};
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
-use hadar::scene::State;
 use hadar_scenario::DistanceKind;
 
 /// To what share of itself a nearest distance is proved where nobody asks: with one temperature to search at most, and more.
@@ -64,9 +63,12 @@ impl Study {
         photons: f64,
     ) -> Result<LocalDistance> {
         self.book_local(&unknowns, 1);
-        LocalSolver::new(&self.bands, &self.surroundings, unknowns)
+        let mut found = LocalSolver::new(&self.bands, &self.surroundings, unknowns)
             .per_photon(&self.target.emissivity, &alternative.emissivity, &self.state, photons)
-            .map_err(|error| error.at(self.scenario.place("bands")))
+            .map_err(|error| error.at(self.scenario.place("bands")))?;
+        found.relative_error += self.integration.share_of(found.distance);
+        found.relative_error_no_nuisance += self.integration.share_of(found.distance_no_nuisance);
+        Ok(found)
     }
 
     /// The same with gain unknown too.
@@ -101,36 +103,36 @@ impl Study {
 
     pub(super) fn nearest(&self, alternative: &Surface, photons: f64) -> Result<NearestDistance> {
         demand::computed(Thing::NearestSearches, 1);
-        self.nearest_solver().per_photon(
-            &self.target.emissivity,
-            &alternative.emissivity,
-            &self.state,
-            photons,
-        )
+        let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        let found = self.nearest_solver().per_photon(target, other, &self.state, photons)?;
+        Ok(self.with_integrals(found))
     }
 
-    /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target.
+    /// With the error that integrals over bands add to that of rounding.
+    fn with_integrals(&self, found: NearestDistance) -> NearestDistance {
+        let share = self.integration.share_of(found.distance);
+        let lower = found.lower.min(found.distance * (1.0 - share).max(0.0));
+        NearestDistance { lower, relative_error: found.relative_error + share, ..found }
+    }
+
+    /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target: the
+    /// nearest state may send none. Priors have no part in it.
     pub(super) fn return_distance(
         &self,
         alternative: &Surface,
         nearest: &NearestDistance,
     ) -> Result<NearestDistance> {
         demand::computed(Thing::NearestSearches, 1);
-        let back =
-            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), StateRange::default())
-                .proving(self.tolerance())
-                .per_photon(
-                    &alternative.emissivity,
-                    &self.target.emissivity,
-                    &nearest.state,
-                    f64::INFINITY,
-                )?;
-        // The search counts per photon of the state that it sets out from.
-        let photons = |surface: &Surface, state: &State| {
-            hadar::sum::sum(&self.bands.weigh(&self.surroundings.signal(&surface.emissivity, state)))
-        };
-        let share = (photons(alternative, &nearest.state) / photons(&self.target, &self.state)).sqrt();
-        Ok(NearestDistance { distance: share * back.distance, lower: share * back.lower, ..back })
+        let unknowns = self.unknowns.without_priors();
+        NearestSolver::new(&self.bands, &self.surroundings, unknowns, StateRange::default())
+            .proving(self.tolerance())
+            .with_counting(
+                &alternative.emissivity,
+                &self.target.emissivity,
+                &nearest.state,
+                &Counting::shot(1.0, &self.target_signal()),
+            )
+            .map(|found| self.with_integrals(found))
     }
 
     /// Statistical distance d of a kind at given counts and noise, as a state that was found shows it.
@@ -162,18 +164,25 @@ impl Study {
     ) -> Result<(Statistical, Option<State>)> {
         self.book_distances(kind, 1);
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        let integrals = |distance: f64| match self.integration.relative_error {
+            0.0 => 0.0,
+            _ => {
+                let photons = counting.counts_per_radiance * self.photon_radiance();
+                self.integration.share_of(distance / photons.sqrt())
+            }
+        };
         let local = |unknowns: Unknowns| {
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
             let found = solver.with_counting(target, other, &self.state, counting)?;
             let distance = found.distance;
-            let relative_error = Some(found.relative_error);
+            let relative_error = Some(found.relative_error + integrals(distance));
             Ok((Statistical { distance, lower: distance, relative_error }, None))
         };
         match kind {
             DistanceKind::Nearest => {
                 let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
                 let lower = self.sure(found.distance, found.lower);
-                let relative_error = Some(found.relative_error);
+                let relative_error = Some(found.relative_error + integrals(found.distance));
                 let NearestDistance { distance, state, .. } = found;
                 Ok((Statistical { distance, lower, relative_error }, Some(state)))
             }
@@ -228,12 +237,14 @@ impl Study {
         };
         // From a millionth of a photon to 10⁶⁰ of them.
         let (low, high) = (-14.0, 138.0);
-        if excess(high)? < 0.0 {
+        let most = excess(high)?;
+        if most < 0.0 {
             return Ok(None);
         }
-        if excess(low)? >= 0.0 {
+        let least = excess(low)?;
+        if least >= 0.0 {
             return Ok(Some(0.0));
         }
-        hadar::root::crossing(low, high, excess).map(|log| Some(log.exp()))
+        hadar::root::crossing_between([low, least], [high, most], excess).map(|log| Some(log.exp()))
     }
 }

@@ -67,7 +67,7 @@ impl Said<'_> {
     pub(super) fn measured(&self, library: &Library) -> Result<Measured> {
         let at = |key: &str| self.at(key);
         let camera = self.camera.map(|spec| camera::resolved(spec, self.source)).transpose()?;
-        if self.bands.is_some_and(|spec| spec.integrate) {
+        if self.bands.is_some_and(|spec| spec.integrate == Some(true)) {
             let found = "integrals over bands are not made here";
             let instead = "leave bands.integrate out: a filter is sampled at the rows of its curve";
             return Err(at("bands.integrate")(Error::malformed(found, instead)));

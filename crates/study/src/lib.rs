@@ -34,6 +34,7 @@ mod distances;
 mod grade;
 mod heat_cube;
 mod identify;
+mod integration;
 pub mod library;
 mod looked_up;
 mod memory;

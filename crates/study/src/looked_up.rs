@@ -3,6 +3,7 @@
 use super::Warning;
 use super::air::{Air, Behind};
 use super::classes::{ClassAnswer, Members};
+use super::integration::Integration;
 use super::remembered::Remembered;
 use super::surface::Surface;
 use hadar::demand::Work;
@@ -22,6 +23,8 @@ pub struct Study {
     pub(super) open_bands: Bands,
     /// The same behind path, optics and detector: what is counted.
     pub(super) bands: Bands,
+    /// How they integrate the spectra.
+    pub(super) integration: Integration,
     /// The air on the path.
     pub(super) atmosphere: Option<Air>,
     /// Emission of the path at the nodes, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹; empty for none.

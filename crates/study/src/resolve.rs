@@ -9,6 +9,7 @@ use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
 use super::camera::check_time;
 use super::classes::Members;
+use super::integration::{Spectra, integrated};
 use super::{Study, Surface, camera, camera_bands};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
@@ -91,8 +92,27 @@ impl Study {
 
         let surfaces = std::iter::once(&target).chain(&alternatives).flat_map(|group| &group.members);
         let surfaces: Vec<&Material> = surfaces.map(|(material, _)| material.as_ref()).collect();
-        let materials = bands::Materials { surfaces: &surfaces, environment: &environment };
-        let bands = bands::integrated(&scenario, bands, &materials)?;
+        let atmosphere = Air::of(&scenario)?;
+        let spectra = Spectra {
+            surfaces: &surfaces,
+            environment: &environment,
+            behind: behind.as_ref().map(|(temperature_k, material)| (*temperature_k, material.as_deref())),
+            air: atmosphere.as_ref(),
+            camera: camera.as_ref(),
+        };
+        let (bands, integration, integrals) =
+            integrated(&scenario, &asked, &bands, &spectra).map_err(|error| {
+                // A spectrum that does not reach the edges is told by its key.
+                let ends: Vec<f64> =
+                    bands.bands().iter().flat_map(|band| [band.low_cm1, band.high_cm1]).collect();
+                let groups = std::iter::once(&target).chain(&alternatives);
+                let mut each =
+                    groups.flat_map(|group| group.members.iter().map(move |member| (member, &group.key)));
+                let untold = each.find_map(|((material, _), key)| {
+                    material.emissivity(&ends).err().map(|error| error.at(scenario.place(key)))
+                });
+                untold.unwrap_or(error)
+            })?;
 
         let nodes = bands.nodes_cm1();
         let on_nodes = |material: &Material, key: &str| {
@@ -121,7 +141,6 @@ impl Study {
             })
             .transpose()?;
         let required = required(&scenario)?;
-        let atmosphere = Air::of(&scenario)?;
         scenario.bands.source = asked;
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
@@ -132,6 +151,7 @@ impl Study {
             scenario,
             open_bands: bands.clone(),
             bands,
+            integration,
             atmosphere,
             air: Vec::new(),
             behind,
@@ -150,7 +170,7 @@ impl Study {
             skies,
             left_out,
             warnings,
-            looked_up: library.work(),
+            looked_up: library.work().and(&integrals),
             remembered: None,
         };
         study.check_sight()?;

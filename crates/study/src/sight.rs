@@ -137,14 +137,10 @@ impl Study {
         Ok((bands.transmitted_at_nodes(&transmittance), emission))
     }
 
-    /// Counts of each band that are not the target's, by the scenario's camera.
-    pub(super) fn counts_of_other_light(&self) -> Vec<f64> {
-        let counts = |camera: &Camera| {
-            let view = self.view_of(camera);
-            let kappa = camera.counts_per_radiance(&self.bands, &view) / view.fill;
-            (0..self.bands.len()).map(|w| kappa * view.other_light(w)).collect()
-        };
-        self.camera.as_ref().map_or_else(|| vec![0.0; self.bands.len()], counts)
+    /// Variance of each band that comes with photons beside the target's own shot noise, by the scenario's camera, counts².
+    pub(super) fn var_with_photons(&self) -> Vec<f64> {
+        let var = |camera: &Camera| camera.var_with_photons(&self.bands, &self.view_of(camera));
+        self.camera.as_ref().map_or_else(|| vec![0.0; self.bands.len()], var)
     }
 
     /// Refuses what the view leaves open.
@@ -250,8 +246,11 @@ fn filter_light(camera: &Camera, bands: &Bands) -> Vec<(&'static str, Vec<f64>)>
         planck::photon_radiance_into(&[nu], temperature_k, &mut value);
         value[0] * counted(nu)
     };
-    let thrown_back = bands.over_filters(range, |nu, _, r| r * radiance(nu, sensor_k));
-    let emitted = bands.over_filters(range, |nu, t, r| (1.0 - t - r).max(0.0) * radiance(nu, filter_k));
+    let rows = camera.efficiency_curves.iter().flat_map(|curve| curve.wavenumbers_cm1());
+    let kinks: Vec<f64> = rows.copied().collect();
+    let thrown_back = bands.over_filters(range, &kinks, |nu, _, r| r * radiance(nu, sensor_k));
+    let emitted =
+        bands.over_filters(range, &kinks, |nu, t, r| (1.0 - t - r).max(0.0) * radiance(nu, filter_k));
     let lines = [("sensor emission thrown back by filters", thrown_back), ("emission of filters", emitted)];
     lines.into_iter().filter_map(|(label, light)| light.map(|light| (label, light))).collect()
 }

@@ -123,10 +123,9 @@ impl Study {
         warnings
     }
 
-    /// Width of the widest band, cm⁻¹, where it is too wide to be taken at its centre and is.
+    /// Width of the widest band that is sampled at its centre, cm⁻¹, where that is too wide.
     pub(super) fn sampled_cm1(&self) -> Option<f64> {
-        let width_cm1 = self.open_bands.widths_cm1().into_iter().fold(0.0, f64::max);
-        (self.open_bands.one_node_per_band() && width_cm1 > SAMPLED_CM1).then_some(width_cm1)
+        self.integration.sampled_cm1.filter(|width_cm1| *width_cm1 > SAMPLED_CM1)
     }
 
     /// Where a target of no stated size is taken to fill a pixel that sees more than a person from a distance.

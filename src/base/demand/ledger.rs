@@ -12,6 +12,8 @@ pub enum Thing {
     Cameras,
     /// Figures and tables of the paper.
     Reproductions,
+    /// Integrals of the spectra over a band.
+    BandIntegrals,
     /// Sections of an answer.
     Sections,
     /// Derivatives of all bands with respect to one parameter, formed for local distances.
@@ -66,6 +68,7 @@ impl Thing {
             Self::LibrarySpectra => "library_spectra",
             Self::Cameras => "cameras",
             Self::Reproductions => "reproductions",
+            Self::BandIntegrals => "band_integrals",
             Self::Sections => "sections",
             Self::DerivativeColumns => "derivative_columns",
             Self::LocalDistances => "local_distances",
@@ -98,6 +101,7 @@ impl Thing {
             Self::LibrarySpectra => "spectra of the library",
             Self::Cameras => "cameras",
             Self::Reproductions => "figures and tables of the paper",
+            Self::BandIntegrals => "integrals over a band",
             Self::Sections => "sections of the answer",
             Self::DerivativeColumns => "columns of derivatives",
             Self::LocalDistances => "local distances",
@@ -153,6 +157,8 @@ pub enum Reason {
     NarrowEnough,
     /// A bound excludes it.
     Bounded,
+    /// No spectrum has rows nearer to each other than the band is wide.
+    NoNearerRows,
 }
 
 impl Reason {
@@ -173,6 +179,7 @@ impl Reason {
             Self::Decided => "decided",
             Self::NarrowEnough => "narrow_enough",
             Self::Bounded => "bounded",
+            Self::NoNearerRows => "no_nearer_rows",
         }
     }
 
@@ -193,6 +200,7 @@ impl Reason {
             Self::Decided => "decided without them",
             Self::NarrowEnough => "interval narrow enough",
             Self::Bounded => "excluded by a bound",
+            Self::NoNearerRows => "no rows nearer than the band is wide",
         }
     }
 }

@@ -48,7 +48,7 @@ use self::stack::{MAX_STACK, Stack};
 use super::detection;
 use crate::error::{Error, Result, check};
 use crate::fisher::Unknowns;
-use crate::root::crossing;
+use crate::root::crossing_between;
 use crate::scene::{Jacobian, Surroundings};
 use crate::spectrum::Bands;
 
@@ -315,13 +315,15 @@ fn pooled(lattices: &[Vec<Node>]) -> Vec<Node> {
 /// Where an increasing function of the photons crosses zero; `None` if it does not.
 fn photons_where(mut excess: impl FnMut(f64) -> Result<f64>) -> Result<Option<f64>> {
     let mut at = |log: f64| excess(log.exp());
-    if at(LOG_PHOTONS)? < 0.0 {
+    let most = at(LOG_PHOTONS)?;
+    if most < 0.0 {
         return Ok(None);
     }
-    if at(-LOG_PHOTONS)? >= 0.0 {
+    let least = at(-LOG_PHOTONS)?;
+    if least >= 0.0 {
         return Ok(Some((-LOG_PHOTONS).exp()));
     }
-    crossing(-LOG_PHOTONS, LOG_PHOTONS, at).map(|log| Some(log.exp()))
+    crossing_between([-LOG_PHOTONS, least], [LOG_PHOTONS, most], at).map(|log| Some(log.exp()))
 }
 
 #[cfg(test)]

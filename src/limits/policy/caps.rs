@@ -22,7 +22,7 @@ use super::motion::Motion;
 use super::solve::{CameraTask, Cap, CapCode, Quantity, Trial};
 use crate::error::Result;
 use crate::instrument::Camera;
-use crate::root::crossing;
+use crate::root::crossing_between;
 use crate::spectrum::Bands;
 use crate::words::{quantity as in_unit, significant};
 
@@ -244,10 +244,13 @@ fn fills(
         Ok(((given.brightest)(&changed)? / full).max(1e-300).ln())
     };
     let crossed = |change: &dyn Fn(&mut Camera, f64)| -> Result<Option<f64>> {
-        if fill(change, -LOG_RANGE)? >= 0.0 || fill(change, LOG_RANGE)? <= 0.0 {
+        let ends = [-LOG_RANGE, LOG_RANGE].map(|log| fill(change, log).map(|value| [log, value]));
+        let [low, high] = ends;
+        let (low, high) = (low?, high?);
+        if low[1] >= 0.0 || high[1] <= 0.0 {
             return Ok(None);
         }
-        crossing(-LOG_RANGE, LOG_RANGE, |log| fill(change, log)).map(|log| Some(log.exp()))
+        crossing_between(low, high, |log| fill(change, log)).map(|log| Some(log.exp()))
     };
     let camera = &trial.camera;
     Ok(match quantity {

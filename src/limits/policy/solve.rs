@@ -19,7 +19,7 @@ use self::solution::NEVER;
 use super::motion::Motion;
 use crate::error::Result;
 use crate::instrument::FASTEST_F_NUMBER;
-use crate::root::crossing;
+use crate::root::crossing_between;
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
@@ -74,12 +74,16 @@ impl CameraTask<'_> {
             };
             return Ok(Solution::new(None, camera, ceiling, Some(reason)));
         }
-        if at(-LOG_RANGE)? >= self.required {
+        let floor = at(-LOG_RANGE)?;
+        if floor >= self.required {
             // Any value does: the pair differs without limit.
             let value = self.scaled(quantity, (-LOG_RANGE).exp());
             return Ok(Solution::new(Some(value), camera, self.required, None));
         }
-        let log = crossing(-LOG_RANGE, best, |log| Ok((at(log)? / self.required).ln().max(-1e3)))?;
+        let excess = |d: f64| (d / self.required).ln().max(-1e3);
+        let log = crossing_between([-LOG_RANGE, excess(floor)], [best, excess(ceiling)], |log| {
+            at(log).map(excess)
+        })?;
         // On the side that meets the demand, by a few units in the last place if need be.
         let (mut value, mut more) = (self.scaled(quantity, log.exp()), f64::EPSILON);
         let mut reached = distance(&self.forward(quantity, value))?;

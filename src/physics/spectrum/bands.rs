@@ -107,22 +107,36 @@ impl Bands {
         bands
     }
 
-    /// ∫ f(ν, T, R) dν over `range_cm1` for the filter of each band, by midpoints 1 cm⁻¹ apart or closer, T its transmittance
-    /// and R its reflectance at ν; 0 for bands without a filter. `None` if there is no filter at all.
+    /// ∫ f(ν, T, R) dν over `range_cm1` for the filter of each band, T its transmittance and R its reflectance at ν; 0 for bands
+    /// without a filter. `None` if there is no filter at all. Between rows of the filter and the other `kinks_cm1` of f by
+    /// Gauss–Legendre rules of three points, at most 8 cm⁻¹ wide: thermal radiance is integrated to rounding.
     #[must_use]
-    pub fn over_filters(&self, range_cm1: [f64; 2], f: impl Fn(f64, f64, f64) -> f64) -> Option<Vec<f64>> {
+    pub fn over_filters(
+        &self,
+        range_cm1: [f64; 2],
+        kinks_cm1: &[f64],
+        f: impl Fn(f64, f64, f64) -> f64,
+    ) -> Option<Vec<f64>> {
         if self.shapes.iter().all(|shape| *shape == Shape::TopHat) {
             return None;
         }
         let [low, high] = range_cm1;
-        let count = (high - low).ceil().clamp(1.0, 1e6);
-        let step = (high - low) / count;
         let integral = |filter: &FilterCurve| {
-            let at = |i: usize| {
-                let nu = (i as f64 + 0.5).mul_add(step, low);
-                f(nu, filter.transmittance(nu), filter.reflectance(nu))
+            let rows = filter.wavenumbers_cm1.iter().chain(kinks_cm1).filter(|nu| (low..high).contains(*nu));
+            let mut edges: Vec<f64> = rows.copied().chain([low, high]).collect();
+            edges.sort_by(f64::total_cmp);
+            let at = |nu: f64| f(nu, filter.transmittance(nu), filter.reflectance(nu));
+            let over = |pair: &[f64]| {
+                let count = ((pair[1] - pair[0]) / 8.0).ceil().clamp(1.0, 1e6);
+                let half = 0.5 * (pair[1] - pair[0]) / count;
+                let part = |i: usize| {
+                    let middle = (2.0 * i as f64 + 1.0).mul_add(half, pair[0]);
+                    let off = 0.6_f64.sqrt() * half;
+                    half * (5.0 * (at(middle - off) + at(middle + off)) + 8.0 * at(middle)) / 9.0
+                };
+                (0..count as usize).map(part).sum::<f64>()
             };
-            step * (0..count as usize).map(at).sum::<f64>()
+            edges.windows(2).filter(|pair| pair[1] > pair[0]).map(over).sum::<f64>()
         };
         let of_shape = |shape: &Shape| match shape {
             Shape::TopHat => 0.0,

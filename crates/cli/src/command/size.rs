@@ -38,6 +38,8 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
     let study = global.study(scenario, args.by.map(Into::into))?;
     if args.check
         && global.out.is_none()
+        // A program is given the whole answer, with skipping or without.
+        && !global.json
         && global.skipping() == Skipping::On
         && let Some(result) = study.no_alone()?
     {

@@ -496,17 +496,19 @@ const BANDS_KEYS: &[Key] = &[
     Key::row(
         "integrate",
         Value::Flag,
-        Is("false"),
+        Means(
+            "bands in which a spectrum has rows nearer to each other than the band is wide are integrated, the others sampled at their centres",
+        ),
         "true",
-        "Whether the spectrum is integrated over each band; else its value at the centre counts. Ranges and filters always are.",
-        "integral of S over a band, by adaptive Gauss-Kronrod",
+        "Whether the spectrum is integrated over each band of a grid or of rows, or its value at the centre counts. Ranges and filters are always integrated.",
+        "integral of S over a band, by adaptive Gauss-Legendre rules",
     ),
     Key::row(
         "tolerance",
         Value::Number(TOLERANCE),
         Is("1e-9"),
         "1e-9",
-        "Relative error of that integral.",
+        "Largest relative error of that integral.",
         "integral of S over a band",
     ),
 ];

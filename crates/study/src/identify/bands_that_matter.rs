@@ -86,8 +86,9 @@ impl Study {
     pub fn bands_that_matter(&self, bands: Option<usize>, filters: Option<usize>) -> Result<BandsThatMatter> {
         let counting = self.counting();
         let unknowns = self.decisive_unknowns();
+        let photon_noise = counting.as_ref().map_or_else(Vec::new, |_| self.var_with_photons());
         let scores: Vec<Scores> = parallel::try_map(self.alternatives.len(), |i| {
-            Scores::of(
+            let scores = Scores::of(
                 &self.bands,
                 &self.surroundings,
                 &unknowns,
@@ -95,7 +96,8 @@ impl Study {
                 &self.alternatives[i].emissivity,
                 &self.state,
                 counting.as_ref(),
-            )
+            )?;
+            if counting.is_some() { scores.with_photon_noise(&photon_noise) } else { Ok(scores) }
         })?;
         let (useful, blind): (Vec<usize>, Vec<usize>) =
             (0..scores.len()).partition(|&i| self.is_told_by_all_bands(&self.alternatives[i]));

@@ -63,11 +63,11 @@ impl Study {
             emissivity: object.emissivity.as_deref().map(kept),
         });
         let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
-        // Photons of other light come with every band that is summed.
-        let light = self.counts_of_other_light();
+        // What comes with photons adds up over the bands.
+        let light = self.var_with_photons();
         let noise = |run: &Range<usize>| {
             let of_readings = run.clone().map(|w| counting.var_added(w) - light[w]).sum::<f64>();
-            of_readings / run.len().max(1) as f64 + light[run.clone()].iter().sum::<f64>()
+            of_readings.max(0.0) / run.len().max(1) as f64 + light[run.clone()].iter().sum::<f64>()
         };
         let counting = Counting {
             counts_per_radiance: counting.counts_per_radiance,

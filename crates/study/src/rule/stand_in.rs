@@ -404,13 +404,19 @@ fn row(
     };
     let search = Effort { relative_tolerance: 0.0, boxes: BOXES, enough: None };
     let edge_of = |demanded: f64| -> Result<Option<f64>> {
-        if widest_k < 0.0 || of(0.0, &search)?.distance >= demanded {
+        let excess = |k: f64| Ok(of(k, &search)?.distance / demanded - 1.0);
+        if widest_k < 0.0 {
             return Ok(None);
         }
-        if of(widest_k, &search)?.distance <= demanded {
+        let at_once = excess(0.0)?;
+        if at_once >= 0.0 {
+            return Ok(None);
+        }
+        let widest = excess(widest_k)?;
+        if widest <= 0.0 {
             return Ok(Some(widest_k));
         }
-        root::crossing(0.0, widest_k, |k| Ok(of(k, &search)?.distance / demanded - 1.0)).map(Some)
+        root::crossing_between([0.0, at_once], [widest_k, widest], excess).map(Some)
     };
     let edge = edge_of(required)?;
     let at = of(edge.unwrap_or(0.0), &search)?;

@@ -22,8 +22,8 @@ const SAME: f64 = 1e-10;
 const TURNS: usize = 4;
 /// How often more is asked for until what is proved suffices.
 const RAISES: usize = 8;
-/// Share of what is required that is rounding of what was solved for, and by how much more than it lacks is asked for.
-pub(crate) const ROUNDING: f64 = 1e-9;
+/// Share by which more is asked for than is required, so that what is put in meets it whatever rounding does.
+const SURELY: f64 = 1e-9;
 
 /// The solvers of one set of bands.
 pub(crate) struct Solvers<'a> {
@@ -65,7 +65,8 @@ impl<'a> Solvers<'a> {
             let unknowns = study.decisive_unknowns();
             study.book_local(&unknowns, 1);
             let local = self.local.with_counting(target, other, &study.state, counting)?;
-            let found = Statistical { distance: local.distance, lower: local.distance, relative_error: None };
+            let distance = local.distance;
+            let found = Statistical { distance, lower: distance, relative_error: Some(local.relative_error) };
             return Ok((found, None));
         }
         let nearest = match start {
@@ -79,7 +80,8 @@ impl<'a> Solvers<'a> {
             }
         };
         let lower = study.sure(nearest.distance, nearest.lower);
-        let found = Statistical { distance: nearest.distance, lower, relative_error: None };
+        let (distance, relative_error) = (nearest.distance, Some(nearest.relative_error));
+        let found = Statistical { distance, lower, relative_error };
         Ok((found, Some(nearest.state)))
     }
 }
@@ -142,7 +144,6 @@ impl<'a> Reach<'a> {
     /// Whether it is proved that a trial reaches what is required; where a state is nearer, or may be, it does not.
     pub(crate) fn is_met(&mut self, trial: &Trial, required: f64) -> Result<bool> {
         let (study, alternative) = (self.study, self.alternative);
-        let enough = required * (1.0 - ROUNDING);
         let found = self.with_solvers(trial, |solvers, bands, counting| {
             let by_nearest = study.scenario.requirement.by == DistanceKind::Nearest;
             if !by_nearest || study.unknowns.has_priors() || !study.counts_are_many(bands, counting) {
@@ -150,11 +151,11 @@ impl<'a> Reach<'a> {
             }
             demand::computed(Thing::NearestSearches, 1);
             let (own, other) = (&study.target.emissivity, &alternative.emissivity);
-            solvers.nearest.nearer_than(own, other, &study.state, counting, enough, None).map(Some)
+            solvers.nearest.nearer_than(own, other, &study.state, counting, required, None).map(Some)
         })?;
         match found {
             Some(found) => Ok(found == Nearer::Nowhere),
-            None => Ok(self.anew(trial)?[0] >= enough),
+            None => Ok(self.anew(trial)?[0] >= required),
         }
     }
 
@@ -185,18 +186,18 @@ impl<'a> Reach<'a> {
     /// Solves a task for a quantity; the nearest state at the solution is searched in full. `necessary` is by the states that were found,
     /// the value by what is proved.
     pub(crate) fn solve(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
-        let found = self.solve_found(task, quantity)?;
+        let mut required = task.required * (1.0 + SURELY);
+        let found = self.solve_found(&CameraTask { required, ..task.clone() }, quantity)?;
         let Some(necessary) = found.value else { return Ok(found) };
         let mut solution = found.clone();
-        let mut required = task.required;
         for _ in 0..RAISES {
             let Some(value) = solution.value else { break };
             let [proved, _] = self.anew(&task.forward(quantity, value))?;
-            if proved >= task.required * (1.0 - ROUNDING) {
+            if proved >= task.required {
                 return Ok(Solution { necessary: Some(necessary), ..solution });
             }
             // More is asked for, by the share that the proof stays behind.
-            let raised = required * (task.required / proved) * (1.0 + ROUNDING);
+            let raised = required * (task.required / proved) * (1.0 + SURELY);
             if !(raised.is_finite() && raised > required) {
                 break;
             }

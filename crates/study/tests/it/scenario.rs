@@ -85,7 +85,7 @@ fn the_example_is_the_case_of_the_paper() {
                 stop: Spectral::Wavenumber(1250.0),
                 step: Spectral::Wavenumber(1.0),
             },
-            integrate: false,
+            integrate: None,
             tolerance: 1e-9,
         },
         unknown: Unknown {
@@ -194,7 +194,7 @@ fn every_key_is_read_into_the_unit_of_its_name() {
         [Spectral::Wavelength(8.0), Spectral::Wavelength(9.0)],
     ];
     assert_eq!(scenario.bands.source, BandSource::Ranges(ranges.to_vec()));
-    assert_eq!((scenario.bands.integrate, scenario.bands.tolerance), (true, 1e-6));
+    assert_eq!((scenario.bands.integrate, scenario.bands.tolerance), (Some(true), 1e-6));
     let priors = BTreeMap::from([(Nuisance::Gain, 0.05), (Nuisance::EnvironmentTemperature, 0.5)]);
     assert_eq!(scenario.unknown.priors, priors);
     let camera = scenario.camera.clone().unwrap();
@@ -253,7 +253,7 @@ fn bands() -> impl Strategy<Value = BandsSpec> {
             BandSource::Ranges(ranges.into_iter().map(|(of, range)| range.map(of)).collect())
         }),
     ];
-    (source, any::<bool>(), 1e-14..0.1).prop_map(|(source, integrate, tolerance)| BandsSpec {
+    (source, any::<Option<bool>>(), 1e-14..0.1).prop_map(|(source, integrate, tolerance)| BandsSpec {
         source,
         integrate,
         tolerance,

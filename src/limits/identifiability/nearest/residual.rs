@@ -134,7 +134,9 @@ impl<'a> Comparison<'a> {
         }
         self.target.evaluate(emissivity, alternative, state, &[], false);
         let total = crate::sum::sum(self.target.signal());
-        if !(total > 0.0 && total.is_finite()) {
+        // Per photon there must be some; counts may be none.
+        let least = if matches!(metric, Metric::Counting(_)) { 0.0 } else { f64::MIN_POSITIVE };
+        if !(least..f64::INFINITY).contains(&total) {
             return Err(Error::out_of_range(
                 "photon radiance of the target",
                 total,

@@ -30,7 +30,7 @@ pub(super) struct Pair {
     /// Rows before they are divided by the noise, and their sums up to each band.
     plain: Vec<f64>,
     sums: Vec<f64>,
-    /// N and σ² of each band, and their sums up to each band.
+    /// Variance of each band that comes with photons and that of a reading, and their sums up to each band.
     variance: Vec<[f64; 2]>,
     variance_sums: Vec<[f64; 2]>,
     whole: f64,
@@ -38,9 +38,9 @@ pub(super) struct Pair {
 
 impl Pair {
     pub(super) fn new(scores: &Scores) -> Self {
-        let (bands, priors) = (scores.counts.len(), scores.priors.len());
+        let (bands, priors) = (scores.bands(), scores.priors.len());
         let variance: Vec<[f64; 2]> =
-            scores.counts.iter().zip(&scores.var_added).map(|(n, s)| [*n, *s]).collect();
+            scores.var_photons.iter().zip(&scores.var_reading).map(|(n, s)| [*n, *s]).collect();
         let mut weights: Vec<f64> = variance.iter().map(|v| reciprocal(v[0] + v[1])).collect();
         weights.resize(bands + priors, 1.0);
         let mut columns = Vec::with_capacity(scores.columns.len() * weights.len());
@@ -214,7 +214,8 @@ fn reciprocal(x: f64) -> f64 {
     if x > 0.0 { 1.0 / x } else { 0.0 }
 }
 
-/// 1/variance of a filter of `bands` bands, from sums of N and σ² at its ends.
+/// 1/variance of a filter of `bands` bands, from sums of both kinds of variance at its ends: what comes with photons adds up, the
+/// reading comes once.
 fn noise(high: [f64; 2], low: [f64; 2], bands: usize) -> f64 {
     reciprocal((high[0] - low[0]) + (high[1] - low[1]) / bands as f64)
 }

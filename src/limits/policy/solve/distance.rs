@@ -10,7 +10,7 @@ use super::quantity::{Quantity, Trial};
 use super::solution::{NEVER, Solution};
 use super::task::CameraTask;
 use crate::error::Result;
-use crate::root::crossing;
+use crate::root::crossing_between;
 use crate::words::quantity;
 
 /// Nearer than so many focal lengths nothing is imaged at all.
@@ -57,19 +57,21 @@ pub(super) fn solve(
         steps.push(steps[steps.len() - 1] / STEP);
     }
     let mut best = beyond;
-    let mut met: Option<f64> = None;
+    let mut met: Option<[f64; 2]> = None;
     let mut first: Option<f64> = None;
     for z in steps.into_iter().rev() {
         let reached = at(z)?;
         best = best.max(reached);
         if reached >= task.required {
             first = first.or(Some(z));
-            met = Some(z);
+            met = Some([z, reached]);
             continue;
         }
-        let Some(nearer) = met else { continue };
-        let excess = |nearness: f64| Ok((at((-nearness).exp())? / task.required).max(1e-300).ln().max(-1e3));
-        let value = (-crossing(-z.ln(), -nearer.ln(), excess)?).exp();
+        let Some([nearer, enough]) = met else { continue };
+        let excess = |d: f64| (d / task.required).max(1e-300).ln().max(-1e3);
+        let ends = [[-z.ln(), excess(reached)], [-nearer.ln(), excess(enough)]];
+        let nearness = crossing_between(ends[0], ends[1], |nearness| at((-nearness).exp()).map(excess))?;
+        let value = (-nearness).exp();
         let statistical_distance = at(value)?;
         // Nearer than a few metres the lens itself takes its share.
         let reason = first

@@ -18,7 +18,7 @@
 use super::{Image, StereoGeometry, WindowInformation, WindowSamples};
 use crate::error::{Error, Result, check};
 use crate::instrument::{FASTEST_F_NUMBER, noise};
-use crate::root::crossing;
+use crate::root::{crossing, crossing_between};
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
@@ -275,10 +275,16 @@ impl DepthTask<'_> {
         }
         let log = if least >= allowed {
             best
-        } else if error_at(-LOG_RANGE)? <= allowed {
-            -LOG_RANGE
         } else {
-            crossing(-LOG_RANGE, best, |log| Ok(libm::log(allowed / error_at(log)?).max(-1e3)))?
+            let most = error_at(-LOG_RANGE)?;
+            let excess = |error: f64| libm::log(allowed / error).max(-1e3);
+            if most <= allowed {
+                -LOG_RANGE
+            } else {
+                crossing_between([-LOG_RANGE, excess(most)], [best, excess(least)], |log| {
+                    error_at(log).map(excess)
+                })?
+            }
         };
         let value = Some(camera * libm::exp(power * log));
         Ok(DepthSolution { value, camera, sigma_z_m: error_at(log)?, reason: None })
