@@ -39,7 +39,7 @@ impl Decision {
     /// The statistical distances at which Φ is what is known of the probability.
     pub(crate) fn distances(&self, found: Statistical) -> [f64; 2] {
         if self.decided_by == DecisionLaw::Gaussian {
-            return found.bounds();
+            return found.solved_by();
         }
         self.probability.map(|probability| {
             // Of certainty there is no distance.

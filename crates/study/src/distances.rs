@@ -7,6 +7,8 @@ use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::{LocalDistance, LocalSolver};
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
+use hadar::scene::State;
+use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
 
 /// To what share of itself a nearest distance is proved where nobody asks: with one temperature to search at most, and more.
@@ -29,6 +31,12 @@ impl Statistical {
     pub(super) fn bounds(self) -> [f64; 2] {
         let error = self.relative_error.unwrap_or(0.0);
         [(self.lower * (1.0 - error)).max(0.0), self.distance * (1.0 + error)]
+    }
+
+    /// The same with both ends lowered by the error: what is solved for then does in spite of it.
+    pub(super) fn solved_by(self) -> [f64; 2] {
+        let kept = (1.0 - self.relative_error.unwrap_or(0.0)).max(0.0);
+        [self.lower * kept, self.distance * kept]
     }
 }
 
@@ -135,6 +143,16 @@ impl Study {
             .map(|found| self.with_integrals(found))
     }
 
+    /// What the error of the integrals is of a statistical distance in some bands.
+    pub(super) fn integral_error(&self, distance: f64, bands: &Bands, counting: &Counting) -> f64 {
+        if self.integration.relative_error == 0.0 {
+            return 0.0;
+        }
+        let signal = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        let photons = counting.counts_per_radiance * signal.iter().sum::<f64>();
+        self.integration.share_of(distance / photons.sqrt())
+    }
+
     /// Statistical distance d of a kind at given counts and noise, as a state that was found shows it.
     pub(super) fn statistical_distance(
         &self,
@@ -164,13 +182,7 @@ impl Study {
     ) -> Result<(Statistical, Option<State>)> {
         self.book_distances(kind, 1);
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
-        let integrals = |distance: f64| match self.integration.relative_error {
-            0.0 => 0.0,
-            _ => {
-                let photons = counting.counts_per_radiance * self.photon_radiance();
-                self.integration.share_of(distance / photons.sqrt())
-            }
-        };
+        let integrals = |distance: f64| self.integral_error(distance, &self.bands, counting);
         let local = |unknowns: Unknowns| {
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
             let found = solver.with_counting(target, other, &self.state, counting)?;

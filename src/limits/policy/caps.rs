@@ -224,10 +224,11 @@ fn still_pixel_m(trial: &Trial, given: &Circumstances<'_>) -> Result<Option<f64>
             Motion::of(&changed, trial.distance_m).map_or(0.0, |motion| motion.blur_pixels(speed, time_s));
         Ok(-blur.max(1e-300).ln())
     };
-    if room(LOG_RANGE)? <= 0.0 || room(-LOG_RANGE)? >= 0.0 {
+    let (low, high) = ([-LOG_RANGE, room(-LOG_RANGE)?], [LOG_RANGE, room(LOG_RANGE)?]);
+    if high[1] <= 0.0 || low[1] >= 0.0 {
         return Ok(None);
     }
-    crossing(-LOG_RANGE, LOG_RANGE, room).map(|log| Some(camera.pixel_m * log.exp()))
+    crossing_between(low, high, room).map(|log| Some(camera.pixel_m * log.exp()))
 }
 
 /// The value at which the fullest reading fills the well.

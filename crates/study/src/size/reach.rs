@@ -50,7 +50,7 @@ impl<'a> Solvers<'a> {
         counting: &Counting,
         start: Option<&State>,
     ) -> Result<(f64, Option<State>)> {
-        self.found(study, pair, counting, start).map(|(found, state)| (found.distance, state))
+        self.found(study, pair, (&study.bands, counting), start).map(|(found, state)| (found.distance, state))
     }
 
     /// The same with what is proved of it, which is nothing where a state was followed.
@@ -58,15 +58,16 @@ impl<'a> Solvers<'a> {
         &mut self,
         study: &Study,
         [target, other]: [&[f64]; 2],
-        counting: &Counting,
+        (bands, counting): (&Bands, &Counting),
         start: Option<&State>,
     ) -> Result<(Statistical, Option<State>)> {
+        let integrals = |distance: f64| study.integral_error(distance, bands, counting);
         if study.scenario.requirement.by != DistanceKind::Nearest {
             let unknowns = study.decisive_unknowns();
             study.book_local(&unknowns, 1);
             let local = self.local.with_counting(target, other, &study.state, counting)?;
             let distance = local.distance;
-            let found = Statistical { distance, lower: distance, relative_error: Some(local.relative_error) };
+            let found = Statistical { distance, lower: distance, relative_error: Some(local.relative_error + integrals(distance)) };
             return Ok((found, None));
         }
         let nearest = match start {
@@ -80,7 +81,8 @@ impl<'a> Solvers<'a> {
             }
         };
         let lower = study.sure(nearest.distance, nearest.lower);
-        let (distance, relative_error) = (nearest.distance, Some(nearest.relative_error));
+        let distance = nearest.distance;
+        let relative_error = Some(nearest.relative_error + integrals(distance));
         let found = Statistical { distance, lower, relative_error };
         Ok((found, Some(nearest.state)))
     }
@@ -120,7 +122,7 @@ impl<'a> Reach<'a> {
         let mut state = None;
         let distances = self.with_solvers(trial, |solvers, bands, counting| {
             let pair = [study.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
-            let (found, nearest) = solvers.found(study, pair, counting, start)?;
+            let (found, nearest) = solvers.found(study, pair, (bands, counting), start)?;
             let distances = match &nearest {
                 Some(nearest) => {
                     let decision = study.decision(
@@ -132,7 +134,7 @@ impl<'a> Reach<'a> {
                     )?;
                     decision.distances(found)
                 }
-                None => found.bounds(),
+                None => found.solved_by(),
             };
             state = nearest;
             Ok(distances)
