@@ -160,6 +160,29 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(seeded(24, 60))]
+
+    /// What comes with photons adds up over a filter: without the noise of a reading no filters exceed all bands, and the best are
+    /// those of summed variances.
+    #[test]
+    fn filters_sum_what_comes_with_photons(pairs in pairs(6), k in 1..4usize) {
+        let of_reading = |pair: &Numbers| {
+            let counts = pair.counts.iter().zip(&pair.var).map(|(n, var)| n + var).collect();
+            Numbers { counts, var: vec![0.0; pair.bands()], ..pair.clone() }
+        };
+        let summed: Vec<Numbers> = pairs.iter().map(of_reading).collect();
+        let scores: Vec<Scores> =
+            pairs.iter().map(|pair| pair.scores().with_photon_noise(&pair.var).unwrap()).collect();
+        let choice = best_filters(&scores, k).unwrap();
+        let best = layouts(0, pairs[0].bands(), k).iter().map(|filters| least(&summed, filters)).fold(0.0, f64::max);
+        check(&choice.quality, least(&summed, &choice.filters), best);
+        prop_assert!(choice.quality.kept <= 1.0 + 1e-9, "{:?}", choice.quality);
+        let more: Vec<f64> = pairs[0].var.iter().map(|var| var + 1.0).collect();
+        prop_assert!(pairs[0].scores().with_photon_noise(&more).is_err());
+    }
+}
+
 /// Scores of a scene with temperature and lighting unknown; photons and electronic noise per band.
 fn scores_of(scene: &Scene, unknowns: &Unknowns, counting: Option<&Counting>) -> Scores {
     let Scene { bands, surroundings, state, emissivity, alternative } = scene;

@@ -1,6 +1,7 @@
 //! Tests of scenarios and studies.
 
 mod air_ranging;
+mod bands;
 mod camera_bands;
 mod companion;
 mod conditions;

@@ -153,9 +153,8 @@ fn filters_throw_the_sensors_light_back_and_emit() {
         a += 0.1 * (r * sensor + (1.0 - t - r) * filter);
         b += 0.1 * (1.0 - line(&t_b, nu).unwrap_or(0.0)) * sensor;
     }
-    // Midpoints 1 cm^-1 apart cut the step from 900 to 901 in the middle of its slope: 1e-5.
-    near(counting.var_added(0), kappa() * a, 1e-4);
-    near(counting.var_added(1), kappa() * b, 1e-4);
+    near(counting.var_added(0), kappa() * a, 1e-6);
+    near(counting.var_added(1), kappa() * b, 1e-6);
 }
 
 /// S12: the variance of a band is N(1 + n̄), n̄ the counted photons per mode: of a blackbody its occupancy times η.

@@ -22,7 +22,8 @@ impl Path {
             let tau = air.transmittance(nu, 1000.0)?;
             Ok(vec![radiance.iter().zip(tau).map(|(b, tau)| b * tau).collect()])
         };
-        let open = Bands::from_ranges(&edges).unwrap().integrated(&[], 1e-2, spectra).unwrap();
+        let open =
+            Bands::from_ranges(&edges).unwrap().integrated(air.wavenumbers_cm1(), 1e-2, spectra).unwrap();
         assert!(open.nodes_cm1().len() >= 20);
         let setting = Setting::new(open.clone(), pair, objects, camera);
         Self { setting, open, air }
