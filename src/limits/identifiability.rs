@@ -16,7 +16,6 @@
 pub mod bayes;
 pub mod bracket;
 mod curvature;
-pub mod decision;
 pub mod detection;
 pub mod lattice;
 pub mod likelihood;
