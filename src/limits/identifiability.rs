@@ -10,12 +10,14 @@
 //! * [`likelihood`]: the state of a material that explains given counts best;
 //! * [`lattice`]: Algorithm 1, exact for up to three bands;
 //! * [`bracket`]: rigorous bounds on the error between known states, two or many;
+//! * [`decision`]: bounds of the probability of a right answer between known states, quickly and for any number of counts;
 //! * [`ratio`]: the error between two known states itself, from the law of their likelihood ratio;
 //! * [`bayes`]: what priors do to the distance and to the probability.
 
 pub mod bayes;
 pub mod bracket;
 mod curvature;
+pub mod decision;
 pub mod detection;
 pub mod lattice;
 pub mod likelihood;

@@ -108,15 +108,28 @@ impl KnownStates {
 
     /// C, μ′ and μ″ of all bands.
     pub(super) fn at(&self, s: f64) -> Moments {
-        let mut sums = [Compensated::default(); 3];
-        for band in &self.bands {
+        let [exponent, slope, variance] = self.summed(|band| {
             let Moments { exponent, slope, variance } = band.at(s);
-            for (sum, term) in sums.iter_mut().zip([exponent, slope, variance]) {
-                sum.add(term);
-            }
-        }
-        let [exponent, slope, variance] = sums.map(Compensated::value);
+            [exponent, slope, variance]
+        });
         Moments { exponent, slope, variance }
+    }
+
+    /// C, μ′ and μ″ at s = ½, and L = Σ E|X|³/(Σ E X²)^{3/2} of the events X whose Poisson sum ln(q/p) is there.
+    pub(super) fn halfway(&self) -> (Moments, f64) {
+        let [exponent, slope, variance, third] = self.summed(|band| {
+            let Moments { exponent, slope, variance } = band.at(0.5);
+            [exponent, slope, variance, variance * band.graininess(0.5)]
+        });
+        (Moments { exponent, slope, variance }, third / (variance * variance.sqrt()))
+    }
+
+    fn summed<const N: usize>(&self, of: impl Fn(&Tilted) -> [f64; N]) -> [f64; N] {
+        let mut sums = [Compensated::default(); N];
+        for band in &self.bands {
+            sums.iter_mut().zip(of(band)).for_each(|(sum, term)| sum.add(term));
+        }
+        sums.map(Compensated::value)
     }
 
     /// All bounds on the error of the best test.

@@ -47,6 +47,31 @@ const SETTLED: f64 = 1e-9;
 /// −ln |φ| that a characteristic function must be able to reach.
 const DEEP: f64 = 60.0;
 
+/// How much is spent on one law.
+#[derive(Debug, Clone, Copy)]
+struct Effort {
+    /// Most combinations of the counts of all bands but one that a sum goes through, and most counts of that one.
+    combinations: usize,
+    table: usize,
+    /// Most bands times points of the finest rule of an integral.
+    points: usize,
+    /// Relative numerical error with which an integral is good enough.
+    settled: f64,
+    /// Points of the finer lattice.
+    lattice: usize,
+}
+
+const WHOLE: Effort = Effort {
+    combinations: 1_000_000,
+    table: 4_000_000,
+    points: usize::MAX,
+    settled: SETTLED,
+    lattice: 1 << 18,
+};
+/// Some milliseconds.
+const QUICK: Effort =
+    Effort { combinations: 20_000, table: 40_000, points: 200_000, settled: 1e-5, lattice: 1 << 14 };
+
 /// How an error was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -129,9 +154,22 @@ impl RatioLaw {
     /// Error probabilities of the best test.
     #[must_use]
     pub fn error(&self) -> TestError {
+        self.settled(WHOLE).unwrap_or_else(|| self.bracketed())
+    }
+
+    /// The same to some six digits, if that takes no more than some milliseconds; else nothing.
+    pub(super) fn quick_error(&self) -> Option<TestError> {
+        self.settled(QUICK)
+    }
+
+    /// The two states.
+    pub(super) const fn states(&self) -> &KnownStates {
+        &self.states
+    }
+
+    fn settled(&self, effort: Effort) -> Option<TestError> {
         let line = self.line(self.saddle());
-        let found = if line.modes.is_empty() { single(&line) } else { self.found(&line) };
-        found.unwrap_or_else(|| self.bracketed())
+        if line.modes.is_empty() { single(&line) } else { self.found(&line, effort) }
     }
 
     /// [`error`](Self::error) by one route alone; nothing if it does not apply or does not settle.
@@ -142,9 +180,9 @@ impl RatioLaw {
             return (line.modes.is_empty() && route == Route::Single).then(|| single(&line)).flatten();
         }
         let found = match route {
-            Route::Sum => enumeration::enumerate(&line),
-            Route::Integral => inversion::integrate(&line),
-            Route::Lattice => lattice::transform(&line),
+            Route::Sum => enumeration::enumerate(&line, WHOLE),
+            Route::Integral => inversion::integrate(&line, WHOLE),
+            Route::Lattice => lattice::transform(&line, WHOLE.lattice),
             Route::Single | Route::Bracket => return Some(self.bracketed()),
         };
         self.checked(found?, route)
@@ -179,16 +217,16 @@ impl RatioLaw {
     }
 
     /// The routes in turn.
-    fn found(&self, line: &Line) -> Option<TestError> {
+    fn found(&self, line: &Line, effort: Effort) -> Option<TestError> {
         let inside = |integrals: Integrals, route| self.checked(integrals, route);
-        if let Some(found) = enumeration::enumerate(line).and_then(|sum| inside(sum, Route::Sum)) {
+        if let Some(found) = enumeration::enumerate(line, effort).and_then(|sum| inside(sum, Route::Sum)) {
             return Some(found);
         }
-        let integral = (line.depth() > DEEP).then(|| inversion::integrate(line)).flatten();
-        if let Some(settled) = integral.filter(|integral| integral.relative() < SETTLED) {
+        let integral = (line.depth() > DEEP).then(|| inversion::integrate(line, effort)).flatten();
+        if let Some(settled) = integral.filter(|integral| integral.relative() < effort.settled) {
             return inside(settled, Route::Integral);
         }
-        let lattice = lattice::transform(line);
+        let lattice = lattice::transform(line, effort.lattice);
         match (integral, lattice) {
             (Some(a), Some(b)) if a.relative() < b.relative() => inside(a, Route::Integral),
             (_, Some(b)) => inside(b, Route::Lattice),

@@ -158,6 +158,23 @@ impl Tilted {
     }
 }
 
+impl Tilted {
+    /// Of the events that ln(q/p) is a Poisson sum of, at s: their third absolute moment over their second. 0 for normal counts,
+    /// which are no such sum.
+    pub(super) fn graininess(&self, s: f64) -> f64 {
+        match *self {
+            Self::Same | Self::Dark { .. } | Self::Gaussian { .. } => 0.0,
+            Self::Poisson { log, .. } => log.abs(),
+            // Clusters of k counts, m r^k/k of them, r = x/(1 + x): Σ k²r^k/Σ kr^k = (1 + r)/(1 − r).
+            Self::Bunched { a, other, log, log_dark, .. } => {
+                let lit = geometric(a, other, log, s);
+                let dark = geometric(1.0 + a, 1.0 + other, log_dark, s);
+                (log - log_dark).abs() * (1.0 + 2.0 * lit / (dark - lit).max(1.0))
+            }
+        }
+    }
+}
+
 /// ln(y/x) with y = x + `change`, exact near equality.
 fn log_ratio(x: f64, y: f64, change: f64) -> f64 {
     let relative = change / x;

@@ -4,14 +4,13 @@
 //! halves. All counts of all bands but the one with the most are gone through; of that one the sums beyond any
 //! threshold stand in a table. Counts less likely than 10⁻²⁰ of the likeliest are left out.
 
+use super::Effort;
 use super::integrals::Integrals;
 use super::line::{Line, Mode};
 use crate::order;
 
 /// Most counts of one band.
 const TABLE: usize = 4_000_000;
-/// Most combinations of the counts of the others.
-const COMBINATIONS: usize = 1_000_000;
 /// Probabilities that are left out, against the largest.
 const NOTHING: f64 = 1e-20;
 
@@ -19,13 +18,13 @@ const NOTHING: f64 = 1e-20;
 type Law = Vec<(f64, f64)>;
 
 /// Both sums; nothing if there are too many counts or no counts at all.
-pub(super) fn enumerate(line: &Line) -> Option<Integrals> {
+pub(super) fn enumerate(line: &Line, effort: Effort) -> Option<Integrals> {
     let mut modes = merged(&line.modes)?;
     // Widest last; a cheap look before tables are made.
     order::ascending(&mut modes, width);
     let widths: Vec<f64> = modes.iter().map(width).collect();
     let (widest, others) = widths.split_last()?;
-    if *widest > TABLE as f64 || others.iter().product::<f64>() > COMBINATIONS as f64 {
+    if *widest > effort.table as f64 || others.iter().product::<f64>() > effort.combinations as f64 {
         return None;
     }
     let last = law(modes.last()?);

@@ -9,6 +9,7 @@
 //! Sources: Helstrom, IEEE Trans. Aerosp. Electron. Syst. 14, 630 (1978) for the contour through the saddle point of
 //! the whole integrand; Trefethen and Weideman, SIAM Rev. 56, 385 (2014), doi:10.1137/130932132 for the rule.
 
+use super::Effort;
 use super::integrals::Integrals;
 use super::line::{Line, Mode};
 use std::f64::consts::PI;
@@ -20,6 +21,8 @@ const IN_A_ROW: usize = 12;
 /// Most points on the way outwards, and of the finest rule.
 const OUTWARDS: usize = 1 << 12;
 const POINTS: usize = 1 << 15;
+/// Bands that are counted as so many when points are.
+const FEW_BANDS: usize = 100;
 /// Bands of which whole turns are looked at.
 const TURNED: usize = 16;
 
@@ -61,18 +64,19 @@ fn leaning(line: &Line, radius: f64, lean: f64, u: f64) -> [f64; 3] {
 }
 
 /// Both integrals, or nothing if the rule does not settle.
-pub(super) fn integrate(line: &Line) -> Option<Integrals> {
+pub(super) fn integrate(line: &Line, effort: Effort) -> Option<Integrals> {
     let radius = line.s.min(line.t);
-    rule(line, radius, |u| straight(line, radius, u)).or_else(|| {
+    rule(line, radius, effort, |u| straight(line, radius, u)).or_else(|| {
         let ends: Option<Vec<f64>> =
             line.modes.iter().map(|mode| mode.normal((0.0, 0.0)).map(|(_, end)| end)).collect();
         let end = line.moments.slope + ends?.iter().sum::<f64>();
-        rule(line, radius, |u| leaning(line, radius, -end.signum(), u))
+        rule(line, radius, effort, |u| leaning(line, radius, -end.signum(), u))
     })
 }
 
 /// The trapezoidal rule in u, halved until it settles.
-fn rule(line: &Line, radius: f64, at: impl Fn(f64) -> [f64; 3]) -> Option<Integrals> {
+fn rule(line: &Line, radius: f64, effort: Effort, at: impl Fn(f64) -> [f64; 3]) -> Option<Integrals> {
+    let most = POINTS.min(effort.points / line.modes.len().max(FEW_BANDS));
     let spread = line.moments.variance.sqrt();
     let mut step = (0.4 * (1.0 / (spread * radius)).asinh()).min(0.2);
     if !(step > 0.0 && spread > 0.0) {
@@ -81,7 +85,7 @@ fn rule(line: &Line, radius: f64, at: impl Fn(f64) -> [f64; 3]) -> Option<Integr
     // Outwards until nothing is left; the first lobe only falls.
     let mut values = Vec::new();
     let (mut largest, mut quiet) = (0.0_f64, 0);
-    while quiet < IN_A_ROW && values.len() < OUTWARDS {
+    while quiet < IN_A_ROW && values.len() < OUTWARDS.min(most) {
         let value = at(values.len() as f64 * step);
         largest = largest.max(value[2]);
         let class = value[0].abs().max(value[1].abs());
@@ -111,7 +115,7 @@ fn rule(line: &Line, radius: f64, at: impl Fn(f64) -> [f64; 3]) -> Option<Integr
             // Changes fall at least as fast as the last one did.
             break (new, change * (change / before).min(1.0));
         }
-        if count > POINTS {
+        if count > most {
             return None;
         }
         (old, before) = (new, change);

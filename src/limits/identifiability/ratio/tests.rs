@@ -123,7 +123,7 @@ fn few_bands_agree_with_the_sum_over_all_their_counts() {
             assert!(close(found.first, first, 1e-10) && close(found.second, second, 1e-10), "{found:?}");
             // The lattice makes the error slightly smaller, and knows by about how much.
             let line = law.line(law.saddle());
-            let lattice = assembled(lattice::transform(&line).unwrap(), Route::Lattice);
+            let lattice = assembled(lattice::transform(&line, WHOLE.lattice).unwrap(), Route::Lattice);
             let off = 1.0 - lattice.error / found.error;
             println!("lattice: {off:.1e}, estimated {:.1e}", lattice.numerical);
             assert!(off > -1e-13 && off < 1e-5 && off < lattice.numerical, "{off:e} {lattice:?}");
@@ -201,8 +201,8 @@ fn integral_sum_and_lattice_agree() {
     for (means, others, most) in cases {
         let law = law(means, others, &Statistics::Poisson);
         let line = law.line(law.saddle());
-        let sum = assembled(enumeration::enumerate(&line).unwrap(), Route::Sum);
-        let integral = assembled(inversion::integrate(&line).unwrap(), Route::Integral);
+        let sum = assembled(enumeration::enumerate(&line, WHOLE).unwrap(), Route::Sum);
+        let integral = assembled(inversion::integrate(&line, WHOLE).unwrap(), Route::Integral);
         let off = (integral.error / sum.error - 1.0).abs();
         println!("integral: {off:.1e}, estimated {:.1e}", integral.numerical);
         assert!(off <= integral.numerical && integral.numerical < most, "{integral:?} {sum:?}");
@@ -214,9 +214,9 @@ fn integral_sum_and_lattice_agree() {
     let others: Vec<f64> = means.iter().zip(1..).map(|(mean, k)| mean * 1.02_f64.powi(k)).collect();
     let states = law(&means, &others, &Statistics::Poisson);
     let line = states.line(states.saddle());
-    let integral = assembled(inversion::integrate(&line).unwrap(), Route::Integral);
+    let integral = assembled(inversion::integrate(&line, WHOLE).unwrap(), Route::Integral);
     // One lattice of step ln 1.02 holds all of them.
-    let lattice = assembled(lattice::transform(&line).unwrap(), Route::Lattice);
+    let lattice = assembled(lattice::transform(&line, WHOLE.lattice).unwrap(), Route::Lattice);
     let off = (integral.error / lattice.error - 1.0).abs();
     println!("multiples: {off:.1e}, estimated {:.1e} {:.1e}", integral.numerical, lattice.numerical);
     assert!(off <= integral.numerical + lattice.numerical && integral.numerical > 1e-7);
@@ -227,8 +227,8 @@ fn integral_sum_and_lattice_agree() {
         let others: Vec<f64> = (0..60).map(|w| share(f64::from(w) + 0.3)).collect();
         let law = law(&means, &others, &Statistics::Poisson);
         let line = law.line(law.saddle());
-        let integral = assembled(inversion::integrate(&line).unwrap(), Route::Integral);
-        let lattice = assembled(lattice::transform(&line).unwrap(), Route::Lattice);
+        let integral = assembled(inversion::integrate(&line, WHOLE).unwrap(), Route::Integral);
+        let lattice = assembled(lattice::transform(&line, WHOLE.lattice).unwrap(), Route::Lattice);
         let off = integral.error / lattice.error - 1.0;
         println!("{total}: lattice off by {off:.1e}, {:.1e} {:.1e}", integral.numerical, lattice.numerical);
         assert!(off.abs() <= lattice.numerical + integral.numerical && lattice.numerical < 1e-4, "{off:e}");
