@@ -41,11 +41,12 @@
 //! Cramér–Rao lower bound: from practice to theory', IEEE SAM (2006). Equilibrium singularity: paper, SII
 //! A.
 
+mod cells;
 mod mixture;
 mod prior;
 mod stack;
 
-use self::mixture::{Mixtures, Scene};
+use self::mixture::{Missed, Mixtures, Scene};
 use self::prior::Node;
 pub use self::prior::{Lattice, PriorSpace};
 pub use self::stack::{BayesianDistance, Pair};
@@ -59,6 +60,7 @@ use crate::scene::{Jacobian, Surroundings};
 use crate::spectrum::Bands;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use std::cell::RefCell;
 
 /// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰; from 10⁶ on.
 const LOG_PHOTONS: f64 = 69.0;
@@ -70,8 +72,10 @@ const PHOTONS_APART: f64 = 0.01;
 const FARTHEST: f64 = 9.2;
 /// Fewer photons than this in all have no normal law.
 const FEW_PHOTONS: f64 = 300.0;
-/// States of each lattice of a class, try by try, and where something has no prior.
+/// States of each lattice of a class, try by try; the last with one prior or two, the first two where something has none.
 const LATTICES: [usize; 3] = [128, 512, 2048];
+/// See [`LATTICES`].
+const MANY_AXES: usize = 2;
 /// See [`LATTICES`].
 const LATTICES_OF_NEAREST: [usize; 2] = [64, 256];
 /// States of each lattice and their number, and order of the product rule of a single prior, of the hybrid bound.
@@ -197,15 +201,15 @@ impl<'a> BayesianBound<'a> {
     pub fn average_probability(&self, pair: Pair<'_>, counting: &Counting) -> Result<AverageProbability> {
         counting.check(self.bands.len())?;
         let photons = self.photon_radiance(pair)? * counting.counts_per_radiance;
-        self.for_scene(pair, |scene, tries, known| {
+        self.for_scene(pair, |scene, tries| {
             let mut found = None;
             for &points in tries {
                 let mixtures = Mixtures::new(scene, counting, points)?;
                 let miss = mixtures.missed(1.0);
                 let [few, error] = mixtures.least_of_few(1.0);
                 let least = if photons < FEW_PHOTONS { few - error } else { miss.least - miss.errors[0] };
-                let is_known = known && photons >= FEW_PHOTONS;
-                let lower = is_known.then(|| (1.0 - miss.reached - miss.errors[1]).max(0.5));
+                let reached = miss.reached.filter(|_| photons >= FEW_PHOTONS);
+                let lower = reached.map(|reached| (1.0 - reached - miss.errors[1]).max(0.5));
                 let upper = 1.0 - least.clamp(0.0, 0.5);
                 found = Some(AverageProbability { lower, upper, states: mixtures.states() });
                 if miss.is_settled() {
@@ -228,19 +232,27 @@ impl<'a> BayesianBound<'a> {
         progress: &dyn Fn(usize, usize),
     ) -> Result<Option<AveragePhotons>> {
         detection::distance_for_probability(probability)?;
-        let counting = Counting { counts_per_radiance: 1.0 / self.photon_radiance(pair)?, var_added: Vec::new() };
+        let counting =
+            Counting { counts_per_radiance: 1.0 / self.photon_radiance(pair)?, var_added: Vec::new() };
         let wrong = 1.0 - probability;
-        self.for_scene(pair, |scene, tries, known| {
-            let (mut lower, mut upper, mut states) = (-LOG_PHOTONS, f64::INFINITY, 0);
-            let mut start = FIRST_LOG_PHOTONS;
+        self.for_scene(pair, |scene, tries| {
+            let few_log = FEW_PHOTONS.ln();
+            let (mut lower, mut upper, mut states) = (-LOG_PHOTONS, None, 0);
+            let (mut start, mut step) = ([FIRST_LOG_PHOTONS; 2], 0.7);
             for (i, &points) in tries.iter().enumerate() {
                 let mixtures = Mixtures::new(scene, &counting, points)?;
-                let at = |log: f64| mixtures.missed((0.5 * log).exp());
-                let few = |log: f64| {
-                    let [miss, error] = mixtures.least_of_few((0.5 * log).exp());
-                    wrong - (miss - error)
+                let looked = RefCell::new(Vec::<(f64, Missed)>::new());
+                let at = |log: f64| {
+                    if let Some((_, miss)) =
+                        looked.borrow().iter().find(|(before, _)| before.to_bits() == log.to_bits())
+                    {
+                        return *miss;
+                    }
+                    let miss = mixtures.missed((0.5 * log).exp());
+                    looked.borrow_mut().push((log, miss));
+                    miss
                 };
-                let limit = around(start, LOG_PHOTONS, |log| {
+                let limit = around(start[0], step, LOG_PHOTONS, |log| {
                     let miss = at(log);
                     wrong - (miss.least - miss.errors[0])
                 });
@@ -248,37 +260,49 @@ impl<'a> BayesianBound<'a> {
                     return Ok(None);
                 }
                 let mut below = limit.below.unwrap_or(-LOG_PHOTONS);
-                if below < FEW_PHOTONS.ln() {
-                    below = around(below, FEW_PHOTONS.ln(), few).below.unwrap_or(-LOG_PHOTONS).min(below);
+                start[0] = below;
+                let settled = at(below).is_settled();
+                if below < few_log {
+                    let few = around(below, step, few_log, |log| {
+                        let [miss, error] = mixtures.least_of_few((0.5 * log).exp());
+                        wrong - (miss - error)
+                    });
+                    below = below.min(few.below.unwrap_or(-LOG_PHOTONS));
                 }
                 lower = lower.max(below);
-                start = lower;
-                if known {
-                    let reached = around(lower.max(FEW_PHOTONS.ln()), lower + FARTHEST, |log| {
+                let least = start[0].max(few_log);
+                let reached =
+                    around(if i == 0 { least } else { start[1].max(least) }, step, least + FARTHEST, |log| {
                         let miss = at(log);
-                        wrong - (miss.reached + miss.errors[1])
+                        miss.reached.map_or(-1.0, |reached| wrong - (reached + miss.errors[1]))
                     });
-                    upper = upper.min(reached.above.unwrap_or(f64::INFINITY).max(FEW_PHOTONS.ln()));
+                if let Some(above) = reached.above {
+                    start[1] = above;
+                    let above = above.max(few_log);
+                    upper = Some(upper.map_or(above, |upper: f64| upper.min(above)));
                 }
                 states = mixtures.states();
                 progress(i + 1, tries.len());
-                if at(lower).is_settled() && (upper.is_finite() || !known) {
+                if settled && (upper.is_some() || !scene.free.nuisances().is_empty()) {
                     break;
                 }
+                step = 0.05;
             }
-            let upper = upper.is_finite().then(|| upper.max(lower).exp());
-            Ok(Some(AveragePhotons { lower: lower.exp(), upper, states }))
+            Ok(Some(AveragePhotons {
+                lower: lower.exp(),
+                upper: upper.map(|upper| upper.max(lower).exp()),
+                states,
+            }))
         })
     }
 
-    /// Asks `of` about the two classes: with the lattices to be tried, and whether everything has a prior.
-    fn for_scene<T>(&self, pair: Pair<'_>, of: impl FnOnce(Scene<'_>, &[usize], bool) -> Result<T>) -> Result<T> {
+    /// Asks `of` about the two classes, with the lattices to be tried.
+    fn for_scene<T>(&self, pair: Pair<'_>, of: impl FnOnce(Scene<'_>, &[usize]) -> Result<T>) -> Result<T> {
         let objects = self.surroundings.objects().len();
         let total = self.unknowns.known_lighting_total();
         let free = Unknowns::new(self.unknowns.without_prior(objects))?.lighting_total(total)?;
         let own = PriorSpace::new(&self.unknowns, pair.state, &StateRange::default())?;
         let priors = [own, PriorSpace::new(&self.unknowns, pair.state, &self.range)?];
-        let known = free.nuisances().is_empty();
         let scene = Scene {
             bands: self.bands,
             surroundings: self.surroundings,
@@ -288,10 +312,10 @@ impl<'a> BayesianBound<'a> {
             range: self.range,
             total_known: total.is_some(),
         };
-        match (priors[0].axes(), known) {
-            (0, _) => of(scene, &[1], known),
-            (_, true) => of(scene, &LATTICES, known),
-            (_, false) => of(scene, &LATTICES_OF_NEAREST, known),
+        match (priors[0].axes(), free.nuisances().is_empty()) {
+            (0, _) => of(scene, &[1]),
+            (axes, true) => of(scene, &LATTICES[..if axes > MANY_AXES { 2 } else { 3 }]),
+            (_, false) => of(scene, &LATTICES_OF_NEAREST),
         }
     }
 
@@ -354,33 +378,43 @@ struct Ends {
     above: Option<f64>,
 }
 
-/// Encloses where `of` crosses zero between −[`LOG_PHOTONS`] and `most` to [`PHOTONS_APART`], from `start` on.
-fn around(start: f64, most: f64, of: impl Fn(f64) -> f64) -> Ends {
-    let (mut x, mut ends, mut step) = (start.min(most), Ends::default(), 0.7);
-    while ends.below.is_none() || ends.above.is_none() {
-        if of(x) < 0.0 {
-            ends.below = Some(x);
-            if x >= most {
-                return ends;
-            }
-            x = ends.above.unwrap_or((x + step).min(most));
+/// Encloses where `of` crosses zero between −[`LOG_PHOTONS`] and `most` to [`PHOTONS_APART`], from `start` on by ever longer
+/// steps.
+fn around(start: f64, mut step: f64, most: f64, of: impl Fn(f64) -> f64) -> Ends {
+    let (mut x, mut below, mut above) = (start.min(most), None, None);
+    let (below, above) = loop {
+        let value = of(x);
+        let next = if value < 0.0 {
+            below = Some((x, value));
+            (x + step).min(most)
         } else {
-            ends.above = Some(x);
-            if x <= -LOG_PHOTONS {
-                return ends;
-            }
-            x = ends.below.unwrap_or((x - step).max(-LOG_PHOTONS));
+            above = Some((x, value));
+            (x - step).max(-LOG_PHOTONS)
+        };
+        if let (Some(below), Some(above)) = (below, above) {
+            break (below, above);
         }
+        if next == x {
+            return Ends { below: below.map(|end| end.0), above: above.map(|end| end.0) };
+        }
+        x = next;
         step *= 2.0;
+    };
+    let (mut below, mut above) = (below, above);
+    while above.0 - below.0 > PHOTONS_APART {
+        let root = below.0 + (above.0 - below.0) * below.1 / (below.1 - above.1);
+        // To the other side of where it is likely, seen from the end that is farther.
+        let beyond = if root - below.0 > above.0 - root {
+            root - 0.4 * PHOTONS_APART
+        } else {
+            root + 0.4 * PHOTONS_APART
+        };
+        let margin = 0.05 * (above.0 - below.0);
+        let x = beyond.clamp(below.0 + margin, above.0 - margin);
+        let value = of(x);
+        if value < 0.0 { below = (x, value) } else { above = (x, value) }
     }
-    while let (Some(below), Some(above)) = (ends.below, ends.above) {
-        if above - below <= PHOTONS_APART {
-            break;
-        }
-        let middle = 0.5 * (below + above);
-        if of(middle) < 0.0 { ends.below = Some(middle) } else { ends.above = Some(middle) }
-    }
-    ends
+    Ends { below: Some(below.0), above: Some(above.0) }
 }
 
 /// Where an increasing function of the photons crosses zero; `None` if it does not.

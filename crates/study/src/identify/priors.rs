@@ -59,7 +59,8 @@ impl Study {
         let probability = detection::probability(self.required).min(1.0 - f64::EPSILON);
         let average = bound.photons_for_average(pair, probability, progress)?;
         let counting = self.counting();
-        let at_camera = counting.as_ref().map(|counting| bound.average_probability(pair, counting)).transpose()?;
+        let at_camera =
+            counting.as_ref().map(|counting| bound.average_probability(pair, counting)).transpose()?;
         Ok(Some(PriorAverage {
             alternative: alternative.name.clone(),
             photons_required_lower: average.map(|average| average.lower),

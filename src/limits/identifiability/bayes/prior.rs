@@ -124,7 +124,12 @@ impl PriorSpace {
     }
 
     /// The states of some lattices, with weights of each that add up to 1; the nominal state alone where there are no priors.
-    pub(super) fn lattices(&self, count: usize, points: usize, rng: &mut ChaCha8Rng) -> Result<Vec<Vec<Node>>> {
+    pub(super) fn lattices(
+        &self,
+        count: usize,
+        points: usize,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Vec<Vec<Node>>> {
         if self.priors.is_empty() {
             return Ok(vec![vec![Node { state: self.nominal.clone(), weight: 1.0 }]]);
         }
@@ -181,6 +186,12 @@ impl Lattice {
     /// `points` points in a cube of so many axes.
     pub fn new(points: usize, axes: usize, rng: &mut ChaCha8Rng) -> Self {
         Self { points, shifts: (0..axes).map(|_| rng.random_range(0.0..1.0)).collect() }
+    }
+
+    /// How many points there are.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.points
     }
 
     /// Point `i`, whose axes begin with number `first` of the generating vector.
