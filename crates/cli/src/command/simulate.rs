@@ -125,7 +125,7 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         return Err(Error::malformed(found, "name one alternative with --against, or leave out fixed-total"));
     }
     if args.average {
-        return average(args, &plan, &planning, &study, global);
+        return average(args, &plan, planning, &study, global);
     }
     let bar = global.progress("experiments");
     let (mut result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
@@ -154,7 +154,7 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
 fn average(
     args: &SimulateArgs,
     plan: &SimulationPlan,
-    planning: &Work,
+    planning: Work,
     study: &Study,
     global: &Global,
 ) -> Result<ExitCode> {
