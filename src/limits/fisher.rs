@@ -169,6 +169,18 @@ impl Unknowns {
         parameters
     }
 
+    /// The nuisances that have a free parameter and no prior, with `objects` environment objects.
+    #[must_use]
+    pub fn without_prior(&self, objects: usize) -> Vec<Nuisance> {
+        let has_prior = |nuisance: &Nuisance| self.priors.iter().any(|prior| prior.0 == *nuisance);
+        let is_free = |nuisance: &Nuisance| match nuisance {
+            Nuisance::Lighting => objects > usize::from(self.lighting_total.is_some()),
+            Nuisance::EnvironmentTemperature => objects > 0,
+            Nuisance::Temperature | Nuisance::Gain => true,
+        };
+        self.nuisances.iter().copied().filter(|nuisance| !has_prior(nuisance) && is_free(nuisance)).collect()
+    }
+
     /// Deviation of the prior on a parameter, if it has one.
     #[must_use]
     pub fn sigma_prior(&self, parameter: Parameter) -> Option<f64> {

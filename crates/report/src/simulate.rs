@@ -1,5 +1,6 @@
 //! The files of `simulate`: scenario, tables and plots.
 
+pub mod average;
 pub mod figures;
 pub mod thermometry;
 

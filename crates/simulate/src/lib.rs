@@ -16,6 +16,7 @@
 //! do not depend on the number of threads, and a seed brings them back.
 
 pub mod air_ranging;
+pub mod average;
 pub mod classifier;
 pub mod decision;
 pub mod draws;

@@ -8,6 +8,7 @@
 //! Whether a classifier beats the limit is asked at a level that holds for all comparisons together (Bonferroni).
 
 mod asked;
+mod average;
 mod experiment;
 mod magnitudes;
 mod noise_curves;
@@ -16,6 +17,7 @@ mod standing;
 mod thermometry;
 
 pub use asked::{SimulationAsked, true_temperatures};
+pub use average::{AveragePoint, AverageSimulation};
 pub(super) use experiment::normal_error;
 pub use noise_curves::{NoiseCurve, NoiseCurves};
 pub use standing::{SimulatedPerformance, Standing};

@@ -1,6 +1,21 @@
-//! What priors do: the hybrid Cramér–Rao bound, and the detection probability averaged over a prior.
+//! What priors do: the hybrid Cramér–Rao bound, and how often a decision between two classes is right on average over
+//! them.
 //!
-//! Nuisances θ with a Gaussian prior are random, the material fraction g and nuisances without a prior are
+//! **Decisions.** Two equally likely materials, the state θ of either drawn from its own prior: Gaussian about the nominal
+//! state, cut at its range and renormalised. The best test, of the ratio of the two mixtures E_θ[p(n | θ)], is right with
+//! P* = ½ + ½ TV. It is bounded from both sides, by averages over lattices of states that meet as these grow (`mixture`): a
+//! test that is told which lattice the states lie on is right at least as often, one that knows another lattice no more often.
+//! Either has its numerical error, three deviations, added on the safe side. Photons likewise: fewer than the lower number
+//! are not enough for any test, the upper number is enough for one.
+//!
+//! * What is unknown and has no prior is the adversary's: in the alternative it may be anything, whatever the rest of the
+//!   state, and is taken nearest to the target's state with the same θ. That bounds every test; what one reaches against all
+//!   of it is not known, and has no lower bound here.
+//! * Counts are normal, with noise that does not change along a small step; below 300 photons in all, where that fails, the
+//!   limit is the rigorous ½(1 + √(1 − ρ²)) of states with the same θ, and the lower bound is not given.
+//! * Without priors, or with priors so narrow that all is known, P* = Φ(d).
+//!
+//! **Estimates.** Nuisances θ with a Gaussian prior are random, the material fraction g and nuisances without a prior are
 //! not. The information about both, per photon of the nominal state, is
 //!
 //! J_H = Σ_k w_k Σ_w ∂S_w(θ_k) ∂S_w(θ_k)ᵀ/[S_w(θ_k) ΣS(θ₀)] + diag(1/(N σ_p²)),
@@ -16,76 +31,82 @@
 //!   prior of deviation σ_T the target is a little off equilibrium nearly always, ∂S/∂g ∝ T − T₀, so
 //!   d_B ∝ σ_T and the photons needed ∝ 1/σ_T²: large but finite.
 //! * It bounds estimates of g, not decisions, and is optimistic as a bound: information is averaged before it
-//!   is inverted, so that d_B² is at least the mean of the local d² over the prior. The other average says what
-//!   a user will see: P̄(N) = E[Φ(d(θ))], d the local or nearest statistical distance of each state. Near equilibrium d = c|T − T₀| and P̄ = ½ +
-//!   arctan(cσ_T)/π.
+//!   is inverted, so that d_B² is at least the mean of the local d² over the prior.
 //!
-//! Averages: lattices of states within 7σ_p and the physical range (T > 0, 0 ≤ V, ΣV ≤ 1), whose number does not
-//! multiply with the priors, doubled until the error of their mean is no more than is asked for (10⁻³ of a probability
-//! where silent): three deviations by the scatter of the lattices, and for what may stand between n states, which is
-//! about 1/n of the prior and off by ¼ in the mean, 1/(4n). The prior is truncated to that range and renormalised, not
-//! reflected. An order asked for is that of a product rule, and so is the hybrid bound of a single prior:
+//! Its average is over lattices of states within 7σ_p and the range; of a single prior over a product rule,
 //! Gauss–Legendre on either side of the mean, so that a kink there, as at equilibrium, costs nothing.
 //!
-//! Photons for an average: d(θ, N) of every state is √N times what hardly depends on N, so that the distances found at one
-//! N tell P̄ at all N but for what the priors' weight among the photons changes. Each step finds N from the distances of
-//! the last.
-//!
-//! Sources: van Trees, 'Detection, Estimation, and Modulation Theory', part I (1968), section 2.4; Rockah
-//! and Schultheiss, IEEE Trans. Acoust. Speech Signal Process. 35, 286 (1987); Messer, 'The hybrid
+//! Sources: decisions, design of the project; hybrid bound: van Trees, 'Detection, Estimation, and Modulation Theory', part I
+//! (1968), section 2.4; Rockah and Schultheiss, IEEE Trans. Acoust. Speech Signal Process. 35, 286 (1987); Messer, 'The hybrid
 //! Cramér–Rao lower bound: from practice to theory', IEEE SAM (2006). Equilibrium singularity: paper, SII
 //! A.
 
-mod average;
+mod cells;
+mod mixture;
 mod prior;
 mod stack;
 
-pub use self::average::Distances;
-use self::average::{Average, LOG_PHOTONS, States};
+use self::mixture::{Missed, Mixtures, Scene};
 use self::prior::Node;
+pub use self::prior::{Lattice, PriorSpace};
 pub use self::stack::{BayesianDistance, Pair};
 use self::stack::{MAX_STACK, Stack};
 use super::detection;
+use super::nearest::StateRange;
 use crate::error::{Error, Result, check};
-use crate::fisher::Unknowns;
+use crate::fisher::{Counting, Unknowns};
 use crate::root::crossing_between;
 use crate::scene::{Jacobian, Surroundings};
 use crate::spectrum::Bands;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use std::cell::RefCell;
 
-/// Where the search for photons begins: 10⁶.
+/// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰; from 10⁶ on.
+const LOG_PHOTONS: f64 = 69.0;
+/// See [`LOG_PHOTONS`].
 const FIRST_LOG_PHOTONS: f64 = 13.8;
-/// Error of an averaged probability where none is asked for.
-const TOLERANCE: f64 = 1e-3;
-/// States of each lattice, try by try: few to be near the photons that are sought, then as many as an error of 10⁻³ takes.
-const LATTICES: [usize; 7] = [8, 64, 128, 256, 512, 1024, 2048];
-/// States of each lattice, and order of the product rule of a single prior, of the hybrid bound.
+/// To what share photons are found, and how much more than the least that may do is looked at, in ln N.
+const PHOTONS_APART: f64 = 0.01;
+/// See [`PHOTONS_APART`].
+const FARTHEST: f64 = 9.2;
+/// Fewer photons than this in all have no normal law.
+const FEW_PHOTONS: f64 = 300.0;
+/// States of each lattice of a class, try by try; the last with one prior or two, the first two where something has none.
+const LATTICES: [usize; 3] = [128, 512, 2048];
+/// See [`LATTICES`].
+const MANY_AXES: usize = 2;
+/// See [`LATTICES`].
+const LATTICES_OF_NEAREST: [usize; 2] = [64, 256];
+/// States of each lattice and their number, and order of the product rule of a single prior, of the hybrid bound.
 const HYBRID_STATES: usize = 64;
+/// See [`HYBRID_STATES`].
+const HYBRID_LATTICES: usize = 8;
+/// See [`HYBRID_STATES`].
 const HYBRID_ORDER: usize = 32;
 
-/// The detection probability averaged over the prior.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+/// How often decisions are right at best, averaged over two classes and the priors of their states, bounded from both sides.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct AverageProbability {
-    /// P̄ = E[Φ(d)].
-    pub probability: f64,
-    /// 1 − P̄, to full relative precision.
-    pub miss_probability: f64,
-    /// States of the average.
-    pub nodes: usize,
-    /// Three deviations of P̄, by the scatter of its lattices; for a product rule its change from half the order.
-    pub error: f64,
+    /// A test is right at least so often; `None` where that is not known: a nuisance without a prior, or few photons.
+    pub lower: Option<f64>,
+    /// No test is right more often.
+    pub upper: f64,
+    /// States of each class.
+    pub states: usize,
 }
 
-/// Photons at which an averaged detection probability is reached.
+/// Photons of the nominal state at which decisions are right as often as required, bounded from both sides.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct AveragePhotons {
-    /// Photons of the nominal state.
-    pub photons: f64,
-    /// What the error of the average makes of them.
-    pub relative_error: f64,
-    /// States of the last average.
-    pub nodes: usize,
+    /// Fewer are not enough for any test.
+    pub lower: f64,
+    /// So many are enough for a test; `None` where no such number is known.
+    pub upper: Option<f64>,
+    /// States of each class.
+    pub states: usize,
 }
 
 /// Bounds with priors in fixed bands, surroundings and unknowns.
@@ -114,18 +135,25 @@ pub struct BayesianBound<'a> {
     bands: &'a Bands,
     surroundings: &'a Surroundings,
     unknowns: Unknowns,
+    range: StateRange,
     order: Option<usize>,
-    tolerance: f64,
 }
 
 impl<'a> BayesianBound<'a> {
     /// Bounds for `unknowns`, whose priors are centred at the nominal state of each call.
     #[must_use]
     pub fn new(bands: &'a Bands, surroundings: &'a Surroundings, unknowns: Unknowns) -> Self {
-        Self { bands, surroundings, unknowns, order: None, tolerance: TOLERANCE }
+        Self { bands, surroundings, unknowns, range: StateRange::default(), order: None }
     }
 
-    /// The same by a product rule with `order` nodes on either side of the mean of each prior, instead of by lattices.
+    /// The same with the alternative's state within `range`.
+    #[must_use]
+    pub fn within(self, range: StateRange) -> Self {
+        Self { range, ..self }
+    }
+
+    /// The same with the hybrid bound by a product rule with `order` nodes on either side of the mean of each prior, instead of
+    /// by lattices.
     ///
     /// # Errors
     /// An order below 2 or above 512.
@@ -139,14 +167,6 @@ impl<'a> BayesianBound<'a> {
             ));
         }
         Ok(Self { order: Some(order), ..self })
-    }
-
-    /// The same with averaged probabilities to this error, if 16 384 states suffice for it.
-    ///
-    /// # Errors
-    /// A tolerance that is not positive.
-    pub fn with_tolerance(self, tolerance: f64) -> Result<Self> {
-        Ok(Self { tolerance: check::positive("error of an averaged probability", tolerance, "")?, ..self })
     }
 
     /// d_B per √photon when the nominal state sends `photons`; infinitely many leave the prior's own
@@ -174,32 +194,34 @@ impl<'a> BayesianBound<'a> {
         photons_where(|photons| Ok(photons.sqrt() * stack.project(photons).distance - required))
     }
 
-    /// P̄ when the nominal state sends `photons`, at the same exposure for all states.
+    /// How often decisions between the two classes are right at best, with counts as `counting` makes them.
     ///
     /// # Errors
-    /// As [`BayesianBound::distance`] and the solver of the distances.
-    pub fn average_probability(
-        &self,
-        pair: Pair<'_>,
-        photons: f64,
-        distances: Distances,
-    ) -> Result<AverageProbability> {
-        check::positive("photons", photons, "counts")?;
-        let mut average = self.average(pair, distances, &|_, _| ())?;
-        for states in self.tries() {
-            average.take(states)?;
-            average.look(photons)?;
-            if average.error(0.0) <= self.tolerance {
-                break;
+    /// A scene without photons; a prior outside the alternative's range; counts or noise that are impossible.
+    pub fn average_probability(&self, pair: Pair<'_>, counting: &Counting) -> Result<AverageProbability> {
+        counting.check(self.bands.len())?;
+        let photons = self.photon_radiance(pair)? * counting.counts_per_radiance;
+        self.for_scene(pair, |scene, tries| {
+            let mut found = None;
+            for &points in tries {
+                let mixtures = Mixtures::new(scene, counting, points)?;
+                let miss = mixtures.missed(1.0);
+                let [few, error] = mixtures.least_of_few(1.0);
+                let least = if photons < FEW_PHOTONS { few - error } else { miss.least - miss.errors[0] };
+                let reached = miss.reached.filter(|_| photons >= FEW_PHOTONS);
+                let lower = reached.map(|reached| (1.0 - reached - miss.errors[1]).max(0.5));
+                let upper = 1.0 - least.clamp(0.0, 0.5);
+                found = Some(AverageProbability { lower, upper, states: mixtures.states() });
+                if miss.is_settled() {
+                    break;
+                }
             }
-        }
-        let (miss, error) = (average.miss(0.0), average.error(0.0));
-        let nodes = average.nodes.len();
-        Ok(AverageProbability { probability: 1.0 - miss, miss_probability: miss, nodes, error })
+            found.ok_or_else(nothing)
+        })
     }
 
-    /// Photons of the nominal state at which P̄ is `probability`, in (½, 1); `None` if no number suffices. `progress` is told
-    /// how many states of how many were looked at, as far as is known.
+    /// Photons of the nominal state at which decisions between the two classes are right with `probability`, in (½, 1), in
+    /// shot noise; `None` if no number suffices. `progress` is told how many lattices of how many were looked at.
     ///
     /// # Errors
     /// As [`BayesianBound::average_probability`], or a probability outside (½, 1).
@@ -207,62 +229,94 @@ impl<'a> BayesianBound<'a> {
         &self,
         pair: Pair<'_>,
         probability: f64,
-        distances: Distances,
         progress: &dyn Fn(usize, usize),
     ) -> Result<Option<AveragePhotons>> {
         detection::distance_for_probability(probability)?;
-        let mut average = self.average(pair, distances, progress)?;
-        let (mut log, mut found) = (FIRST_LOG_PHOTONS, None);
-        for states in self.tries() {
-            average.take(states)?;
-            // What is left to the steps is nothing beside the error of the average.
-            let enough =
-                if self.order.is_some() { [1e-13; 2] } else { [0.02 * self.tolerance, 3.0 * self.tolerance] };
-            let Some(met) = average.solve(log, 1.0 - probability, enough)? else { return Ok(None) };
-            log = met.log;
-            let shift = met.shift;
-            let error = average.error(shift);
-            // dP̄/d ln N.
-            let slope = (average.miss(shift - 0.01) - average.miss(shift + 0.01)) / 0.02;
-            let relative_error = if error > 0.0 { error / slope } else { 0.0 };
-            let nodes = average.nodes.len();
-            found = Some(AveragePhotons { photons: log.exp(), relative_error, nodes });
-            if error <= self.tolerance {
-                break;
+        let counting =
+            Counting { counts_per_radiance: 1.0 / self.photon_radiance(pair)?, var_added: Vec::new() };
+        let wrong = 1.0 - probability;
+        self.for_scene(pair, |scene, tries| {
+            let few_log = FEW_PHOTONS.ln();
+            let (mut lower, mut upper, mut states) = (-LOG_PHOTONS, None, 0);
+            let (mut start, mut step) = ([FIRST_LOG_PHOTONS; 2], 0.7);
+            for (i, &points) in tries.iter().enumerate() {
+                let mixtures = Mixtures::new(scene, &counting, points)?;
+                let looked = RefCell::new(Vec::<(f64, Missed)>::new());
+                let at = |log: f64| {
+                    if let Some((_, miss)) =
+                        looked.borrow().iter().find(|(before, _)| before.to_bits() == log.to_bits())
+                    {
+                        return *miss;
+                    }
+                    let miss = mixtures.missed((0.5 * log).exp());
+                    looked.borrow_mut().push((log, miss));
+                    miss
+                };
+                let limit = around(start[0], step, LOG_PHOTONS, |log| {
+                    let miss = at(log);
+                    wrong - (miss.least - miss.errors[0])
+                });
+                if limit.above.is_none() {
+                    return Ok(None);
+                }
+                let mut below = limit.below.unwrap_or(-LOG_PHOTONS);
+                start[0] = below;
+                let settled = at(below).is_settled();
+                if below < few_log {
+                    let few = around(below, step, few_log, |log| {
+                        let [miss, error] = mixtures.least_of_few((0.5 * log).exp());
+                        wrong - (miss - error)
+                    });
+                    below = below.min(few.below.unwrap_or(-LOG_PHOTONS));
+                }
+                lower = lower.max(below);
+                let least = start[0].max(few_log);
+                let reached =
+                    around(if i == 0 { least } else { start[1].max(least) }, step, least + FARTHEST, |log| {
+                        let miss = at(log);
+                        miss.reached.map_or(-1.0, |reached| wrong - (reached + miss.errors[1]))
+                    });
+                if let Some(above) = reached.above {
+                    start[1] = above;
+                    let above = above.max(few_log);
+                    upper = Some(upper.map_or(above, |upper: f64| upper.min(above)));
+                }
+                states = mixtures.states();
+                progress(i + 1, tries.len());
+                if settled && (upper.is_some() || !scene.free.nuisances().is_empty()) {
+                    break;
+                }
+                step = 0.05;
             }
-        }
-        Ok(found)
+            Ok(Some(AveragePhotons {
+                lower: lower.exp(),
+                upper: upper.map(|upper| upper.max(lower).exp()),
+                states,
+            }))
+        })
     }
 
-    /// The averages that are tried one after the other.
-    fn tries(&self) -> Vec<States> {
-        match self.order {
-            Some(order) => vec![States::Product(order)],
-            None => LATTICES.map(States::Lattices).to_vec(),
-        }
-    }
-
-    fn average<'b>(
-        &'b self,
-        pair: Pair<'b>,
-        distances: Distances,
-        progress: &'b dyn Fn(usize, usize),
-    ) -> Result<Average<'b>> {
-        let total = self.photon_radiance(pair)?;
-        Ok(Average {
+    /// Asks `of` about the two classes, with the lattices to be tried.
+    fn for_scene<T>(&self, pair: Pair<'_>, of: impl FnOnce(Scene<'_>, &[usize]) -> Result<T>) -> Result<T> {
+        let objects = self.surroundings.objects().len();
+        let total = self.unknowns.known_lighting_total();
+        let free = Unknowns::new(self.unknowns.without_prior(objects))?.lighting_total(total)?;
+        let own = PriorSpace::new(&self.unknowns, pair.state, &StateRange::default())?;
+        let priors = [own, PriorSpace::new(&self.unknowns, pair.state, &self.range)?];
+        let scene = Scene {
             bands: self.bands,
             surroundings: self.surroundings,
-            unknowns: &self.unknowns,
             pair,
-            distances,
-            progress,
-            total,
-            nodes: Vec::new(),
-            ends: Vec::new(),
-            found: Vec::new(),
-            looked: 0,
-            share: None,
-        })
+            priors: &priors,
+            free: &free,
+            range: self.range,
+            total_known: total.is_some(),
+        };
+        match (priors[0].axes(), free.nuisances().is_empty()) {
+            (0, _) => of(scene, &[1]),
+            (axes, true) => of(scene, &LATTICES[..if axes > MANY_AXES { 2 } else { 3 }]),
+            (_, false) => of(scene, &LATTICES_OF_NEAREST),
+        }
     }
 
     /// ΣS of the nominal state.
@@ -287,15 +341,16 @@ impl<'a> BayesianBound<'a> {
         let total = self.photon_radiance(pair)?;
         let columns = self.unknowns.parameters(self.surroundings.objects().len()).len() + 1;
         let most = MAX_STACK / (self.bands.len() * columns).max(1);
+        let space = PriorSpace::new(&self.unknowns, pair.state, &StateRange::default())?;
         let order = match self.order {
-            None if prior::count(&self.unknowns, pair.state) > 1 => None,
+            None if space.axes() > 1 => None,
             order => Some(order.unwrap_or(HYBRID_ORDER)),
         };
         let [fine, coarse] = if let Some(order) = order {
-            [order, order / 2].map(|order| prior::product(&self.unknowns, pair.state, order, most))
+            [order, order / 2].map(|order| space.product(order, most))
         } else {
-            let states = HYBRID_STATES.min(most / prior::SHIFTS).max(1);
-            let lattices = prior::lattices(&self.unknowns, pair.state, states)?;
+            let states = HYBRID_STATES.min(most / HYBRID_LATTICES).max(1);
+            let lattices = space.lattices(HYBRID_LATTICES, states, &mut ChaCha8Rng::seed_from_u64(20))?;
             let half = lattices.len() / 2;
             [&lattices[..], &lattices[..half]].map(|lattices| Ok(pooled(lattices)))
         };
@@ -310,6 +365,56 @@ fn pooled(lattices: &[Vec<Node>]) -> Vec<Node> {
     let all: Vec<Node> = lattices.iter().flatten().cloned().collect();
     let weight = 1.0 / all.len().max(1) as f64;
     all.into_iter().map(|node| Node { weight, ..node }).collect()
+}
+
+fn nothing() -> Error {
+    Error::malformed("an average over no states", "report this as a bug")
+}
+
+/// The last point found below the crossing of an increasing function, and the first above it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ends {
+    below: Option<f64>,
+    above: Option<f64>,
+}
+
+/// Encloses where `of` crosses zero between −[`LOG_PHOTONS`] and `most` to [`PHOTONS_APART`], from `start` on by ever longer
+/// steps.
+fn around(start: f64, mut step: f64, most: f64, of: impl Fn(f64) -> f64) -> Ends {
+    let (mut x, mut below, mut above) = (start.min(most), None, None);
+    let (below, above) = loop {
+        let value = of(x);
+        let next = if value < 0.0 {
+            below = Some((x, value));
+            (x + step).min(most)
+        } else {
+            above = Some((x, value));
+            (x - step).max(-LOG_PHOTONS)
+        };
+        if let (Some(below), Some(above)) = (below, above) {
+            break (below, above);
+        }
+        if next == x {
+            return Ends { below: below.map(|end| end.0), above: above.map(|end| end.0) };
+        }
+        x = next;
+        step *= 2.0;
+    };
+    let (mut below, mut above) = (below, above);
+    while above.0 - below.0 > PHOTONS_APART {
+        let root = below.0 + (above.0 - below.0) * below.1 / (below.1 - above.1);
+        // To the other side of where it is likely, seen from the end that is farther.
+        let beyond = if root - below.0 > above.0 - root {
+            root - 0.4 * PHOTONS_APART
+        } else {
+            root + 0.4 * PHOTONS_APART
+        };
+        let margin = 0.05 * (above.0 - below.0);
+        let x = beyond.clamp(below.0 + margin, above.0 - margin);
+        let value = of(x);
+        if value < 0.0 { below = (x, value) } else { above = (x, value) }
+    }
+    Ends { below: Some(below.0), above: Some(above.0) }
 }
 
 /// Where an increasing function of the photons crosses zero; `None` if it does not.

@@ -2,10 +2,10 @@
 
 use super::global::Global;
 use clap::Args;
-use hadar::demand::ledger_of;
+use hadar::demand::{Work, ledger_of};
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
-use hadar_report::simulate::{self, thermometry as thermometry_report};
+use hadar_report::simulate::{self, average as average_report, thermometry as thermometry_report};
 use hadar_study::{PhotonLaw, SimulationAsked, SimulationPlan, Study, true_temperatures};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -69,10 +69,17 @@ pub(super) struct SimulateArgs {
         help_heading = "Thermometry"
     )]
     temperatures: usize,
+    /// Draw the states of both materials from the priors, decide by the ratio of the mixtures, and hold the share of right
+    /// decisions against its limits on either side, with --spectra of each material
+    #[arg(long, conflicts_with_all = JUDGING, help_heading = "Spectra")]
+    average: bool,
     /// Exit with code 3 if a classifier was right more often than the limit allows
     #[arg(long)]
     check: bool,
 }
+
+/// Flags of classifiers, which mean nothing where the Bayes test decides.
+const JUDGING: [&str; 6] = ["classifiers", "sweep", "save_models", "model", "skip_spectra", "thermometry"];
 
 /// Flags that say how classifiers are judged, and nothing to thermometry.
 const CLASSIFYING: [&str; 10] = [
@@ -117,6 +124,9 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         let found = "--check holds two classes against their limit, which is not known here";
         return Err(Error::malformed(found, "name one alternative with --against, or leave out fixed-total"));
     }
+    if args.average {
+        return average(args, &plan, planning, &study, global);
+    }
     let bar = global.progress("experiments");
     let (mut result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
@@ -139,6 +149,21 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     global.answer(&result, &text, &result.stats)?;
     let failed = args.check && !result.limit_holds;
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn average(
+    args: &SimulateArgs,
+    plan: &SimulationPlan,
+    planning: Work,
+    study: &Study,
+    global: &Global,
+) -> Result<ExitCode> {
+    let mut result = study.simulate_average(plan)?;
+    let text = average_report::text(&result, study);
+    let report = global.report(&text, |out| average_report::bundle(study, &result, out))?;
+    result.stats.add(&planning.and(&report));
+    global.answer(&result, &text, &result.stats)?;
+    Ok(if args.check && !result.brackets_hold { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
 fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global) -> Result<ExitCode> {

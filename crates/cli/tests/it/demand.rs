@@ -27,6 +27,9 @@ focal_length = "18 mm"
 noise_electrons = 0
 "#;
 
+/// What an average is over.
+const PRIORS: &str = "unknown.priors={ temperature = \"1 K\", lighting = 0.1 }";
+
 fn count(stats: &Value, thing: &str, what: &str) -> u64 {
     stats[thing][what].as_u64().unwrap_or_else(|| panic!("no {what} of {thing} in {stats}"))
 }
@@ -64,6 +67,7 @@ fn every_command_says_what_it_took_and_answers_the_same_in_full() {
         &["simulate", "a.toml", "--classifiers", "likelihood-ratio", "--spectra", "40"],
         &["simulate", "a.toml", "--skip-spectra", "--spectra", "40", "--against", "concrete"],
         &["simulate", "a.toml", "--thermometry", "60 degC", "--spectra", "4"],
+        &["simulate", "a.toml", "--average", "--set", PRIORS, "--spectra", "40"],
         &["materials", "list"],
         &["materials", "show", "gold"],
         &["cameras", "list"],

@@ -65,6 +65,10 @@ fn every_key_of_real_answers_is_explained() {
     see(&["materials", "list"]);
     see(&["materials", "show", "skin"]);
     see(&["simulate", "a.toml", "--spectra", "200", "--photons", "100"]);
+    let priors = "[unknown]\npriors = { temperature = \"1 K\", lighting = 0.1 }\n[camera]";
+    folder.file("priors.toml", &SCENARIO.replace("[camera]", priors));
+    see(&["identify", "priors.toml", "--average"]);
+    see(&["simulate", "priors.toml", "--average", "--spectra", "50"]);
     see(&["simulate", "a.toml", "--thermometry", "30 degC..40 degC", "--spectra", "50"]);
     see(&["explain", "temperature"]);
     see(&["explain"]);

@@ -234,10 +234,14 @@ fn odd_scenes_are_answered_by_every_flag() {
     assert_eq!(found["identifiability"]["identifiable"], false);
 
     let unknown = |what: &str| three.replace("[camera]", &format!("[unknown]\n{what}\n[camera]"));
-    // By the local distance, whose average over the priors takes no time.
     let priors = unknown("priors = { temperature = \"1 K\", lighting = 0.1 }");
     let found = answered("priors", &priors, &[&EVERYTHING[..], &["--by", "local", "--average"]].concat());
-    assert!(found["prior_average"]["photons_required"].as_f64().unwrap() > 0.0);
+    let side = |key: &str| found["prior_average"][key].as_f64().unwrap();
+    assert!(
+        side("photons_required_lower") > 0.0
+            && side("photons_required_lower") <= side("photons_required_upper")
+    );
+    assert!(side("probability_lower") >= 0.5 && side("probability_lower") <= side("probability_upper"));
     let gain = unknown("nuisances = [\"temperature\", \"lighting\", \"gain\"]");
     answered("unknown gain", &gain, &[&EVERYTHING[..], &["--bands", "4"]].concat());
     let environment = unknown("nuisances = [\"temperature\", \"environment-temperature\"]");

@@ -80,15 +80,29 @@ fn averages_over_priors_lead_where_the_nominal_state_is_blind() {
         .replace("[camera]", "[unknown]\npriors = { temperature = \"1 K\", lighting = 0.1 }\n[camera]");
     assert!(!said(&scenario, &["--by", "local"]).contains("Averaged"));
     let text = said(&scenario, &["--by", "local", "--average"]);
+    let lines: Vec<&str> = text.lines().collect();
     assert!(
-        text.starts_with(
-            "Averaged over the priors skin is told from aluminium with 84.1 % right answers by "
-        ),
+        lines[0].starts_with("With the camera (")
+            && lines[0].contains(" the best test distinguishes skin from aluminium in "),
         "{text}"
     );
-    let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(lines[1], "At exactly 20.00 degC and V 1.00:");
-    assert!(lines[2].starts_with("No: ") && text.contains("no number of photons suffices"), "{text}");
+    let averaged = "Averaged over the priors of both, to distinguish skin from aluminium with 84.1 % right answers it takes between ";
+    assert!(lines[1].starts_with(averaged), "{text}");
+    assert_eq!(lines[3], "At exactly 20.00 degC and V 1.00:");
+    assert!(lines[4].starts_with("No: ") && text.contains("no number of photons suffices"), "{text}");
+}
+
+/// The limit without a bracket where something has no prior, which is said; and what a simulation of it is told.
+#[test]
+fn averages_say_what_has_no_prior() {
+    let scenario = SCENARIO.replace("[camera]", "[unknown]\npriors = { temperature = \"1 K\" }\n[camera]");
+    let text = said(&scenario, &["--average"]);
+    assert!(
+        text.starts_with("With the camera (") && text.contains("no test distinguishes skin from"),
+        "{text}"
+    );
+    assert!(text.contains("it takes at least ") && text.contains("how many suffice is not known"), "{text}");
+    assert!(text.contains("No prior is stated for: lighting."), "{text}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What is said of many materials.
 
+mod average;
 mod bands;
 pub(crate) mod captions;
 mod exact;
@@ -79,13 +80,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
     let reliability = words::demanded(study.required_distance());
     // The average is finite also where the state that stands in the scenario is one of equilibrium.
     if let Some(average) = &result.prior_average {
-        let _ = writeln!(
-            out,
-            "Averaged over the priors {target} is told from {} with {reliability} right answers by {} (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
-            average.alternative,
-            number_of_photons(average.photons_required),
-            number_of_photons(average.photons_required_hybrid_bound)
-        );
+        out.push_str(&average::text(average, target, &reliability, study));
         let state = study.state();
         let _ = writeln!(
             out,
@@ -147,10 +142,6 @@ fn verdict(result: &Identification, study: &Study) -> String {
         writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));
     out.push('\n');
     out
-}
-
-fn number_of_photons(count: Option<f64>) -> String {
-    count.map_or_else(|| "no number of photons".into(), |count| format!("{} photons", significant(count, 3)))
 }
 
 /// The largest entries of the prediction vector.

@@ -1,5 +1,6 @@
 //! What a simulation found, as text.
 
+pub(crate) mod average;
 pub(crate) mod thermometry;
 
 use crate::text::columns::{Columns, left, right};

@@ -155,7 +155,13 @@ impl Study {
         Ok(classes)
     }
 
-    fn draws(&self, law: PhotonLaw, photons: f64, means: &[f64], counting: &Counting) -> Result<Draws> {
+    pub(super) fn draws(
+        &self,
+        law: PhotonLaw,
+        photons: f64,
+        means: &[f64],
+        counting: &Counting,
+    ) -> Result<Draws> {
         let draws = match law {
             PhotonLaw::Poisson => Draws::new(&Statistics::Poisson, means)?,
             PhotonLaw::NegativeBinomial => Draws::new(&self.bunched(counting.counts_per_radiance)?, means)?,

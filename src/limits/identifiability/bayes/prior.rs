@@ -1,27 +1,28 @@
 //! Nodes and weights that average over the Gaussian priors of a state.
 //!
-//! * [`product`]: Gauss–Legendre on either side of the mean of every prior, which multiplies with the priors.
-//! * [`lattices`]: a rank-1 lattice of n = 2^m points in all priors together, x = {i z/n + Δ}, folded by the baker's map
-//!   1 − |2x − 1|, so that it need not be periodic, and brought to the truncated Gaussians by the inverse of their
-//!   distribution. [`SHIFTS`] lattices with independent random shifts Δ tell the error of their mean.
+//! * [`PriorSpace`]: the unit cube, one axis for each prior, brought to the truncated Gaussians by the inverse of their
+//!   distribution.
+//! * [`PriorSpace::product`]: Gauss–Legendre on either side of the mean of every prior, which multiplies with the priors.
+//! * [`Lattice`]: a rank-1 lattice of n = 2^m points in all priors together, x = {i z/n + Δ}, folded by the baker's map
+//!   1 − |2x − 1|, so that it need not be periodic. Lattices with independent random shifts Δ tell the error of their mean,
+//!   and every one of their points is distributed as the prior.
 //!
 //! Sources: Dick, Kuo, Sloan, Acta Numerica 22, 133 (2013), doi:10.1017/S0962492913000044; generating vector z of Cools,
 //! Kuo, Nuyens, SIAM J. Sci. Comput. 28, 2162 (2006), doi:10.1137/06065074X.
 
 use crate::error::{Error, Result};
 use crate::fisher::{Nuisance, Unknowns};
+use crate::identifiability::nearest::StateRange;
 use crate::identifiability::space::{set, value};
 use crate::scene::{Parameter, State};
+use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
 use statrs::function::erf::{erfc, erfc_inv};
 use std::f64::consts::SQRT_2;
 
 /// Deviations from the mean beyond which a prior is nothing (2.6e-12 of it, 1.3e-10 of its variance).
 const REACH: f64 = 7.0;
 
-/// Lattices whose scatter tells the error of their mean.
-pub(super) const SHIFTS: usize = 8;
 /// Generating vector, good for 2¹⁰ to 2²⁰ points and fair below.
 const GENERATORS: [u64; 20] = [
     1, 182_667, 469_891, 498_753, 110_745, 446_979, 250_185, 118_627, 245_333, 283_199, 408_519, 391_023,
@@ -37,86 +38,186 @@ struct Prior {
     sides: [f64; 2],
 }
 
-/// The priors of a state, each cut at its physical range.
-fn priors(unknowns: &Unknowns, state: &State) -> Vec<Prior> {
-    let of = |parameter: Parameter| {
-        let sigma = unknowns.sigma_prior(parameter)?;
-        let [low, high] = match parameter {
-            Parameter::Temperature | Parameter::EnvironmentTemperature(_) => [0.0, f64::INFINITY],
-            Parameter::Lighting(_) => [0.0, unknowns.known_lighting_total().unwrap_or(1.0)],
-            Parameter::Gain | Parameter::Material => [f64::NEG_INFINITY, f64::INFINITY],
+/// The priors of a material's state: Gaussians about a nominal state, cut at a range and renormalised.
+#[derive(Debug, Clone)]
+pub struct PriorSpace {
+    unknowns: Unknowns,
+    nominal: State,
+    lighting_sum: f64,
+    priors: Vec<Prior>,
+}
+
+impl PriorSpace {
+    /// The priors of `unknowns` about `nominal`, cut at `range`.
+    ///
+    /// # Errors
+    /// A range that lies seven deviations or more from the mean.
+    pub fn new(unknowns: &Unknowns, nominal: &State, range: &StateRange) -> Result<Self> {
+        let mut priors = Vec::new();
+        for parameter in unknowns.parameters(nominal.lighting.len()) {
+            let Some(sigma) = unknowns.sigma_prior(parameter) else { continue };
+            let total = unknowns.known_lighting_total().unwrap_or(f64::INFINITY);
+            let [low, high] = match parameter {
+                Parameter::Temperature => range.temperature_k,
+                Parameter::EnvironmentTemperature(_) => [0.0, f64::INFINITY],
+                Parameter::Lighting(_) => [range.lighting[0], range.lighting[1].min(total)],
+                Parameter::Gain | Parameter::Material => [f64::NEG_INFINITY, f64::INFINITY],
+            };
+            let mean = value(nominal, parameter);
+            // A nominal lighting may itself be above 1 by rounding.
+            let sides = [(low - mean) / sigma, ((high - mean) / sigma)];
+            if sides[0] >= REACH || sides[1] <= -REACH {
+                return Err(outside());
+            }
+            let sides = [sides[0].max(-REACH), sides[1].min(REACH)];
+            priors.push(Prior { parameter, mean, sigma, sides });
+        }
+        let (unknowns, nominal) = (unknowns.clone(), nominal.clone());
+        Ok(Self { unknowns, nominal, lighting_sum: range.lighting_sum, priors })
+    }
+
+    /// How many parameters have a prior.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        self.priors.len()
+    }
+
+    /// The parameters that have a prior.
+    pub fn parameters(&self) -> impl Iterator<Item = Parameter> {
+        self.priors.iter().map(|prior| prior.parameter)
+    }
+
+    /// The state below which each prior has the share `shares` of itself; `None` where all together are impossible
+    /// (ΣV above its most). Shares that are uniform in [0, 1) make states that are distributed as the priors.
+    #[must_use]
+    pub fn state(&self, shares: &[f64]) -> Option<State> {
+        let mut state = self.nominal.clone();
+        for (prior, &share) in self.priors.iter().zip(shares) {
+            set(&mut state, prior.parameter, prior.mean + prior.sigma * quantile(share, prior.sides));
+        }
+        self.allowed(&mut state).then_some(state)
+    }
+
+    /// Widths of a step of `share` of each prior about the state at `shares`, in the units of the parameters; at most σ.
+    pub fn widths<'s>(&'s self, shares: &'s [f64], share: f64) -> impl Iterator<Item = f64> + 's {
+        self.priors.iter().zip(shares).map(move |(prior, &at)| {
+            let z = quantile(at, prior.sides);
+            let [low, high] = prior.sides.map(|side| 0.5 * erfc(-side / SQRT_2));
+            let density = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
+            prior.sigma * (share * (high - low) / density).min(1.0)
+        })
+    }
+
+    /// Brings the last lighting factor to a known total; false for a state that is impossible.
+    fn allowed(&self, state: &mut State) -> bool {
+        if !self.unknowns.contains(Nuisance::Lighting) {
+            return true;
+        }
+        match (state.lighting.as_mut_slice(), self.unknowns.known_lighting_total()) {
+            ([others @ .., last], Some(total)) => {
+                *last = total - others.iter().sum::<f64>();
+                *last >= 0.0
+            }
+            // The nominal state may itself be above 1 by rounding.
+            (all, _) => all.iter().sum::<f64>() <= self.lighting_sum + 1e-12,
+        }
+    }
+
+    /// The states of some lattices, with weights of each that add up to 1; the nominal state alone where there are no priors.
+    pub(super) fn lattices(
+        &self,
+        count: usize,
+        points: usize,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Vec<Vec<Node>>> {
+        if self.priors.is_empty() {
+            return Ok(vec![vec![Node { state: self.nominal.clone(), weight: 1.0 }]]);
+        }
+        let of = |_| {
+            let lattice = Lattice::new(points, self.axes(), rng);
+            let states: Vec<State> = (0..points).filter_map(|i| self.state(&lattice.folded(i))).collect();
+            let weight = 1.0 / states.len().max(1) as f64;
+            states.into_iter().map(|state| Node { state, weight }).collect()
         };
-        let mean = value(state, parameter);
-        let sides = [((low - mean) / sigma).max(-REACH), ((high - mean) / sigma).min(REACH)];
-        Some(Prior { parameter, mean, sigma, sides })
-    };
-    unknowns.parameters(state.lighting.len()).into_iter().filter_map(of).collect()
-}
-
-/// How many parameters have a prior.
-pub(super) fn count(unknowns: &Unknowns, state: &State) -> usize {
-    priors(unknowns, state).len()
-}
-
-/// Brings the last lighting factor to a known total; false for a state that physics does not allow.
-fn allowed(unknowns: &Unknowns, state: &mut State) -> bool {
-    if !unknowns.contains(Nuisance::Lighting) {
-        return true;
+        let lattices: Vec<Vec<Node>> = (0..count).map(of).collect();
+        if lattices.iter().all(Vec::is_empty) { Err(outside()) } else { Ok(lattices) }
     }
-    match (state.lighting.as_mut_slice(), unknowns.known_lighting_total()) {
-        ([others @ .., last], Some(total)) => {
-            *last = total - others.iter().sum::<f64>();
-            *last >= 0.0
-        }
-        // The nominal state may itself be above 1 by rounding.
-        (all, _) => all.iter().sum::<f64>() <= 1.0 + 1e-12,
-    }
-}
 
-/// The lattices of `points` states each; weights of each add up to 1, of an empty one to 0. A state alone where there are
-/// no priors.
-pub(super) fn lattices(unknowns: &Unknowns, state: &State, points: usize) -> Result<Vec<Vec<Node>>> {
-    let priors = priors(unknowns, state);
-    if priors.is_empty() {
-        return Ok(vec![vec![Node { state: state.clone(), weight: 1.0 }]]);
-    }
-    let mut random = ChaCha8Rng::seed_from_u64(20);
-    let mut lattices = Vec::with_capacity(SHIFTS);
-    for _ in 0..SHIFTS {
-        let shifts: Vec<f64> = priors.iter().map(|_| random.random_range(0.0..1.0)).collect();
-        let mut nodes = Vec::with_capacity(points);
-        for i in 0..points as u64 {
-            let mut node = Node { state: state.clone(), weight: 1.0 };
-            let axes = priors.iter().zip(&shifts).zip(GENERATORS.iter().cycle());
-            for ((prior, shift), generator) in axes {
-                let place = (i * generator % points as u64) as f64 / points as f64 + shift;
-                let folded = 1.0 - (2.0 * place.fract() - 1.0).abs();
-                set(
-                    &mut node.state,
-                    prior.parameter,
-                    prior.mean + prior.sigma * quantile(folded, prior.sides),
-                );
+    /// States of the product rule with `order` nodes on either side of each mean, weights adding up to 1; the nominal state
+    /// alone where there are no priors.
+    pub(super) fn product(&self, order: usize, limit: usize) -> Result<Vec<Node>> {
+        let mut nodes = vec![Node { state: self.nominal.clone(), weight: 1.0 }];
+        for &prior in &self.priors {
+            let rule = rule(prior, order)?;
+            if nodes.len().saturating_mul(rule.len()) > limit {
+                return Err(Error::malformed(
+                    format!("an average over a prior of more than {limit} nodes"),
+                    "drop a prior, or lower the order",
+                ));
             }
-            if allowed(unknowns, &mut node.state) {
-                nodes.push(node);
-            }
+            let moved = |node: Node| {
+                rule.iter().map(move |&(to, share)| {
+                    let mut next = node.clone();
+                    set(&mut next.state, prior.parameter, to);
+                    next.weight *= share;
+                    next
+                })
+            };
+            nodes = nodes.into_iter().flat_map(moved).collect();
         }
-        let weight = 1.0 / nodes.len().max(1) as f64;
-        nodes.iter_mut().for_each(|node| node.weight = weight);
-        lattices.push(nodes);
+        nodes.retain_mut(|node| self.allowed(&mut node.state));
+        let sum: f64 = nodes.iter().map(|node| node.weight).sum();
+        if nodes.is_empty() || sum <= 0.0 {
+            return Err(outside());
+        }
+        nodes.iter_mut().for_each(|node| node.weight /= sum);
+        Ok(nodes)
     }
-    if lattices.iter().all(Vec::is_empty) { Err(outside()) } else { Ok(lattices) }
+}
+
+/// A rank-1 lattice with a random shift.
+#[derive(Debug, Clone)]
+pub struct Lattice {
+    points: usize,
+    shifts: Vec<f64>,
+}
+
+impl Lattice {
+    /// `points` points in a cube of so many axes.
+    pub fn new(points: usize, axes: usize, rng: &mut ChaCha8Rng) -> Self {
+        Self { points, shifts: (0..axes).map(|_| rng.random_range(0.0..1.0)).collect() }
+    }
+
+    /// How many points there are.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// Point `i`, whose axes begin with number `first` of the generating vector.
+    pub(super) fn point(&self, i: usize, first: usize) -> impl Iterator<Item = f64> {
+        let generators = GENERATORS.iter().cycle().skip(first);
+        self.shifts.iter().zip(generators).map(move |(shift, generator)| {
+            ((i as u64 * generator % self.points as u64) as f64 / self.points as f64 + shift).fract()
+        })
+    }
+
+    /// Point `i` by the baker's map.
+    #[must_use]
+    pub fn folded(&self, i: usize) -> Vec<f64> {
+        self.point(i, 0).map(|place| 1.0 - (2.0 * place - 1.0).abs()).collect()
+    }
 }
 
 fn outside() -> Error {
     Error::malformed(
-        "a prior on the lighting that lies outside its range",
-        "state a nominal lighting with a sum of at most 1",
+        "a prior that lies outside the range of the state",
+        "state a nominal lighting with a sum of at most 1, or widen the range of `alternatives`",
     )
 }
 
 /// Where the standard Gaussian cut at `sides` has the share `share` below.
-fn quantile(share: f64, [low, high]: [f64; 2]) -> f64 {
+pub(super) fn quantile(share: f64, [low, high]: [f64; 2]) -> f64 {
     // From the tail that is the thinner, so that no digits are lost.
     if low + high > 0.0 {
         return -quantile(1.0 - share, [-high, -low]);
@@ -131,37 +232,6 @@ fn quantile(share: f64, [low, high]: [f64; 2]) -> f64 {
 pub(super) struct Node {
     pub(super) state: State,
     pub(super) weight: f64,
-}
-
-/// States of the product rule with `order` nodes on either side of each mean, weights adding up to 1; `state` alone where
-/// there are no priors.
-pub(super) fn product(unknowns: &Unknowns, state: &State, order: usize, limit: usize) -> Result<Vec<Node>> {
-    let mut nodes = vec![Node { state: state.clone(), weight: 1.0 }];
-    for prior in priors(unknowns, state) {
-        let rule = rule(prior, order)?;
-        if nodes.len().saturating_mul(rule.len()) > limit {
-            return Err(Error::malformed(
-                format!("an average over a prior of more than {limit} nodes"),
-                "drop a prior, or lower the order",
-            ));
-        }
-        let moved = |node: Node| {
-            rule.iter().map(move |&(to, share)| {
-                let mut next = node.clone();
-                set(&mut next.state, prior.parameter, to);
-                next.weight *= share;
-                next
-            })
-        };
-        nodes = nodes.into_iter().flat_map(moved).collect();
-    }
-    nodes.retain_mut(|node| allowed(unknowns, &mut node.state));
-    let sum: f64 = nodes.iter().map(|node| node.weight).sum();
-    if nodes.is_empty() || sum <= 0.0 {
-        return Err(outside());
-    }
-    nodes.iter_mut().for_each(|node| node.weight /= sum);
-    Ok(nodes)
 }
 
 /// Gauss–Legendre on either side of the mean, weighted by the Gaussian and normalised.

@@ -9,8 +9,8 @@ const HEADER: [&str; 5] = [
     "photons_without_prior_nearest",
     "photons_without_prior_local",
     "photons_hybrid_bound",
-    "photons_average_nearest",
-    "photons_average_local",
+    "photons_average_lower",
+    "photons_average_upper",
 ];
 
 fn table(first: &[&str], rows: &Rows) -> Table {
@@ -35,12 +35,13 @@ pub(super) fn temperatures(name: &'static str, lighting: f64, most: f64, rows: &
         Axis::linear("target temperature (°C)"),
         Axis::log("photons required").range(1e2, most),
     )
-    .subtitle("Surroundings at 20 °C, 536 bands, temperature and lighting unknown; for Φ(1) = 84.1 % right.")
+    .subtitle("Surroundings at 20 °C, 536 bands, temperature (± 2 K) and lighting (± 0.1) unknown; for Φ(1) = 84.1 % right.")
     .series(line("no prior, nearest distance", |n| n.nearest).colour(0))
     .series(line("no prior, local distance", |n| n.local).style(Style::Dashed).colour(0))
-    .series(line("2 K prior, average of the nearest: what a user sees", |n| n.average_nearest).colour(1))
+    .series(line("priors, average: enough", |n| n.average_upper).colour(1))
+    .series(line("priors, average: not enough", |n| n.average_lower).style(Style::Dashed).colour(1))
     .series(
-        line("2 K prior, hybrid bound (of estimates, not of decisions)", |n| n.bound)
+        line("priors, hybrid bound (of estimates, not of decisions)", |n| n.bound)
             .style(Style::Dashed)
             .colour(2),
     )
@@ -63,9 +64,11 @@ pub(super) fn widths(rows: &Rows) -> Plot {
         Axis::log("deviation of the prior on the temperature (K)"),
         Axis::log("photons required"),
     )
-    .subtitle("Target and surroundings at 20 °C, V = 1; without a prior no number of photons suffices.")
-    .series(line("average of the nearest: what a user sees", |n| n.average_nearest).colour(1))
-    .series(line("average of the local", |n| n.average_local).style(Style::Dashed).colour(1))
+    .subtitle(
+        "Target and surroundings at 20 °C, V = 1 and known; without a prior no number of photons suffices.",
+    )
+    .series(line("average: enough", |n| n.average_upper).colour(1))
+    .series(line("average: not enough", |n| n.average_lower).style(Style::Dashed).colour(1))
     .series(line("hybrid bound (of estimates, not of decisions)", |n| n.bound).style(Style::Dashed).colour(2))
     .series(Series::line("slope −2", x.clone(), slope).style(Style::Dotted).colour(6));
     Plot { name: "prior_width".into(), figure: figure.into(), table: table(&["prior_k"], rows) }

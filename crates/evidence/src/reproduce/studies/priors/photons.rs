@@ -2,17 +2,21 @@
 
 use crate::reproduce::studies::paper_scene::PaperScene;
 use hadar::error::Result;
-use hadar::fisher::Nuisance;
-use hadar::identifiability::bayes::{BayesianBound, Distances, Pair};
+use hadar::fisher::{Nuisance, Unknowns};
+use hadar::identifiability::bayes::{BayesianBound, Pair, PriorSpace};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
+use hadar::scene::State;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
-use hadar_simulate::sequential::Plan;
+use hadar_simulate::average::AverageScene;
+use hadar_simulate::draws::Draws;
 
 /// Deviation of the prior of the curves, K.
 pub(super) const PRIOR_K: f64 = 2.0;
+/// Deviation of the prior on the lighting of the curves.
+pub(super) const PRIOR_LIGHTING: f64 = 0.1;
 /// Temperature of the surroundings, °C.
 pub(super) const AMBIENT_CELSIUS: f64 = 20.0;
 
@@ -22,13 +26,13 @@ pub(super) struct Photons {
     pub(super) nearest: Option<f64>,
     pub(super) local: Option<f64>,
     pub(super) bound: Option<f64>,
-    pub(super) average_nearest: Option<f64>,
-    pub(super) average_local: Option<f64>,
+    pub(super) average_lower: Option<f64>,
+    pub(super) average_upper: Option<f64>,
 }
 
 impl Photons {
     pub(super) fn all(&self) -> [Option<f64>; 5] {
-        [self.nearest, self.local, self.bound, self.average_nearest, self.average_local]
+        [self.nearest, self.local, self.bound, self.average_lower, self.average_upper]
     }
 }
 
@@ -49,45 +53,60 @@ impl Task {
         Ok(Self { scene, skin, aluminium })
     }
 
-    pub(super) fn photons(&self, celsius: f64, lighting: f64, prior_k: f64) -> Result<Photons> {
+    /// With priors of `prior_k` on the temperature and, where it is not known, of `prior_lighting` on the lighting.
+    pub(super) fn photons(
+        &self,
+        celsius: f64,
+        lighting: f64,
+        prior_k: f64,
+        prior_lighting: Option<f64>,
+    ) -> Result<Photons> {
         let scene = &self.scene;
         let state = scene.state(celsius, lighting)?;
         let plain = scene.distances(&self.skin, &self.aluminium, &state)?;
         // Distances below this are rounding.
         let required = |distance: f64| (distance > 1e-12).then(|| distance.powi(-2));
-        let unknowns = scene.unknowns.clone().prior(Nuisance::Temperature, prior_k)?;
-        // A single prior, to all digits.
-        let bayes = BayesianBound::new(&scene.bands, &scene.surroundings, unknowns).with_order(32)?;
-        let pair = Pair { emissivity: &self.skin, alternative: &self.aluminium, state: &state };
-        let average = |distances| {
-            let found =
-                bayes.photons_for_average(pair, detection::probability(1.0), distances, &|_, _| ())?;
-            Ok::<_, hadar::Error>(found.map(|found| found.photons))
-        };
+        let bayes = BayesianBound::new(&scene.bands, &scene.surroundings, unknowns(prior_k, prior_lighting)?);
+        let pair = self.pair(&state);
+        let average = bayes.photons_for_average(pair, detection::probability(1.0), &|_, _| ())?;
         Ok(Photons {
             nearest: required(plain.nearest),
             local: required(plain.local),
             bound: bayes.photons_required(pair, 1.0)?,
-            average_nearest: average(Distances::Nearest(scene.range))?,
-            average_local: average(Distances::Local)?,
+            average_lower: average.map(|average| average.lower),
+            average_upper: average.and_then(|average| average.upper),
         })
     }
 
-    /// Share of right decisions with `photons` photons from a target at just this temperature, 95 % within ± 0.006.
+    fn pair<'t>(&'t self, state: &'t State) -> Pair<'t> {
+        Pair { emissivity: &self.skin, alternative: &self.aluminium, state }
+    }
+
+    /// Share of right decisions of the Bayes test with `photons` photons, both states drawn from the priors: ± 0.005, 95 %.
     pub(super) fn simulated(&self, celsius: f64, lighting: f64, photons: f64, seed: u64) -> Result<f64> {
-        let scene = PaperScene {
-            unknowns: self.scene.unknowns.clone().prior(Nuisance::Temperature, PRIOR_K)?,
-            ..self.scene.clone()
-        };
+        let scene = &self.scene;
         let state = scene.state(celsius, lighting)?;
-        let kappa = photons / scene.signal(&self.skin, &state).iter().sum::<f64>();
-        let plan = Plan::new(seed, 0.006, 100_000)?;
-        let found = scene.decisions(kappa, &Statistics::Poisson).balanced(
-            (&self.skin, &self.aluminium),
-            &state,
-            &plan,
-        )?;
-        Ok(found.probability)
+        let prior =
+            PriorSpace::new(&unknowns(PRIOR_K, Some(PRIOR_LIGHTING))?, &state, &StateRange::default())?;
+        let test = AverageScene {
+            bands: &scene.bands,
+            surroundings: &scene.surroundings,
+            pair: self.pair(&state),
+            priors: &[prior.clone(), prior],
+            lighting_total_known: false,
+            counts_per_radiance: photons / scene.signal(&self.skin, &state).iter().sum::<f64>(),
+            statistics: &Statistics::Poisson,
+        };
+        let draws = |means: &[f64]| Draws::new(&Statistics::Poisson, means);
+        Ok(test.decide(seed, 10_000, &draws)?.probability)
+    }
+}
+
+fn unknowns(prior_k: f64, prior_lighting: Option<f64>) -> Result<Unknowns> {
+    let temperature = Unknowns::new([Nuisance::Temperature])?.prior(Nuisance::Temperature, prior_k)?;
+    match prior_lighting {
+        Some(sigma) => temperature.with(Nuisance::Lighting).prior(Nuisance::Lighting, sigma),
+        None => Ok(temperature),
     }
 }
 
