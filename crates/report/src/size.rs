@@ -99,7 +99,7 @@ fn identifiability(
     pair: &PairResult,
     surface: &Surface,
 ) -> Result<Option<Plot>> {
-    if result.requirement.photons.is_none() {
+    if result.requirement.photons_bounds[0].is_none() {
         return Ok(None);
     }
     let marks = InformationMarks {
@@ -134,7 +134,7 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
 
 /// Photons of the camera, and the number without other noise that reaches the same statistical distance.
 fn collected(result: &Sizing, pair: &PairResult) -> Option<Collected> {
-    let (camera, needed) = (result.camera.as_ref()?, result.requirement.photons?);
+    let (camera, needed) = (result.camera.as_ref()?, result.requirement.photons_bounds[0]?);
     let margin = pair.statistical_distance? / result.requirement.distance;
     Some(Collected {
         camera: camera.camera.name.clone(),
@@ -144,8 +144,15 @@ fn collected(result: &Sizing, pair: &PairResult) -> Option<Collected> {
 }
 
 fn requirement(result: &Sizing) -> Table {
-    let mut table =
-        Table::new(["reading", "distance_per_sqrt_photon", "photons", "hardware_m2_s", "decides"]);
+    let mut table = Table::new([
+        "reading",
+        "distance_per_sqrt_photon",
+        "photons",
+        "hardware_m2_s",
+        "decides",
+        "photons_proved",
+        "hardware_proved_m2_s",
+    ]);
     let pair = rows::limiting(result);
     let (n, h) = (result.requirement.photons_by, result.requirement.hardware_by_m2_s);
     let distances = pair.map_or([0.0; 3], |pair| {
@@ -158,7 +165,17 @@ fn requirement(result: &Sizing) -> Table {
     ];
     for ((reading, photons, hardware), distance) in readings.into_iter().zip(distances) {
         let decides = if reading == result.requirement.by { "yes" } else { "no" };
-        let row = [reading.into(), number(distance), optional(photons), optional(hardware), decides.into()];
+        let proved = result.requirement.photons.zip(result.requirement.hardware_m2_s);
+        let proved = proved.filter(|_| reading == result.requirement.by);
+        let row = [
+            reading.into(),
+            number(distance),
+            optional(photons),
+            optional(hardware),
+            decides.into(),
+            optional(proved.map(|proved| proved.0)),
+            optional(proved.map(|proved| proved.1)),
+        ];
         table.push(row.to_vec());
     }
     table

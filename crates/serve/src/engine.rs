@@ -4,6 +4,7 @@ use crate::edit::{self, Edit};
 use crate::form::{self, Form};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::inputs::inputs_of;
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
@@ -12,7 +13,7 @@ use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
-use hadar_report::text::significant;
+use hadar_report::text::{between, photons_between, significant};
 use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
 use hadar_report::words::warnings::of_code;
@@ -266,9 +267,12 @@ fn pair_shown(pair: &PairResult) -> Pair {
     Pair {
         alternative: pair.alternative.clone(),
         distance_nearest: significant(pair.distance_nearest, 3),
-        photons_required: pair.photons_required.map_or("no number suffices".into(), |n| significant(n, 3)),
-        statistical_distance: pair.statistical_distance.map(|d| significant(d, 3)),
-        detection_probability: pair.statistical_distance.map(|d| probability(d, 4)),
+        photons_required: photons_between(pair.photons_required_bounds),
+        statistical_distance: pair.statistical_distance_bounds.map(|ends| between(ends, 3)),
+        detection_probability: pair.statistical_distance.map(|d| match pair.detection_probability_bounds {
+            Some(of_few) if pair.decided_by != Some(DecisionLaw::Gaussian) => between(of_few, 4),
+            _ => probability(d, 4),
+        }),
         told_apart: pair.told_apart,
     }
 }

@@ -8,5 +8,5 @@ pub(crate) mod pairs;
 mod stats;
 
 pub use footing::with_settings;
-pub use numbers::{quantity, significant};
+pub use numbers::{between, photons_between, quantity, significant};
 pub use stats::stats;

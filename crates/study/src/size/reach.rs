@@ -67,7 +67,11 @@ impl<'a> Solvers<'a> {
             study.book_local(&unknowns, 1);
             let local = self.local.with_counting(target, other, &study.state, counting)?;
             let distance = local.distance;
-            let found = Statistical { distance, lower: distance, relative_error: Some(local.relative_error + integrals(distance)) };
+            let found = Statistical {
+                distance,
+                lower: distance,
+                relative_error: Some(local.relative_error + integrals(distance)),
+            };
             return Ok((found, None));
         }
         let nearest = match start {

@@ -11,13 +11,15 @@ pub(crate) fn photons(count: Option<f64>) -> String {
 }
 
 /// What is between two ends: one number where they are the same in the digits shown.
-pub(crate) fn between([low, high]: [f64; 2], digits: u32) -> String {
+#[must_use]
+pub fn between([low, high]: [f64; 2], digits: u32) -> String {
     let [from, to] = [low, high].map(|end| significant(end, digits as usize));
     if from == to || low >= SAME * high { to } else { format!("{from} to {to}") }
 }
 
 /// Photons that a task takes: the least number that may do, and that which is proved to.
-pub(crate) fn photons_between([least, enough]: [Option<f64>; 2]) -> String {
+#[must_use]
+pub fn photons_between([least, enough]: [Option<f64>; 2]) -> String {
     match (least, enough) {
         (Some(least), Some(enough)) => between([least, enough], 3),
         (Some(least), None) => format!("from {}", significant(least, 3)),
