@@ -5,7 +5,9 @@ use hadar::material::Library;
 use hadar_scenario::Scenario;
 use hadar_study::Study;
 
-/// A scenario with its materials.
+/// A scenario with its materials; grids are sampled at the centres of their bands, as in the paper.
 pub(super) fn study(toml: &str) -> Result<Study> {
-    Study::new(&Scenario::from_toml(toml, None)?, &Library::embedded()?)
+    let mut scenario = Scenario::from_toml(toml, None)?;
+    scenario.bands.integrate = Some(false);
+    Study::new(&scenario, &Library::embedded()?)
 }
