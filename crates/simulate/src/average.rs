@@ -6,8 +6,9 @@
 //!
 //! The average is over a lattice of states θ_j, each of which stands for its cell: with ln p quadratic over the cell, of score s
 //! and information H in units of the cell's deviation (width/√12 along each axis),
-//! ln p̄_j = ln p(n | θ_j) + ½ sᵀ(1 + H)⁻¹s − ½ ln det(1 + H).
-//! This is not exact, and makes the test no better than the best one. How much the lattice matters is told by the share of
+//! ln p̄_j = ln p(n | θ_j) + (t − ½t²) sᵀ(1 + H)⁻¹s − ½ ln det(1 + H),
+//! t = 1 unless the most likely place (1 + H)⁻¹s is beyond [`FARTHEST`] deviations, and then what brings it back to there: farther
+//! away nothing is quadratic. This is not exact, and makes the test no better than the best one. How much the lattice matters is told by the share of
 //! decisions that every second state alone would change.
 //!
 //! Counts are taken about the mean n₀ of the nominal state: ln p(n | θ) = c + Σ a_w(n − n₀)_w + Σ b_w(n − n₀)²_w, b = 0 but for normal counts,
@@ -30,6 +31,8 @@ const STATES: usize = 1024;
 const MOST_DRAWS: usize = 100_000;
 /// Terms of a likelihood this much below its largest, in logarithm, are none.
 const NEGLIGIBLE: f64 = 40.0;
+/// Deviations of a cell beyond which a state does not stand for it.
+const FARTHEST: f64 = 4.0;
 /// Least mean count that has a logarithm.
 const DARK: f64 = 1e-300;
 
@@ -80,6 +83,27 @@ struct Node {
     square: Vec<f64>,
     /// Rows L⁻¹s of the score, LLᵀ = 1 + H, and what to take from them.
     scores: Vec<(Vec<f64>, f64)>,
+    /// L, row by row.
+    lower: Vec<Vec<f64>>,
+}
+
+impl Node {
+    /// ln p̄ of counts less those of the nominal state.
+    fn log(&self, off: &[f64]) -> f64 {
+        let mut log = self.constant + dot(&self.linear, off);
+        if !self.square.is_empty() {
+            log += self.square.iter().zip(off).map(|(b, n)| b * n * n).sum::<f64>();
+        }
+        let along: Vec<f64> = self.scores.iter().map(|(row, taken)| dot(row, off) - taken).collect();
+        let mut place = vec![0.0; along.len()];
+        for i in (0..along.len()).rev() {
+            let after: f64 = (i + 1..along.len()).map(|l| self.lower[l][i] * place[l]).sum();
+            place[i] = (along[i] - after) / self.lower[i][i];
+        }
+        let far = place.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let t = if far > FARTHEST { FARTHEST / far } else { 1.0 };
+        log + (t - 0.5 * t * t) * along.iter().map(|w| w * w).sum::<f64>()
+    }
 }
 
 impl AverageScene<'_> {
@@ -188,7 +212,13 @@ impl AverageScene<'_> {
     fn node(&self, jacobian: &Jacobian<'_>, widths: &[f64], middle: &[f64]) -> Node {
         let kappa = self.counts_per_radiance;
         let means: Vec<f64> = jacobian.signal().iter().map(|signal| (signal * kappa).max(DARK)).collect();
-        let mut node = Node { constant: 0.0, linear: Vec::new(), square: Vec::new(), scores: Vec::new() };
+        let mut node = Node {
+            constant: 0.0,
+            linear: Vec::new(),
+            square: Vec::new(),
+            scores: Vec::new(),
+            lower: Vec::new(),
+        };
         for (band, (&mean, &middle)) in means.iter().zip(middle).enumerate() {
             let ratio = (mean / middle.max(DARK)).ln();
             match self.statistics {
@@ -220,15 +250,15 @@ impl AverageScene<'_> {
             slope.iter().enumerate().map(by).collect::<Vec<f64>>()
         };
         let scores: Vec<Vec<f64>> = slopes.iter().map(weighed).collect();
-        let mut lower: Vec<Vec<f64>> = Vec::new();
         for (i, score) in scores.iter().enumerate() {
             let mut row = score.clone();
             let mut factors = Vec::with_capacity(i + 1);
             for j in 0..=i {
                 let mut sum = f64::from(u8::from(i == j)) + dot(score, &slopes[j]);
-                sum -=
-                    (0..j).map(|l| factors[l] * if i == j { factors[l] } else { lower[j][l] }).sum::<f64>();
-                factors.push(if i == j { sum.max(1.0).sqrt() } else { sum / lower[j][j] });
+                sum -= (0..j)
+                    .map(|l| factors[l] * if i == j { factors[l] } else { node.lower[j][l] })
+                    .sum::<f64>();
+                factors.push(if i == j { sum.max(1.0).sqrt() } else { sum / node.lower[j][j] });
             }
             for (factor, (earlier, _)) in factors.iter().zip(&node.scores) {
                 row.iter_mut().zip(earlier).for_each(|(row, earlier)| *row -= factor * earlier);
@@ -240,7 +270,7 @@ impl AverageScene<'_> {
                 row.iter().zip(means.iter().zip(middle)).map(|(r, (mean, middle))| r * (mean - middle));
             let taken = taken.sum();
             node.scores.push((row, taken));
-            lower.push(factors);
+            node.lower.push(factors);
         }
         node
     }
@@ -248,14 +278,7 @@ impl AverageScene<'_> {
 
 /// Logarithms of the mean likelihood over all states, and over every second one.
 fn log_means(nodes: &[Node], off: &[f64]) -> [f64; 2] {
-    let logs = nodes.iter().map(|node| {
-        let mut log = node.constant + dot(&node.linear, off);
-        if !node.square.is_empty() {
-            log += node.square.iter().zip(off).map(|(b, n)| b * n * n).sum::<f64>();
-        }
-        log + node.scores.iter().map(|(row, taken)| 0.5 * (dot(row, off) - taken).powi(2)).sum::<f64>()
-    });
-    let logs: Vec<f64> = logs.collect();
+    let logs: Vec<f64> = nodes.iter().map(|node| node.log(off)).collect();
     let of = |step: usize| {
         let some = || logs.iter().step_by(step);
         let most = some().fold(f64::NEG_INFINITY, |a, b| a.max(*b));

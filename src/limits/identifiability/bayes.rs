@@ -208,7 +208,7 @@ impl<'a> BayesianBound<'a> {
                 let miss = mixtures.missed(1.0);
                 let [few, error] = mixtures.least_of_few(1.0);
                 let least = if photons < FEW_PHOTONS { few - error } else { miss.least - miss.errors[0] };
-                let reached = miss.reached.filter(|_| photons >= FEW_PHOTONS);
+                let reached = miss.reached.filter(|_| photons >= FEW_PHOTONS * (1.0 - 1e-9));
                 let lower = reached.map(|reached| (1.0 - reached - miss.errors[1]).max(0.5));
                 let upper = 1.0 - least.clamp(0.0, 0.5);
                 found = Some(AverageProbability { lower, upper, states: mixtures.states() });

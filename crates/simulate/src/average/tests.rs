@@ -47,7 +47,8 @@ fn the_bayes_test_keeps_the_bracket() {
             1 + usize::from(two),
             needed.lower
         );
-        assert!(upper < 1.5 * needed.lower, "{needed:?}");
+        // Below 300 photons there is the rigorous limit alone.
+        assert!(upper < 1.5 * needed.lower || needed.lower < 300.0, "{needed:?}");
         for (photons, sides) in [(needed.lower, [0.0, wanted]), (upper, [wanted, 1.0])] {
             let counting = Counting { counts_per_radiance: photons / total, var_added: Vec::new() };
             let test = AverageScene {
@@ -103,7 +104,8 @@ fn a_narrow_prior_makes_it_the_test_of_two_points() {
         let excess =
             signals[0].iter().enumerate().map(|(w, s)| statistics.variance(w, s * kappa) - s * kappa);
         let counting = Counting { counts_per_radiance: kappa, var_added: excess.collect() };
-        let exact = detection::probability(detection::half_separation(&signals[0], &signals[1], &counting));
+        let means = signals.each_ref().map(|signal| signal.iter().map(|s| s * kappa).collect::<Vec<f64>>());
+        let exact = detection::probability(detection::half_separation(&means[0], &means[1], &counting));
         let test = AverageScene {
             bands: &bands,
             surroundings: &surroundings,
