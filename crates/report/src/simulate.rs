@@ -1,6 +1,7 @@
 //! The files of `simulate`: scenario, tables and plots.
 
 pub mod figures;
+mod spectra;
 pub mod thermometry;
 
 pub use crate::words::simulate::text;
@@ -22,6 +23,7 @@ pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, o
     bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     bundle.add_table("simulation.csv", figures::simulation_table(result))?;
     bundle.add_table("confusion.csv", confusion(result))?;
+    spectra::add(&mut bundle, result)?;
     bundle.add_warnings(&result.warnings)?;
     let pair = pair(result);
     let plot = match result.points.as_slice() {

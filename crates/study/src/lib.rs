@@ -83,8 +83,8 @@ pub use shortfall::Shortfall;
 pub use sight::Sight;
 pub use simulate::{
     FIXED_EMISSIVITY, ImagerErrors, NoiseCurve, NoiseCurves, PhotonLaw, Reader, SimulatedClass,
-    SimulatedPerformance, SimulatedPoint, Simulation, SimulationAsked, SimulationPlan, Standing, Thermometry,
-    ThermometryRow, true_temperatures,
+    SimulatedPerformance, SimulatedPoint, Simulation, SimulationAsked, SimulationPlan, Standing, TestSpectra,
+    Thermometry, ThermometryRow, true_temperatures,
 };
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
