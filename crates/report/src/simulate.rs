@@ -2,6 +2,7 @@
 
 pub mod average;
 pub mod figures;
+mod spectra;
 pub mod thermometry;
 
 pub use crate::words::simulate::text;
@@ -23,6 +24,7 @@ pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, o
     bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     bundle.add_table("simulation.csv", figures::simulation_table(result))?;
     bundle.add_table("confusion.csv", confusion(result))?;
+    spectra::add(&mut bundle, result)?;
     bundle.add_warnings(&result.warnings)?;
     let pair = pair(result);
     let plot = match result.points.as_slice() {

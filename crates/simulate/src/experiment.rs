@@ -166,6 +166,14 @@ impl Experiment<'_> {
         Ok((performances, learnt))
     }
 
+    /// The spectra that classifiers are judged on.
+    ///
+    /// # Errors
+    /// As [`Parts::of`] and [`LabelledSpectra::draw`].
+    pub fn test_spectra(&self, design: &Design) -> Result<LabelledSpectra> {
+        LabelledSpectra::draw(self.draws, Parts::of(design.per_class)?.test, design.seed)
+    }
+
     /// The likelihood ratio of two classes from draws of itself.
     fn without_spectra(&self, design: &Design, tests: usize) -> Result<Performance> {
         let ([first, second], [Method::LikelihoodRatio], []) =

@@ -86,7 +86,7 @@ pub use sight::Sight;
 pub use simulate::{
     AveragePoint, AverageSimulation, FIXED_EMISSIVITY, ImagerErrors, NoiseCurve, NoiseCurves, PhotonLaw,
     Reader, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationAsked,
-    SimulationPlan, Standing, Thermometry, ThermometryRow, true_temperatures,
+    SimulationPlan, Standing, TestSpectra, Thermometry, ThermometryRow, true_temperatures,
 };
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,

@@ -11,6 +11,7 @@ mod solve;
 mod streamed;
 mod subject;
 mod verdict;
+mod verified;
 mod watched;
 mod witness;
 
@@ -178,7 +179,7 @@ impl RangeStudy {
             maps.pictures = self.pictures(pair);
             maps.brightest = self.brightest(pair)?;
         }
-        let solve_for = self.solutions(&informed, &ground, &windows, &variances)?;
+        let solve_for = self.solutions(&informed, shape, (&ground, &windows), &variances)?;
         // The views that are matched have no diffraction.
         let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
         let rows = self.line_rows(&maps.rows);

@@ -25,13 +25,14 @@ pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, Therm
 
 use super::{Study, Warning};
 use hadar::demand::{self, Ledger, Thing, Work};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar::fisher::Unknowns;
 use hadar::instrument::Camera;
 use hadar::parallel;
 use hadar_simulate::classifier::{SavedModel, Trained};
 use hadar_simulate::draws::{GENERATOR, LARGEST_EXACT};
 use hadar_simulate::experiment::Design;
+use hadar_simulate::spectra::{LabelledSpectra, Parts};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Chance that an optimal classifier is called better than the limit anywhere in one simulation.
@@ -64,6 +65,8 @@ pub struct SimulationPlan {
     pub design: Design,
     /// Classifiers trained before.
     pub models: Vec<SavedModel>,
+    /// Whether the spectra of the test come with the result.
+    pub save_spectra: bool,
 }
 
 /// A class of spectra.
@@ -108,6 +111,25 @@ pub struct SimulatedPoint {
     pub normal_error: Option<f64>,
     /// What each classifier achieved.
     pub performances: Vec<SimulatedPerformance>,
+    /// The spectra on which they were judged, where they were asked for.
+    #[serde(skip)]
+    pub spectra: Option<TestSpectra>,
+}
+
+/// Spectra of a test with all that a decision between their classes needs.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TestSpectra {
+    /// Counts, the classes in turn.
+    pub counts: LabelledSpectra,
+    /// Seed that this experiment has of its own.
+    pub seed: u64,
+    /// Mean counts of each class, band by band.
+    pub means: Vec<Vec<f64>>,
+    /// Variance of the reading noise of each band, counts².
+    pub var_reading: Vec<f64>,
+    /// Centres of the bands, cm⁻¹.
+    pub centres_cm1: Vec<f64>,
 }
 
 /// What came of a simulation.
@@ -175,6 +197,9 @@ impl Study {
         demand::add(&self.looked_up);
         let rivals = self.rivals(&plan.against)?;
         let photons = self.photon_numbers(plan, &rivals)?;
+        if plan.save_spectra {
+            self.check_saved(plan, photons.len(), rivals.len() + 1)?;
+        }
         let names: Vec<String> =
             std::iter::once(&self.target).chain(rivals.iter().copied()).map(|s| s.name.clone()).collect();
         let centres = self.band_centres_cm1();
@@ -227,6 +252,26 @@ impl Study {
         ))
     }
 
+    /// Makes sure that the spectra of the test are not too many to be saved.
+    fn check_saved(&self, plan: &SimulationPlan, experiments: usize, classes: usize) -> Result<()> {
+        if plan.design.skip_spectra {
+            let found = "--save-spectra with --skip-spectra, which draws none";
+            return Err(Error::malformed(found, "leave out one of them"));
+        }
+        let Parts { test, .. } = Parts::of(plan.design.per_class)?;
+        let each = (experiments * classes * self.bands.len()) as u64;
+        let counts = each.saturating_mul(test.end - test.start);
+        if counts > MOST_SAVED {
+            let found = format!("{counts} counts are too many to be saved, more than {MOST_SAVED}");
+            let instead = format!(
+                "ask for at most {} with --spectra, or for fewer experiments",
+                2 * (MOST_SAVED / each)
+            );
+            return Err(Error::malformed(found, instead));
+        }
+        Ok(())
+    }
+
     /// Makes sure that a saved model is one of these bands, and of the target against these alternatives.
     ///
     /// # Errors
@@ -238,7 +283,7 @@ impl Study {
         saved.check_fits(&self.band_centres_cm1(), &names)
     }
 
-    fn band_centres_cm1(&self) -> Vec<f64> {
+    pub(super) fn band_centres_cm1(&self) -> Vec<f64> {
         self.bands.bands().iter().map(|band| band.center_cm1).collect()
     }
 
@@ -286,6 +331,8 @@ impl Study {
     }
 }
 
+/// Most counts of spectra that are saved, 160 MB.
+const MOST_SAVED: u64 = 20_000_000;
 /// Fewer training spectra of a class than this get a warning, and so does a saved model whose photons differ by more.
 const FEW_SPECTRA: usize = 20;
 const OTHER_PHOTONS: f64 = 0.01;

@@ -53,6 +53,9 @@ pub(super) struct SimulateArgs {
     /// A saved classifier that takes part as it is; may be given several times
     #[arg(long, value_name = "FILE", help_heading = "Classifiers")]
     model: Vec<PathBuf>,
+    /// Write the spectra that classifiers are judged on into the report of --out, with the classes' states and mean counts
+    #[arg(long, help_heading = "Spectra")]
+    save_spectra: bool,
     /// Draw the likelihood ratio itself instead of spectra: far quicker where it alone takes part, and as good
     #[arg(long, help_heading = "Spectra")]
     skip_spectra: bool,
@@ -82,7 +85,7 @@ pub(super) struct SimulateArgs {
 const JUDGING: [&str; 6] = ["classifiers", "sweep", "save_models", "model", "skip_spectra", "thermometry"];
 
 /// Flags that say how classifiers are judged, and nothing to thermometry.
-const CLASSIFYING: [&str; 10] = [
+const CLASSIFYING: [&str; 11] = [
     "classifiers",
     "photons",
     "sweep",
@@ -93,6 +96,7 @@ const CLASSIFYING: [&str; 10] = [
     "model",
     "check",
     "skip_spectra",
+    "save_spectra",
 ];
 
 /// Laws of photons, as a flag.
@@ -118,6 +122,10 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
             let found = "--save-models and --out name one folder, where one would replace the other";
             return Err(Error::malformed(found, "name a folder within, such as --save-models DIR/models"));
         }
+    }
+    if args.save_spectra && global.out.is_none() {
+        let found = "--save-spectra writes into the folder of a report, and there is none";
+        return Err(Error::malformed(found, "name one with --out"));
     }
     let (plan, planning) = ledger_of(|| plan(args, &study, global))?;
     if args.check && (plan.against.len() > 1 || plan.law == PhotonLaw::FixedTotal) {
@@ -197,6 +205,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
         against: args.against.clone(),
         models: args.model.clone(),
         skip_spectra: args.skip_spectra,
+        save_spectra: args.save_spectra,
         seed: global.seed,
     })
 }

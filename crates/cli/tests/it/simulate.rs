@@ -130,6 +130,50 @@ fn a_seed_brings_everything_back() {
     assert_ne!(other["points"][0]["performances"], one["points"][1]["performances"]);
 }
 
+/// The saved spectra decide anew, by Σ n ln(b/a) − (b − a) written here, as often as it is printed; the file depends on the seed alone.
+#[test]
+fn saved_spectra_can_be_judged_by_anybody() {
+    let folder = Folder::with(THREE);
+    let saved = |out: &str, threads: &str| {
+        let flags = ["--spectra", "4000", "--photons", "2e5,8e5", "--classifiers", "likelihood-ratio"];
+        let found = simulate(
+            &folder,
+            &[&flags[..], &["--save-spectra", "--out", out, "--threads", threads]].concat(),
+        );
+        (found, fs::read_to_string(folder.path().join(out).join("spectra.csv")).unwrap())
+    };
+    let ((found, spectra), (_, again)) = (saved("one", "1"), saved("three", "3"));
+    assert!(spectra == again);
+    let rows = |text: &str| -> Vec<Vec<String>> {
+        text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    };
+    let value = |cell: &String| cell.parse::<f64>().unwrap();
+    let classes = rows(&fs::read_to_string(folder.path().join("one/spectra_classes.csv")).unwrap());
+    assert_eq!(classes.len(), 2 * 2 * 3);
+    for (experiment, point) in found["points"].as_array().unwrap().iter().enumerate() {
+        let means = |class: usize| -> Vec<f64> {
+            let own = &classes[6 * experiment + 3 * class..][..3];
+            own.iter().map(|row| value(&row[8])).collect()
+        };
+        let (a, b) = (means(0), means(1));
+        let mut right = [0.0; 2];
+        let all = rows(&spectra);
+        let own = &all[4000 * experiment..4000 * (experiment + 1)];
+        for row in own {
+            let class: usize = row[2].parse().unwrap();
+            let ratio: f64 = (0..3).map(|w| value(&row[3 + w]) * (b[w] / a[w]).ln() - (b[w] - a[w])).sum();
+            right[class] += f64::from(u8::from((ratio > 0.0) == (class == 1))) / 2000.0;
+        }
+        let printed = number(&performance(point, "likelihood-ratio")["accuracy"]);
+        // A spectrum at the threshold may fall to the other side by rounding.
+        assert!((0.5 * (right[0] + right[1]) - printed).abs() < 3e-4, "{right:?} {printed}");
+    }
+    let many = ["--spectra", "400000", "--photons", "8e5", "--classifiers", "likelihood-ratio"];
+    simulate(&folder, &[&many[..], &["--save-spectra", "--out", "many"]].concat());
+    let bytes = fs::read(folder.path().join("many/spectra.npy")).unwrap();
+    assert_eq!(bytes.len(), 128 + 8 * 200_000 * 2 * 3);
+}
+
 /// A classifier trained on four times the spectra has seen none of the test: it stays below the limit.
 #[test]
 fn a_model_of_a_larger_run_has_not_seen_the_test() {
@@ -223,6 +267,9 @@ fn every_mistake_is_one_line() {
             vec!["--skip-spectra", "--classifiers", "network"],
             "spectra can be skipped for the likelihood ratio",
         ),
+        (vec!["--save-spectra"], "name one with --out"),
+        (vec!["--save-spectra", "--out", "x", "--skip-spectra"], "leave out one of them"),
+        (vec!["--save-spectra", "--out", "x", "--spectra", "90000000"], "too many to be saved"),
         (vec!["--thermometry", "30 degC..40 degC"], "thermometry without a camera"),
         (vec!["--thermometry", "30..40"], "--thermometry: `30` is a number without a unit"),
         (vec!["--thermometry", "30 degC..40 degC", "--temperatures", "1"], "--temperatures is 1"),

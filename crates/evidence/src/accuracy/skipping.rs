@@ -212,6 +212,7 @@ fn classifier(bench: &Bench, study: &Study, per_class: usize) -> Result<Skipped>
             against: Vec::new(),
             design,
             models: Vec::new(),
+            save_spectra: false,
         };
         let (result, _) = study.simulate(&plan, &|_, _| ())?;
         demand::add(&result.stats);

@@ -112,7 +112,15 @@ fn experiments(
         skip_spectra: false,
     };
     let (law, against) = (PhotonLaw::Poisson, Vec::new());
-    let plan = SimulationPlan { photons, law, camera_noise, against, design, models: Vec::new() };
+    let plan = SimulationPlan {
+        photons,
+        law,
+        camera_noise,
+        against,
+        design,
+        models: Vec::new(),
+        save_spectra: false,
+    };
     study.simulate(&plan, progress).map(|(result, _)| result)
 }
 

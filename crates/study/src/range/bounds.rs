@@ -2,6 +2,7 @@
 
 use super::results::{BoundMaps, ObjectBounds, Signal, SignalBounds};
 use super::signals::SignalMap;
+use super::solve::rank;
 use super::subject::Truth;
 use hadar::error::Result;
 use hadar::parallel;
@@ -85,6 +86,30 @@ impl Ground<'_> {
             Some(own + partner)
         };
         windows.iter().map(|window| both(window).unwrap_or(f64::NAN)).collect()
+    }
+
+    /// The window that the demanded share of the windows does as well as, or better: its error over what is allowed, its centre and depth.
+    pub(super) fn decisive(
+        &self,
+        windows: &[(usize, usize)],
+        var: &[f64],
+    ) -> Result<Option<(f64, (usize, usize), f64)>> {
+        let mut ranked = Vec::with_capacity(windows.len());
+        for (window, var) in windows.iter().zip(var) {
+            let depth_m =
+                self.truth.depth_m.get(window.0 * self.columns + window.1).copied().unwrap_or(f64::NAN);
+            if depth_m.is_finite() && !var.is_nan() {
+                let error = self.geometry.depth_error_m(depth_m, var.sqrt())?;
+                ranked.push((error / self.requirement.error.at(depth_m), *window, depth_m));
+            }
+        }
+        if ranked.is_empty() {
+            return Ok(None);
+        }
+        let rank = rank(self.requirement.share, ranked.len());
+        let (_, decisive, _) =
+            ranked.select_nth_unstable_by(rank, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        Ok(Some(*decisive))
     }
 
     /// Bounds of the windows on each object, all of them together first.

@@ -13,6 +13,9 @@ use hadar::spectrum::Bands;
 use hadar_simulate::render::{Part, View};
 use std::ops::Range;
 
+/// The signal that quantities are solved for.
+pub(super) const DECIDES: Signal = Signal::HeatCube;
+
 /// J, photons and Σσ² of every window by one signal.
 #[derive(Debug, Clone)]
 pub(super) struct SignalMap {

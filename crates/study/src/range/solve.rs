@@ -1,16 +1,18 @@
-//! What would have to change for the demand to be just met: the window that decides, taken apart.
+//! What would have to change for the demand to be just met: windows taken apart, and held against all the others (`verified`).
 
 use super::bounds::Ground;
-use super::results::{DepthSolutions, Signal};
-use super::subject::{Measured, Resolved, Truth};
+use super::results::DepthSolutions;
+use super::signals::DECIDES;
+use super::subject::{Measured, Resolved};
+use super::verified::{Asked, CLOSE, Change, Seen};
 use super::{Informed, RangeStudy};
-use hadar::cube::Cube;
+use hadar::cube::{Cube, Shape};
 use hadar::error::Result;
-use hadar::planck;
-use hadar::ranging::depth::{DepthTask, ExposureNoise, Image, WindowSamples};
+use hadar::ranging::depth::{DepthSolution, DepthTask, ExposureNoise, Image, StereoGeometry, WindowSamples};
 use hadar::ranging::derivative::Differentiator;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::ranging::psf::{PointSpread, bands_var_m2};
+use hadar::{instrument, planck};
 use hadar_scenario::range::Diffraction;
 use hadar_simulate::render::{Part, StereoPair, View};
 use std::ops::Range;
@@ -24,6 +26,17 @@ pub(super) fn rank(share: f64, windows: usize) -> usize {
     reached.saturating_sub(1).min(windows.saturating_sub(1))
 }
 
+/// All windows, as quantities are solved for.
+pub(super) struct Every<'a> {
+    pub(super) pair: Option<&'a StereoPair>,
+    pub(super) var_diffraction_px2: f64,
+    /// Factor of the photons at which the brightest pixel fills its well, and the well.
+    pub(super) well: Option<(f64, f64)>,
+    /// How near to a value that does not do what is given must be.
+    pub(super) close: f64,
+    pub(super) seen: &'a dyn Fn(Change) -> Result<Option<Seen>>,
+}
+
 /// Rows of counts of a view, in photons, with σ² of a sample of band b.
 struct Counts {
     rows: Vec<f64>,
@@ -32,31 +45,137 @@ struct Counts {
 }
 
 impl RangeStudy {
-    /// Each quantity for the heat cube's window at the demanded share; `None` without depth or texture.
+    /// Each quantity for the heat cube, solved on until it holds for the demanded share of all windows; `None` without depth or texture.
     pub(super) fn solutions(
         &self,
         informed: &Informed,
-        ground: &Ground<'_>,
-        windows: &[(usize, usize)],
+        shape: Shape,
+        (ground, windows): (&Ground<'_>, &[(usize, usize)]),
         variances: &[Vec<f64>],
     ) -> Result<Option<DepthSolutions>> {
-        let place = informed.left.iter().position(|map| map.signal == Signal::HeatCube);
+        let place = informed.left.iter().position(|map| map.signal == DECIDES);
         let Some(var) = place.and_then(|at| variances.get(at)) else { return Ok(None) };
-        let Some(((row, column), depth_m)) = self.decisive(ground.truth, ground.columns, windows, var)?
-        else {
-            return Ok(None);
+        let decisive = ground.decisive(windows, var)?.filter(|(ratio, ..)| ratio.is_finite());
+        let Some((_, window, depth_m)) = decisive else { return Ok(None) };
+        let every = Every {
+            pair: informed.pair.as_ref(),
+            var_diffraction_px2: ground.var_diffraction_px2,
+            well: self.photons_of_the_well(informed)?,
+            close: CLOSE,
+            seen: &|change| self.seen_with(informed, shape, change),
         };
-        self.solved(informed.pair.as_ref(), (row, column), depth_m, ground.var_diffraction_px2)
+        self.solved(window, depth_m, &every)
     }
 
-    /// Each quantity for the heat cube's window at a row and column, seen in a rendered pair or in cubes.
+    /// Each quantity for all windows, from the one at a row and column on.
     pub(super) fn solved(
         &self,
-        pair: Option<&StereoPair>,
         (row, column): (usize, usize),
         depth_m: f64,
-        var_diffraction_px2: f64,
+        every: &Every<'_>,
     ) -> Result<Option<DepthSolutions>> {
+        let here = Seen { met: false, window: (row, column), depth_m };
+        let Some(first) = self.of_window(here, every)? else { return Ok(None) };
+        let again =
+            |of: &dyn Fn(&DepthSolutions) -> Option<&DepthSolution>, seen: Seen| -> Result<Option<f64>> {
+                let found = self.of_window(seen, every)?;
+                let solution = found.as_ref().and_then(of);
+                Ok(solution.and_then(|solution| Some(solution.value? / solution.camera)).filter(|x| *x > 0.0))
+            };
+        let as_it_is = Change {
+            photons: 1.0,
+            noise: 1.0,
+            var_diffraction_px2: every.var_diffraction_px2,
+            geometry: self.geometry,
+        };
+        let well = |power: f64, what: &str| {
+            let (factor, full_well) = every.well?;
+            let reason =
+                format!("{what} the brightest pixel holds more than its well, {full_well:.3e} photons");
+            Some((factor.powf(power), reason))
+        };
+        let geometry = |factor: f64| {
+            let [b, f, p] =
+                [self.geometry.baseline_m(), self.geometry.focal_length_m(), self.geometry.pitch_m()];
+            StereoGeometry::new(b * factor, f, p)
+        };
+        let baseline_m = Asked {
+            rises: true,
+            best: 1e30,
+            cap: None,
+            seen: &|factor| (every.seen)(Change { geometry: geometry(factor)?, ..as_it_is }),
+            of_window: &|seen| again(&|found| Some(&found.baseline_m), seen),
+            close: every.close,
+        }
+        .of_all(first.baseline_m.clone())?;
+        let Some(camera) = &self.camera else { return Ok(Some(DepthSolutions { baseline_m, ..first })) };
+
+        let noise = self.exposure_noise(camera);
+        let stretch = noise.exposure_s / noise.noise_exposure_s;
+        let growth = |factor: f64| instrument::noise::growth(stretch * factor, noise.flicker_fraction);
+        let frame = camera.frame_s().map(|frame_s| {
+            let reason = format!("a frame lasts {frame_s} s, and no exposure is longer");
+            (frame_s / camera.exposure_s * (1.0 + CLOSE), reason)
+        });
+        let longest = [well(1.0, "with so long an exposure"), frame].into_iter().flatten();
+        let exposure = Asked {
+            rises: true,
+            best: 1e30,
+            cap: longest.min_by(|a, b| a.0.total_cmp(&b.0)),
+            seen: &|factor| {
+                let noise = growth(factor) / growth(1.0);
+                (every.seen)(Change { photons: factor, noise, ..as_it_is })
+            },
+            of_window: &|seen| again(&|found| found.exposure_s.as_ref(), seen),
+            close: every.close,
+        };
+        let aperture_m = camera.focal_length_m / camera.f_number;
+        let pitch = self.geometry.pitch_m();
+        let aperture = Asked {
+            rises: true,
+            best: camera.f_number / instrument::FASTEST_F_NUMBER,
+            cap: well(0.5, "with so wide a lens"),
+            seen: &|factor| {
+                let var_diffraction_px2 = match every.var_diffraction_px2 {
+                    0.0 => 0.0,
+                    _ => self.var_diffraction_m2(aperture_m * factor)? / (pitch * pitch),
+                };
+                (every.seen)(Change { photons: factor * factor, var_diffraction_px2, ..as_it_is })
+            },
+            of_window: &|seen| again(&|found| found.aperture_m.as_ref(), seen),
+            close: every.close,
+        };
+        let noise = Asked {
+            rises: false,
+            best: 1e-30,
+            cap: None,
+            seen: &|factor| (every.seen)(Change { noise: factor * factor, ..as_it_is }),
+            of_window: &|seen| again(&|found| found.noise_counts.as_ref(), seen),
+            close: every.close,
+        };
+        let of = |asked: Asked<'_>, first: &Option<DepthSolution>| {
+            first.clone().map(|first| asked.of_all(first)).transpose()
+        };
+        Ok(Some(DepthSolutions {
+            baseline_m,
+            exposure_s: of(exposure, &first.exposure_s)?,
+            aperture_m: of(aperture, &first.aperture_m)?,
+            noise_counts: of(noise, &first.noise_counts)?,
+            ..first
+        }))
+    }
+
+    fn exposure_noise(&self, camera: &instrument::Camera) -> ExposureNoise {
+        ExposureNoise {
+            exposure_s: camera.exposure_s,
+            noise_exposure_s: camera.noise_exposure_s / f64::from(camera.frames),
+            flicker_fraction: camera.flicker_fraction,
+        }
+    }
+
+    /// Each quantity for one window, seen in a rendered pair or in cubes.
+    fn of_window(&self, seen: Seen, every: &Every<'_>) -> Result<Option<DepthSolutions>> {
+        let (Seen { window: (row, column), depth_m, .. }, pair) = (seen, every.pair);
         let disparity = self.geometry.disparity_px(depth_m)?;
         let partner = (column as f64 - disparity).round();
         let left = self.samples(pair, true, row, column)?;
@@ -70,7 +189,7 @@ impl RangeStudy {
         };
         let (Some(left), Some(right)) = (left, right) else { return Ok(None) };
         let pitch = self.geometry.pitch_m();
-        let image = match var_diffraction_px2 {
+        let image = match every.var_diffraction_px2 {
             0.0 => Image::Measured,
             var => Image::Ideal { var_diffraction_m2: var * pitch * pitch },
         };
@@ -83,15 +202,9 @@ impl RangeStudy {
                 self.var_diffraction_m2(aperture_m)
             })
         });
-        let exposure = camera.map(|camera| {
-            task.exposure(ExposureNoise {
-                exposure_s: camera.exposure_s,
-                noise_exposure_s: camera.noise_exposure_s / f64::from(camera.frames),
-                flicker_fraction: camera.flicker_fraction,
-            })
-        });
+        let exposure = camera.map(|camera| task.exposure(self.exposure_noise(camera)));
         Ok(Some(DepthSolutions {
-            signal: Signal::HeatCube,
+            signal: DECIDES,
             depth_m,
             pixel: [row, column],
             allowed_m: demand.at(depth_m),
@@ -101,31 +214,6 @@ impl RangeStudy {
             aperture_m: aperture.transpose()?,
             noise_counts: camera.map(|_| task.noise()).transpose()?,
         }))
-    }
-
-    /// The window that the demanded share of the windows does as well as, or better: its centre and depth.
-    fn decisive(
-        &self,
-        truth: &Truth,
-        columns: usize,
-        windows: &[(usize, usize)],
-        var: &[f64],
-    ) -> Result<Option<((usize, usize), f64)>> {
-        let mut ranked = Vec::with_capacity(windows.len());
-        for (window, var) in windows.iter().zip(var) {
-            let depth_m = truth.depth_m.get(window.0 * columns + window.1).copied().unwrap_or(f64::NAN);
-            if depth_m.is_finite() && !var.is_nan() {
-                let error = self.geometry.depth_error_m(depth_m, var.sqrt())?;
-                ranked.push((error / self.scenario.requirement.error.at(depth_m), *window, depth_m));
-            }
-        }
-        if ranked.is_empty() {
-            return Ok(None);
-        }
-        let rank = rank(self.scenario.requirement.share, ranked.len());
-        let (_, (ratio, window, depth_m), _) =
-            ranked.select_nth_unstable_by(rank, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Ok(ratio.is_finite().then_some((*window, *depth_m)))
     }
 
     /// Samples of a window of one view; `None` where it does not fit in.
@@ -229,7 +317,7 @@ impl Measured {
     }
 }
 
-fn as_f64(cube: &Cube, rows: Range<usize>) -> Result<Vec<f64>> {
+pub(super) fn as_f64(cube: &Cube, rows: Range<usize>) -> Result<Vec<f64>> {
     Ok(match cube {
         Cube::F32(cube) => cube.read(rows, &mut Vec::new())?.iter().map(|n| f64::from(*n)).collect(),
         Cube::F64(cube) => cube.read(rows, &mut Vec::new())?.to_vec(),

@@ -12,9 +12,10 @@ use super::looked_up::{RangeStudy, SECTIONS};
 use super::results::{
     BoundMaps, CellMedians, DepthSolutions, Line, ObjectBounds, Ranging, Signal, SignalBounds,
 };
-use super::signals::SignalMap;
-use super::solve::rank;
+use super::signals::{DECIDES, SignalMap};
+use super::solve::{Every, rank};
 use super::subject::{Depth, Measured, Resolved, Truth, nothing_left, nothing_to_see};
+use super::verified::{Change, Seen, scaled};
 use super::{MapSink, Progress};
 use hadar::cube::Shape;
 use hadar::demand::{self, Ledger, Reason, Thing};
@@ -31,6 +32,9 @@ const KEPT: usize = 1 << 20;
 
 /// Windows that are counted at a time by a thread, at most but for one row.
 const AT_ONCE: usize = 1 << 16;
+
+/// How near to a value that does not do what is solved for must be: every step nearer is a pass over the cube.
+const CLOSE_OF_MANY: f64 = 1e-5;
 
 /// Signals of a cube.
 const SIGNALS: [Signal; 2] = [Signal::ThermalImage, Signal::HeatCube];
@@ -332,18 +336,49 @@ impl Setting<'_> {
         })
     }
 
-    /// What would have to change, for the window at the demanded share, or one within a step of it.
+    /// What would have to change, so that it holds for the demanded share of all windows.
     fn solutions(&self, counted: &Counted) -> Result<Option<DepthSolutions>> {
         let (Some(depth_m), [_, of]) = (self.depth_m, &counted.signals) else { return Ok(None) };
-        let errors = locked(&of.disparity_error_px);
+        let Some((_, window)) = self.at_share(&locked(&of.disparity_error_px)) else { return Ok(None) };
+        let every = Every {
+            pair: None,
+            var_diffraction_px2: self.var_diffraction_px2[0],
+            well: None,
+            close: CLOSE_OF_MANY,
+            seen: &|change| self.seen_with(depth_m, change),
+        };
+        self.study.solved(window, depth_m, &every)
+    }
+
+    /// The disparity error at the demanded share, and a window within a step of it.
+    fn at_share(&self, errors: &Distribution) -> Option<(f64, (usize, usize))> {
         let rank = rank(self.study.scenario.requirement.share, errors.len() as usize);
-        let Some((error_px, place)) = errors.nth(rank as u64) else { return Ok(None) };
-        if error_px.is_infinite() {
-            return Ok(None);
-        }
+        let (error_px, place) = errors.nth(rank as u64)?;
         let (row, column) = (place as usize / self.columns.len(), place as usize % self.columns.len());
-        let window = (self.rows.start + row, self.columns.start + column);
-        self.study.solved(None, window, depth_m, self.var_diffraction_px2[0])
+        error_px.is_finite().then_some((error_px, (self.rows.start + row, self.columns.start + column)))
+    }
+
+    /// All windows with a change.
+    fn seen_with(&self, depth_m: f64, change: Change) -> Result<Option<Seen>> {
+        let noise = self.cube.noise_per_unit()?;
+        let noise = scaled(noise.as_ref().unwrap_or(&self.cube.noise), change.noise / change.photons)?;
+        let request = self.study.request(&noise, &[Cell::Full], self.shape);
+        let allowed_px =
+            self.study.scenario.requirement.error.at(depth_m) / change.geometry.metres_per_pixel(depth_m);
+        let (errors, met) = (Mutex::new(Distribution::default()), AtomicUsize::new(0));
+        information_by_rows(&self.cube.left, &request, &|cells| {
+            let map = SignalMap::of(DECIDES, Cell::Full, cells);
+            let map = map.scaled(self.cube.photons_per_unit * change.photons);
+            let own = disparity_errors(Some(&map), change.var_diffraction_px2);
+            met.fetch_add(own.iter().filter(|px| **px <= allowed_px).count(), Ordering::Relaxed);
+            let first = ((cells.rows.start - self.rows.start) * self.columns.len()) as u64;
+            locked(&errors).count(placed(first, &own));
+            Ok(())
+        })?;
+        let errors = locked(&errors);
+        let share = met.load(Ordering::Relaxed) as f64 / errors.len() as f64;
+        let met = share >= self.study.scenario.requirement.share;
+        Ok(self.at_share(&errors).map(|(_, window)| Seen { met, window, depth_m }))
     }
 
     /// Bounds along the lines that are asked for.

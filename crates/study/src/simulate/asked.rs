@@ -36,6 +36,8 @@ pub struct SimulationAsked {
     pub models: Vec<PathBuf>,
     /// Whether the likelihood ratio itself is drawn instead of spectra.
     pub skip_spectra: bool,
+    /// Whether the spectra of the test come with the result.
+    pub save_spectra: bool,
     /// Seed of the draws.
     pub seed: u64,
 }
@@ -88,6 +90,7 @@ impl Study {
             against,
             design: Design { per_class, methods, seed, level: 0.95, skip_spectra },
             models,
+            save_spectra: asked.save_spectra,
         })
     }
 }

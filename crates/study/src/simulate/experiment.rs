@@ -2,7 +2,7 @@
 
 use super::photons::seed_of;
 use super::standing::held_against;
-use super::{NORMAL, PhotonLaw, SimulatedClass, SimulatedPoint, SimulationPlan};
+use super::{NORMAL, PhotonLaw, SimulatedClass, SimulatedPoint, SimulationPlan, TestSpectra};
 use crate::{Study, Surface};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
@@ -86,7 +86,16 @@ impl Study {
             return Err(Error::malformed(found, "draw spectra: leave out --skip-spectra"));
         }
         let seed = seed_of(plan.design.seed, photons);
-        let (performances, learnt) = experiment.run(&Design { seed, ..plan.design.clone() })?;
+        let design = Design { seed, ..plan.design.clone() };
+        let (performances, learnt) = experiment.run(&design)?;
+        let spectra = plan.save_spectra.then(|| experiment.test_spectra(&design)).transpose()?;
+        let spectra = spectra.map(|counts| TestSpectra {
+            counts,
+            seed,
+            means: means.clone(),
+            var_reading: (0..self.bands.len()).map(|band| counting.var_added(band)).collect(),
+            centres_cm1: self.band_centres_cm1(),
+        });
 
         let statistical_distance = match plan.law {
             PhotonLaw::FixedTotal => half_separation(&target.means, &rival.means, &noise),
@@ -121,6 +130,7 @@ impl Study {
             local_accuracy: probability(local),
             normal_error: error,
             performances: performances.into_iter().map(held).collect::<Result<_>>()?,
+            spectra,
         };
         Ok((point, learnt))
     }

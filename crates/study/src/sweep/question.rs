@@ -208,6 +208,7 @@ impl Question {
                         skip_spectra: false,
                     },
                     models: Vec::new(),
+                    save_spectra: false,
                 };
                 let (found, _) = study(written, asking)?.simulate(&plan, &|_, _| ())?;
                 self.told(&found, &found.stats, asking)

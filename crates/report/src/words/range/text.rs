@@ -141,7 +141,7 @@ fn changes(result: &Ranging) -> String {
     let Some(solve) = &result.solve_for else { return String::new() };
     let share = 100.0 * result.scenario.requirement.share;
     let mut out = format!(
-        "What would just meet it, by the {}: {share} % of the windows that are seen now within the demand\n",
+        "What would just meet it, by the {}: {share} % of the windows within the demand\n",
         solve.signal.name()
     );
     let mut line = |label: &str, solution: &Solution, shown: &dyn Fn(f64) -> String| {
@@ -172,14 +172,11 @@ fn changes(result: &Ranging) -> String {
     }
     let _ = writeln!(
         out,
-        "  {}\n",
-        format_args!(
-            "exposure, aperture and noise for the window that decides, at row {}, column {}, {} away; another exposure needs \
-             noise_exposure beside it, else its noise is taken to be stated there",
-            solve.pixel[0],
-            solve.pixel[1],
-            length(solve.depth_m)
-        )
+        "  each holds for all windows together, the others as they are; now the window at row {}, column {}, {} away decides; \
+         another exposure needs noise_exposure beside it, else its noise is taken to be stated there\n",
+        solve.pixel[0],
+        solve.pixel[1],
+        length(solve.depth_m)
     );
     out
 }
