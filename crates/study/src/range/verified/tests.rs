@@ -42,7 +42,7 @@ fn textures(rng: &mut Uniform, shape: Shape) -> Vec<f64> {
     let rows = shape.rows() as f64;
     let of = |row: usize, column: usize, band: usize| {
         let [mean, depth] = if (row as f64) < kind * rows { bright } else { dark };
-        let more = 1.0 + 0.3 * (row as f64 * 1.7).sin();
+        let more = 1.0 + 0.2 * (row as f64 * 1.7).sin();
         mean * (1.0
             + depth * more * (2.0 * std::f64::consts::PI * column as f64 / period + band as f64).sin())
     };
