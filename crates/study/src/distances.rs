@@ -33,9 +33,10 @@ impl Statistical {
         [(self.lower * (1.0 - error)).max(0.0), self.distance * (1.0 + error)]
     }
 
-    /// The same with both ends lowered by the error: what is solved for then does in spite of it.
+    /// The same with both ends lowered by three times the error: what is solved for then does in spite of it, also where the error of the
+    /// integrals is larger at the solution.
     pub(super) fn solved_by(self) -> [f64; 2] {
-        let kept = (1.0 - self.relative_error.unwrap_or(0.0)).max(0.0);
+        let kept = (1.0 - 3.0 * self.relative_error.unwrap_or(0.0)).max(0.0);
         [self.lower * kept, self.distance * kept]
     }
 }
@@ -149,8 +150,13 @@ impl Study {
             return 0.0;
         }
         let signal = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
-        let photons = counting.counts_per_radiance * signal.iter().sum::<f64>();
-        self.integration.share_of(distance / photons.sqrt())
+        // η of N moves √(N + σ²) by ηN/(2√(N + σ²)), and that of the alternative by as much.
+        let moved = |(w, signal): (usize, &f64)| {
+            let counts = counting.counts_per_radiance * signal;
+            if counts > 0.0 { counts * (counts / (counts + counting.var_added(w))) } else { 0.0 }
+        };
+        let moved: f64 = signal.iter().enumerate().map(moved).sum();
+        self.integration.share_of(distance / moved.sqrt())
     }
 
     /// Statistical distance d of a kind at given counts and noise, as a state that was found shows it.

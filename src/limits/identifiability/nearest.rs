@@ -50,6 +50,8 @@ const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
 /// Share of the terms that a separation is made of below which a distance is nothing but rounding.
 const NOTHING_OF_TERMS: f64 = 1e-15;
+/// How many times a distance its error is estimated to be where it is nothing but rounding: the estimate is some ten times too large.
+const NOTHING_BUT_ROUNDING: f64 = 10.0;
 
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
@@ -275,10 +277,16 @@ impl<'a> NearestSolver<'a> {
                     let (relative_error, terms) =
                         self.comparison.rounding_at(&target, &best.state, best.distance);
                     best.relative_error = relative_error;
+                    if self.comparison.space.parameters.is_empty() {
+                        // There is no other state.
+                        best.lower = best.distance;
+                    }
                     // No bound is nearer to the distance than this is known.
                     let surely = best.lower.min(best.distance * (1.0 - relative_error));
                     best.lower = if surely > 0.0 { surely } else { 0.0 };
-                    if terms.is_finite() && best.distance <= NOTHING_OF_TERMS * terms {
+                    let is_rounding =
+                        best.distance <= NOTHING_OF_TERMS * terms || relative_error > NOTHING_BUT_ROUNDING;
+                    if terms.is_finite() && is_rounding {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
                     }

@@ -14,6 +14,7 @@ use self::terms::{camera, does_not_tell, no_limit};
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, significant};
 use crate::text::pairs::pair_table;
+use crate::words::size::ROUNDED;
 use crate::words::{Say, classes, conditions, probability as words};
 use hadar::order;
 use hadar_study::{Answers, Check, Identification, NearestProof, Study, YesNo};
@@ -103,9 +104,12 @@ fn verdict(result: &Identification, study: &Study) -> String {
             (_, told) if told == all => format!("{yes}: {name} tells {target} from all {all} alternatives"),
             (_, told) if open > 0 => {
                 let start = if told + open == all { "Undecided" } else { "No" };
-                format!(
-                    "{start}: {name} is shown to tell {target} from {told} of {all} alternatives, {open} more are undecided,"
-                )
+                {
+                    let shown = if told == 0 { "none".to_owned() } else { told.to_string() };
+                    format!(
+                        "{start}: {name} is shown to tell {target} from {shown} of {all} alternatives, while {open} are undecided,"
+                    )
+                }
             }
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
@@ -129,6 +133,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
             let least = if no_limit(study).is_empty() { "at least " } else { "" };
             let proved = match (pair.proof, enough) {
                 (NearestProof::Proved, _) => String::new(),
+                (NearestProof::Searched, Some(enough)) if enough <= fewest * (1.0 + ROUNDED) => String::new(),
                 (NearestProof::Searched, Some(enough)) => {
                     format!(" ({} by what is proved)", significant(enough, 3))
                 }

@@ -16,7 +16,7 @@ use hadar_scenario::DistanceKind;
 use hadar_study::{Answer, Finding, MixtureAnswer};
 
 /// Share by which two numbers of photons are one in the digits shown.
-const ROUNDED: f64 = 4e-3;
+pub(crate) const ROUNDED: f64 = 4e-3;
 
 impl Say for Finding {
     fn say(&self) -> String {

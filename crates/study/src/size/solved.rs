@@ -128,6 +128,10 @@ impl Study {
             // What moves faster or slower is another question.
             spoiled.retain(|by| !matches!(by, Shortfall::MotionBlur | Shortfall::MotionUnknown));
         }
+        let frame_s = trial.camera.frame_s().unwrap_or(f64::INFINITY);
+        if trial.camera.exposure_s > frame_s {
+            spoiled.push(Shortfall::FrameRate);
+        }
         if let Some(by) = spoiled.first() {
             solution.value = None;
             solution.reason = Some(whatever(*by).into());
@@ -147,6 +151,7 @@ const fn whatever(by: Shortfall) -> &'static str {
         Shortfall::MotionBlur => "the target moves by a pixel, whatever it is",
         Shortfall::MotionUnknown => "how far the target moves is not known without target.distance",
         Shortfall::FullWell => "the pixel is full, whatever it is",
+        Shortfall::FrameRate => "the exposure that it takes is longer than a frame",
         _ => "not all is read within the time demanded, whatever it is",
     }
 }

@@ -119,8 +119,8 @@ fn of_camera(sizing: Sizing) -> impl Iterator<Item = (Quantity, Solution)> {
 proptest! {
     #![proptest_config(seeded(20, 60))]
 
-    /// 1e-9: the crossing is found to the last bits, the nearest distance itself to 1e-11. The value goes through the
-    /// text of a scenario, as a user's would.
+    /// What is put in meets the requirement, by no more than rounding is feared to be. The value goes through the text of a scenario,
+    /// as a user's would.
     #[test]
     fn what_is_solved_for_gives_the_demanded_distance(task in task()) {
         let reached = size(&task.scenario(1.0, &[])).verdict.statistical_distance.unwrap();
@@ -147,8 +147,9 @@ proptest! {
                 Quantity::Noise if value == 0.0 => prop_assert!(forward(value) >= required),
                 _ => {
                     let forward = forward(value);
-                    prop_assert!((forward / required - 1.0).abs() < 1e-9, "{quantity:?} = {value:e} gives {forward:e}, not {required:e}");
-                    prop_assert!((solution.statistical_distance / required - 1.0).abs() < 1e-9);
+                    let more = forward / required - 1.0;
+                    prop_assert!((0.0..1e-6).contains(&more), "{quantity:?} = {value:e} gives {forward:e}, not {required:e}");
+                    prop_assert!((solution.statistical_distance / required - 1.0).abs() < 1e-6);
                 }
             }
         }

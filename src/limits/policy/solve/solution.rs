@@ -33,7 +33,7 @@ impl CapCode {
     /// Whether a camera that breaks the limit does not meet the task; the others are told of and no more.
     #[must_use]
     pub const fn decides(self) -> bool {
-        matches!(self, Self::DecisionTime | Self::FullWell | Self::Motion)
+        matches!(self, Self::DecisionTime | Self::FrameRate | Self::FullWell | Self::Motion)
     }
 }
 

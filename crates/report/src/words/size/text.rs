@@ -6,6 +6,7 @@ use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::words::Say;
 use crate::words::probability::demanded_probability;
+use crate::words::size::ROUNDED;
 use crate::words::{classes, companion, conditions};
 use hadar::words::share;
 use hadar_scenario::Units;
@@ -97,7 +98,9 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
         let distance = significant(distance, 3);
         let _ = writeln!(out, "{mark}{label:<34} {distance:>10}  {:>18}  {hardware:>14}", photons(count));
     }
-    if pair.proof == NearestProof::Searched {
+    let [least, enough] = requirement.photons_bounds;
+    let apart = least.is_some_and(|least| enough.is_none_or(|enough| enough > least * (1.0 + ROUNDED)));
+    if pair.proof == NearestProof::Searched && apart {
         let enough = match requirement.photons {
             Some(enough) => format!("{} photons suffice by that", significant(enough, 3)),
             None => "by that no number of photons is known to suffice".into(),
