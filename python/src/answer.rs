@@ -381,6 +381,7 @@ pub(crate) fn simulate(
             against: more.against.clone(),
             models: more.model.clone(),
             skip_spectra: more.skip_spectra,
+            save_spectra: false,
             seed: common.seed,
         };
         let (plan, planning) = ledger_of(|| study.plan(&asked))?;
