@@ -24,12 +24,14 @@ pub fn crossing_between(low: [f64; 2], high: [f64; 2], mut f: impl FnMut(f64) ->
     // Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection
     // (Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8).
     let ([mut a, mut fa], [mut b, mut fb]) = (low, high);
-    let nothing =
-        |value: f64, other: f64| value == 0.0 || value.abs() <= ROUNDING * other.abs() && other.is_finite();
-    if nothing(fa, fb) || nothing(fb, fa) {
-        return Ok(if fa.abs() <= fb.abs() { a } else { b });
+    let nothing = |value: f64, other: f64| value.abs() <= ROUNDING * other.abs() && other.is_finite();
+    if fa == 0.0 || fb == 0.0 {
+        return Ok(if fa == 0.0 { a } else { b });
     }
     if !(fa < 0.0 && fb > 0.0) {
+        if nothing(fa, fb) || nothing(fb, fa) {
+            return Ok(if fa.abs() <= fb.abs() { a } else { b });
+        }
         let found = format!("what is solved for is {fa} and {fb} at the ends of all that is looked at");
         return Err(Error::malformed(found, "bring the figures nearer to those of a camera and a scene"));
     }

@@ -10,7 +10,7 @@
 //! *no* by the upper, and *undecided* between.
 
 use crate::distances::Statistical;
-use crate::{Study, Surface, YesNo};
+use crate::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::decision::{DecisionLaw, decision_bounds};
@@ -23,6 +23,22 @@ use hadar_scenario::DistanceKind;
 const MANY: f64 = 1e4;
 /// Statistical distance of a probability that is 1 as a number.
 const CERTAIN: f64 = 8.3;
+
+hadar::named! {
+    /// A verdict.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum YesNo {
+        /// The requirement is met, under the conditions that are listed.
+        Yes = "yes",
+        /// It is not.
+        No = "no",
+        /// What is proved does not reach it, what was found does.
+        Undecided = "undecided",
+    }
+    /// The name in JSON.
+    name
+}
 
 /// What is known of the decision between the target and an alternative.
 #[derive(Debug, Clone, Copy, PartialEq)]

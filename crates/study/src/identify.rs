@@ -24,9 +24,10 @@ pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 
 use super::classes::MixtureAnswer;
+use super::decision::YesNo;
 use super::distances::Statistical;
 use super::remembered::PerPhoton;
-use super::{Study, Surface, Warning, YesNo, warn};
+use super::{Study, Surface, Warning, warn};
 use hadar::demand::{self, Ledger};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance};

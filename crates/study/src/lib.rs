@@ -65,6 +65,7 @@ pub use crate::warning::{Warning, WorstBlackbody};
 pub use camera::with_noise_kept;
 pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
 pub use companion::Companion;
+pub use decision::YesNo;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestProof, NearestState, PairResult,
@@ -91,7 +92,6 @@ pub use simulate::{
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
     RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
-    YesNo,
 };
 pub use surface::Surface;
 

@@ -22,7 +22,7 @@ pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
-pub use verdict::{Answer, Finding, Verdict, VerdictAlone, YesNo};
+pub use verdict::{Answer, Finding, Verdict, VerdictAlone};
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]

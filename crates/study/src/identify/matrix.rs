@@ -4,7 +4,8 @@ mod results;
 
 pub use results::{Apart, Check, Matrix, Rows, TargetVerdict};
 
-use crate::{Study, Surface, YesNo};
+use crate::decision::YesNo;
+use crate::{Study, Surface};
 use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};

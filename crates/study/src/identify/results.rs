@@ -1,6 +1,7 @@
 //! What is known of every pair, and of the target against all alternatives, as data.
 
-use super::super::{ClassAnswer, Condition, PriorAverage, Warning, YesNo};
+use super::super::{ClassAnswer, Condition, PriorAverage, Warning};
+use crate::decision::YesNo;
 use hadar::demand::Work;
 use hadar::identifiability::Status;
 use hadar::identifiability::decision::DecisionLaw;

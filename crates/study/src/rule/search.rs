@@ -4,13 +4,14 @@
 //! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
 //! that is above that, not its own worst case to 1 %.
 
-use super::super::{NearestState, Shortfall, Study, Surface, Warning, YesNo, warn};
+use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
 use super::envelope::{Estimate, Sighted, brightest, unlit};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged, Uncertain};
 use crate::condition::Condition;
+use crate::decision::YesNo;
 use crate::grade::Grade;
 use crate::proviso::Proviso;
 use crate::rests_on::Circumstances;

@@ -211,8 +211,7 @@ impl<'a> Reach<'a> {
             let harder = CameraTask { required, ..task.clone() };
             solution = self.solve_found(&harder, quantity)?;
         }
-        let reason = Some(NOT_PROVED.to_owned());
-        Ok(Solution { value: None, necessary: Some(necessary), reason, ..found })
+        Ok(found.not_proved())
     }
 
     /// Solves by the states that are found.
@@ -230,6 +229,3 @@ impl<'a> Reach<'a> {
         task.solve(quantity, |trial| Ok(self.anew(trial)?[1]))
     }
 }
-
-/// Why there is no value where states that were found allow one.
-const NOT_PROVED: &str = "none is proved to suffice";

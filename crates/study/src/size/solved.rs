@@ -14,7 +14,7 @@ use crate::Shortfall;
 use hadar::error::Result;
 use hadar::instrument::Camera;
 use hadar::policy::caps::{self, Circumstances, Limit};
-use hadar::policy::{CameraTask, Quantity, Solution, Trial};
+use hadar::policy::{CameraTask, CapCode, Quantity, Solution, Trial};
 
 /// Share by which a value keeps within a limit.
 const WITHIN: f64 = 1e-9;
@@ -134,7 +134,7 @@ impl Study {
         }
         if let Some(by) = spoiled.first() {
             solution.value = None;
-            solution.reason = Some(whatever(*by).into());
+            solution.reason = Some(CapCode::whatever(limit(*by)).into());
             return Ok(solution);
         }
         solution.value = Some(kept);
@@ -145,14 +145,14 @@ impl Study {
     }
 }
 
-/// Why no value of a quantity that does not change it meets the task.
-const fn whatever(by: Shortfall) -> &'static str {
+/// The limit that a shortfall is of; `None` where it is not known.
+const fn limit(by: Shortfall) -> Option<CapCode> {
     match by {
-        Shortfall::MotionBlur => "the target moves by a pixel, whatever it is",
-        Shortfall::MotionUnknown => "how far the target moves is not known without target.distance",
-        Shortfall::FullWell => "the pixel is full, whatever it is",
-        Shortfall::FrameRate => "the exposure that it takes is longer than a frame",
-        _ => "not all is read within the time demanded, whatever it is",
+        Shortfall::MotionBlur => Some(CapCode::Motion),
+        Shortfall::FullWell => Some(CapCode::FullWell),
+        Shortfall::FrameRate => Some(CapCode::FrameRate),
+        Shortfall::DecisionTime => Some(CapCode::DecisionTime),
+        _ => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Yes, no or undecided, with what it rests on and how sure it is.
 
 use crate::condition::{Condition, hardest_first};
+use crate::decision::YesNo;
 use crate::grade::Grade;
 use crate::identify::NearestProof;
 use crate::rests_on::Reached;
@@ -63,22 +64,6 @@ pub struct Verdict {
     pub accepted: Vec<String>,
     /// How sure it is; `None` without a camera.
     pub grade: Option<Grade>,
-}
-
-hadar::named! {
-    /// A verdict.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-    #[serde(rename_all = "kebab-case")]
-    pub enum YesNo {
-        /// The requirement is met, under the conditions that are listed.
-        Yes = "yes",
-        /// It is not.
-        No = "no",
-        /// What is proved does not reach it, what was found does.
-        Undecided = "undecided",
-    }
-    /// The name in JSON.
-    name
 }
 
 impl Verdict {

@@ -277,7 +277,7 @@ fn without_priors_an_average_is_the_law_of_two_points() {
     let narrow =
         free(&[Temperature, Lighting]).prior(Temperature, 1e-7).unwrap().prior(Lighting, 1e-9).unwrap();
     let narrow = scene.bound(&narrow);
-    for d in [0.3, 1.0, 2.5] {
+    for d in [0.7, 1.0, 2.5] {
         let photons = (d / one).powi(2);
         assert!(photons > FEW_PHOTONS, "{photons}");
         let exact = detection::probability(d);

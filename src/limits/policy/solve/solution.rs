@@ -30,6 +30,18 @@ crate::base::named::named! {
 }
 
 impl CapCode {
+    /// Why no value of a quantity meets the task that does not change what breaks a limit; `None` stands for a motion that is not known.
+    #[must_use]
+    pub const fn whatever(broken: Option<Self>) -> &'static str {
+        match broken {
+            Some(Self::Motion) => "the target moves by a pixel, whatever it is",
+            Some(Self::FullWell) => "the pixel is full, whatever it is",
+            Some(Self::FrameRate) => "the exposure that it takes is longer than a frame",
+            Some(_) => "not all is read within the time demanded, whatever it is",
+            None => "how far the target moves is not known without target.distance",
+        }
+    }
+
     /// Whether a camera that breaks the limit does not meet the task; the others are told of and no more.
     #[must_use]
     pub const fn decides(self) -> bool {
@@ -72,6 +84,12 @@ pub struct Solution {
 }
 
 impl Solution {
+    /// The same where what was found suffices and nothing is proved to.
+    #[must_use]
+    pub fn not_proved(self) -> Self {
+        Self { value: None, reason: Some("none is proved to suffice".into()), ..self }
+    }
+
     /// The harder of this and another one of the same quantity: what suffices for both.
     #[must_use]
     pub fn or_harder(self, other: Self, quantity: Quantity) -> Self {

@@ -180,9 +180,10 @@ fn the_largest_speed_is_that_of_the_least_exposure() {
         let speed = solution.value.unwrap();
         // Shot noise: t ∝ d²; Δ = v t L sin(θ/2)/(r θ) = 1.
         let exact = 30.0 * 0.4 / (0.2f64.sin() * 320.0 * camera.exposure_s * share * share);
-        assert!((speed / exact - 1.0).abs() < 1e-9, "{speed} {exact}");
+        // Less than a whole pixel.
+        assert!(speed < exact && (speed / exact - 1.0).abs() < 1e-8, "{speed} {exact}");
         let forward = task.forward(Quantity::Speed, speed);
-        assert!((one_band(&forward).unwrap() / required - 1.0).abs() < 1e-9);
+        assert!((one_band(&forward).unwrap() / required - 1.0).abs() < 1e-8);
     }
     let nowhere = CameraTask { distance_m: None, ..task(&camera, &bands, 1.0) };
     let solution = nowhere.solve(Quantity::Speed, one_band).unwrap();
