@@ -19,8 +19,9 @@ use hadar::scene::State;
 use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
 
-/// Counts and variance of a band from which they are many.
-const MANY: f64 = 1e4;
+/// Counts and variance of a band from which they are many: with all of the difference in one band of a hundred Φ(d) is off by no more than
+/// 2.3 % of the error up to d = 3, by summation of the Poisson law, on the safe side; and by less in more bands.
+const MANY: f64 = 100.0;
 /// Statistical distance of a probability that is 1 as a number.
 const CERTAIN: f64 = 8.3;
 

@@ -106,8 +106,9 @@ fn verdict(result: &Identification, study: &Study) -> String {
                 let start = if told + open == all { "Undecided" } else { "No" };
                 {
                     let shown = if told == 0 { "none".to_owned() } else { told.to_string() };
+                    let are = if open == 1 { "is" } else { "are" };
                     format!(
-                        "{start}: {name} is shown to tell {target} from {shown} of {all} alternatives, while {open} are undecided,"
+                        "{start}: {name} is shown to tell {target} from {shown} of {all} alternatives, while {open} {are} undecided,"
                     )
                 }
             }
