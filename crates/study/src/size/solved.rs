@@ -36,10 +36,16 @@ impl Study {
 
     /// Every quantity solved for; `alternative` is the one that limits the camera as it is.
     pub(crate) fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
-        self.solutions_of(camera, alternative, &Quantity::ALL)
+        let mut found = self.solutions_of(camera, alternative, &Quantity::ALL)?;
+        let brightest = |trial: &Trial| self.brightest(trial);
+        let (task, given) = (self.task(camera), self.circumstances(&brightest));
+        for (quantity, solution) in &mut found.0 {
+            *solution = self.within_limits(solution.clone(), *quantity, &task, &given)?;
+        }
+        Ok(found)
     }
 
-    /// The same of these quantities.
+    /// The same of these quantities by what tells the spectra apart alone; what their values spoil is among their caps.
     pub(crate) fn solutions_of(
         &self,
         camera: &Camera,
@@ -59,8 +65,11 @@ impl Study {
         }
         let mut solved = Vec::with_capacity(quantities.len());
         for &quantity in quantities {
-            let found = solve_all(&mut first, &mut others, &task, quantity)?;
-            solved.push((quantity, self.within_limits(found, quantity, &task, &given)?));
+            let mut found = solve_all(&mut first, &mut others, &task, quantity)?;
+            if let Some(value) = found.value {
+                found.caps = caps::broken(quantity, value, &task, &given)?;
+            }
+            solved.push((quantity, found));
         }
         Ok(Solutions(solved))
     }
