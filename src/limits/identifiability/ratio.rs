@@ -24,6 +24,7 @@
 //! Estimation' (1995), chapter 5; the rest is derived here or named where it is done.
 
 mod distribution;
+mod effort;
 mod enumeration;
 mod integrals;
 mod inversion;
@@ -31,6 +32,7 @@ mod lattice;
 mod line;
 
 pub use self::distribution::RatioDistribution;
+use self::effort::{Effort, QUICK, WHOLE};
 use self::integrals::Integrals;
 use self::line::Line;
 use super::bracket::KnownStates;
@@ -42,35 +44,8 @@ use std::f64::consts::LN_2;
 
 /// s stays this far from 0 and 1.
 const EDGE: f64 = 1e-12;
-/// Relative numerical error with which an integral is good enough.
-const SETTLED: f64 = 1e-9;
 /// −ln |φ| that a characteristic function must be able to reach.
 const DEEP: f64 = 60.0;
-
-/// How much is spent on one law.
-#[derive(Debug, Clone, Copy)]
-struct Effort {
-    /// Most combinations of the counts of all bands but one that a sum goes through, and most counts of that one.
-    combinations: usize,
-    table: usize,
-    /// Most bands times points of the finest rule of an integral.
-    points: usize,
-    /// Relative numerical error with which an integral is good enough.
-    settled: f64,
-    /// Points of the finer lattice.
-    lattice: usize,
-}
-
-const WHOLE: Effort = Effort {
-    combinations: 1_000_000,
-    table: 4_000_000,
-    points: usize::MAX,
-    settled: SETTLED,
-    lattice: 1 << 18,
-};
-/// Some milliseconds.
-const QUICK: Effort =
-    Effort { combinations: 20_000, table: 40_000, points: 200_000, settled: 1e-5, lattice: 1 << 14 };
 
 /// How an error was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

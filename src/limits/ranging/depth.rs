@@ -22,7 +22,7 @@ mod solve;
 mod tests;
 mod window;
 
-pub use solve::{Demand, DepthSolution, DepthTask, ExposureNoise};
+pub use solve::{Demand, DepthSolution, DepthTask, ExposureNoise, frame_is_over, well_is_full};
 pub use window::{WindowInformation, WindowSamples};
 
 use crate::error::{Error, Result, check};

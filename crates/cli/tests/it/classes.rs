@@ -130,7 +130,9 @@ fn mixtures_and_means_of_a_class() {
     let (members, mixtures) = (&alone["classes"][0], &answer["classes"][0]["mixtures"]);
     let (lower, found) = (number(&mixtures["distance_lower"]), number(&mixtures["distance"]));
     assert!(lower <= found && found <= number(&members["distance"]) * (1.0 + 1e-9), "{mixtures}");
-    let mean = CLASSES.replace("[class.robot]", "[class.robot]\ncovariance = \"sample\"");
+    let mean = CLASSES
+        .replace("[class.robot]", "[class.robot]\ncovariance = \"sample\"")
+        .replace("[bands]", "[bands]\nintegrate = false");
     let answer = folder(&mean).json(&["size", "a.toml"]);
     let of = &answer["sensitivity"]["emissivity"]["of_classes"][0];
     assert_eq!((of["class"].as_str(), number(&of["spectra"])), (Some("robot"), 3.0));

@@ -139,6 +139,7 @@ fn nothing_is_null_but_what_does_not_apply() {
             "distance_local",
             "relative_error",
             "statistical_distance",
+            "statistical_distance_lower",
         ] {
             let rows = all["matrix"][key].take();
             for (i, row) in rows.as_array().unwrap().iter().enumerate() {

@@ -2,12 +2,20 @@
 
 use super::results::{BoundMaps, ObjectBounds, Signal, SignalBounds};
 use super::signals::SignalMap;
-use super::solve::rank;
 use super::subject::Truth;
 use hadar::error::Result;
 use hadar::parallel;
 use hadar::ranging::depth::StereoGeometry;
 use hadar_scenario::range::{Demand, DepthRequirement};
+
+/// A share of a number of windows that is whole but for rounding.
+const RANK_ROUNDING: f64 = 1e-9;
+
+/// The place, among so many windows in their order, of the first that leaves fewer than a share before it.
+pub(super) fn rank(share: f64, windows: usize) -> usize {
+    let reached = (share * windows as f64 - RANK_ROUNDING).ceil() as usize;
+    reached.saturating_sub(1).min(windows.saturating_sub(1))
+}
 
 /// What the bounds of a study rest on.
 pub(super) struct Ground<'a> {

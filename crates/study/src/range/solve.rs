@@ -8,7 +8,10 @@ use super::verified::{Asked, CLOSE, Change, Seen};
 use super::{Informed, RangeStudy};
 use hadar::cube::{Cube, Shape};
 use hadar::error::Result;
-use hadar::ranging::depth::{DepthSolution, DepthTask, ExposureNoise, Image, StereoGeometry, WindowSamples};
+use hadar::ranging::depth::{
+    DepthSolution, DepthTask, ExposureNoise, Image, StereoGeometry, WindowSamples, frame_is_over,
+    well_is_full,
+};
 use hadar::ranging::derivative::Differentiator;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::ranging::psf::{PointSpread, bands_var_m2};
@@ -16,15 +19,6 @@ use hadar::{instrument, planck};
 use hadar_scenario::range::Diffraction;
 use hadar_simulate::render::{Part, StereoPair, View};
 use std::ops::Range;
-
-/// A share of a number of windows that is whole but for rounding.
-const RANK_ROUNDING: f64 = 1e-9;
-
-/// The place, among so many windows in their order, of the first that leaves fewer than a share before it.
-pub(super) fn rank(share: f64, windows: usize) -> usize {
-    let reached = (share * windows as f64 - RANK_ROUNDING).ceil() as usize;
-    reached.saturating_sub(1).min(windows.saturating_sub(1))
-}
 
 /// All windows, as quantities are solved for.
 pub(super) struct Every<'a> {
@@ -88,11 +82,9 @@ impl RangeStudy {
             var_diffraction_px2: every.var_diffraction_px2,
             geometry: self.geometry,
         };
-        let well = |power: f64, what: &str| {
+        let well = |power: f64, by_exposure: bool| {
             let (factor, full_well) = every.well?;
-            let reason =
-                format!("{what} the brightest pixel holds more than its well, {full_well:.3e} photons");
-            Some((factor.powf(power), reason))
+            Some((factor.powf(power), well_is_full(by_exposure, full_well)))
         };
         let geometry = |factor: f64| {
             let [b, f, p] =
@@ -113,11 +105,10 @@ impl RangeStudy {
         let noise = self.exposure_noise(camera);
         let stretch = noise.exposure_s / noise.noise_exposure_s;
         let growth = |factor: f64| instrument::noise::growth(stretch * factor, noise.flicker_fraction);
-        let frame = camera.frame_s().map(|frame_s| {
-            let reason = format!("a frame lasts {frame_s} s, and no exposure is longer");
-            (frame_s / camera.exposure_s * (1.0 + CLOSE), reason)
-        });
-        let longest = [well(1.0, "with so long an exposure"), frame].into_iter().flatten();
+        let frame = camera
+            .frame_s()
+            .map(|frame_s| (frame_s / camera.exposure_s * (1.0 + CLOSE), frame_is_over(frame_s)));
+        let longest = [well(1.0, true), frame].into_iter().flatten();
         let exposure = Asked {
             rises: true,
             best: 1e30,
@@ -134,7 +125,7 @@ impl RangeStudy {
         let aperture = Asked {
             rises: true,
             best: camera.f_number / instrument::FASTEST_F_NUMBER,
-            cap: well(0.5, "with so wide a lens"),
+            cap: well(0.5, false),
             seen: &|factor| {
                 let var_diffraction_px2 = match every.var_diffraction_px2 {
                     0.0 => 0.0,

@@ -7,13 +7,14 @@
 mod tests;
 
 use super::bounds::Ground;
+use super::bounds::rank;
 use super::distribution::{Distribution, QUANTILE_ERROR};
 use super::looked_up::{RangeStudy, SECTIONS};
 use super::results::{
     BoundMaps, CellMedians, DepthSolutions, Line, ObjectBounds, Ranging, Signal, SignalBounds,
 };
 use super::signals::{DECIDES, SignalMap};
-use super::solve::{Every, rank};
+use super::solve::Every;
 use super::subject::{Depth, Measured, Resolved, Truth, nothing_left, nothing_to_see};
 use super::verified::{Change, Seen, scaled};
 use super::{MapSink, Progress};

@@ -79,12 +79,13 @@ impl Asked<'_> {
         };
         let mut at = match first.value {
             Some(value) if value > 0.0 => value / camera,
-            _ if (self.seen)(self.best)?.is_some_and(|seen| seen.met) => self.best,
+            // What cannot be looked at does not do.
+            _ if (self.seen)(self.best).is_ok_and(|seen| seen.is_some_and(|seen| seen.met)) => self.best,
             _ => return Ok(none(first, None)),
         };
         let (mut does, mut does_not): (Option<f64>, Option<f64>) = (None, None);
         for _ in 0..PASSES {
-            let seen = (self.seen)(at)?;
+            let seen = (self.seen)(at).unwrap_or(None);
             match seen {
                 Some(Seen { met: true, .. }) => does = Some(at),
                 _ => does_not = Some(at),

@@ -4,7 +4,7 @@
 //! halves. All counts of all bands but the one with the most are gone through; of that one the sums beyond any
 //! threshold stand in a table. Counts less likely than 10⁻²⁰ of the likeliest are left out.
 
-use super::Effort;
+use super::effort::Effort;
 use super::integrals::Integrals;
 use super::line::{Line, Mode};
 use crate::order;

@@ -9,7 +9,7 @@
 //! Sources: Helstrom, IEEE Trans. Aerosp. Electron. Syst. 14, 630 (1978) for the contour through the saddle point of
 //! the whole integrand; Trefethen and Weideman, SIAM Rev. 56, 385 (2014), doi:10.1137/130932132 for the rule.
 
-use super::Effort;
+use super::effort::Effort;
 use super::integrals::Integrals;
 use super::line::{Line, Mode};
 use std::f64::consts::PI;

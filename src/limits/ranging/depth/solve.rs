@@ -22,6 +22,19 @@ use crate::root::{crossing, crossing_between};
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
+/// Why no longer exposure, or wider lens, will do.
+#[must_use]
+pub fn well_is_full(by_exposure: bool, full_well: f64) -> String {
+    let what = if by_exposure { "with so long an exposure" } else { "with so wide a lens" };
+    format!("{what} the brightest pixel holds more than its well, {full_well:.3e} photons")
+}
+
+/// Why no longer exposure will do.
+#[must_use]
+pub fn frame_is_over(frame_s: f64) -> String {
+    format!("a frame lasts {frame_s} s, and no exposure is longer")
+}
+
 const NO_TEXTURE: &str = "the window has no texture: nothing in it tells its position";
 
 /// How good depth must be.
