@@ -253,8 +253,8 @@ impl AverageScene<'_> {
         for (i, score) in scores.iter().enumerate() {
             let mut row = score.clone();
             let mut factors = Vec::with_capacity(i + 1);
-            for j in 0..=i {
-                let mut sum = f64::from(u8::from(i == j)) + dot(score, &slopes[j]);
+            for (j, slope) in slopes.iter().enumerate().take(i + 1) {
+                let mut sum = f64::from(u8::from(i == j)) + dot(score, slope);
                 sum -= (0..j)
                     .map(|l| factors[l] * if i == j { factors[l] } else { node.lower[j][l] })
                     .sum::<f64>();

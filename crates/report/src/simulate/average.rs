@@ -39,7 +39,7 @@ fn table(result: &AverageSimulation) -> Table {
             number(decisions.interval.high),
             optional(point.probability_lower),
             number(point.probability_upper),
-            yes_no(point.bracket_holds).into(),
+            yes_no(point.bracket_holds),
         ]);
     }
     table

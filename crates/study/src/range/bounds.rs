@@ -8,6 +8,9 @@ use hadar::parallel;
 use hadar::ranging::depth::StereoGeometry;
 use hadar_scenario::range::{Demand, DepthRequirement};
 
+/// Error over demand, row and column, and depth (m) of a window.
+type Ranked = (f64, (usize, usize), f64);
+
 /// A share of a number of windows that is whole but for rounding.
 const RANK_ROUNDING: f64 = 1e-9;
 
@@ -97,11 +100,7 @@ impl Ground<'_> {
     }
 
     /// The window that the demanded share of the windows does as well as, or better: its error over what is allowed, its centre and depth.
-    pub(super) fn decisive(
-        &self,
-        windows: &[(usize, usize)],
-        var: &[f64],
-    ) -> Result<Option<(f64, (usize, usize), f64)>> {
+    pub(super) fn decisive(&self, windows: &[(usize, usize)], var: &[f64]) -> Result<Option<Ranked>> {
         let mut ranked = Vec::with_capacity(windows.len());
         for (window, var) in windows.iter().zip(var) {
             let depth_m =
