@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn bands_that_are_not_asked_for_keep_their_node() {
         let bands = Bands::uniform(800.0, 804.0, 1.0).unwrap();
-        let bent = |nodes: &[f64]| Ok(vec![nodes.iter().map(|x| 1.0 + (x - 801.2).abs()).collect()]);
+        let bent = |nodes: &[f64]| Ok(vec![nodes.iter().map(|x| 1.0 + (x - 801.2_f64).abs()).collect()]);
         let which = [false, true, true, false, false];
         let found = bands.integrated_where(&which, &[801.2], 1e-9, bent).unwrap();
         assert_eq!(found.bands.nodes_per_band().collect::<Vec<_>>(), [1, 2, 1, 1, 1]);
@@ -322,7 +322,8 @@ mod tests {
     #[test]
     fn tolerances_below_rounding_are_its_floor() {
         let bands = Bands::from_ranges(&[(700.0, 1300.0)]).unwrap();
-        let planck = |nodes: &[f64]| Ok(vec![nodes.iter().map(|x| x * x / (x / 200.0).exp_m1()).collect()]);
+        let planck =
+            |nodes: &[f64]| Ok(vec![nodes.iter().map(|x| x * x / (x / 200.0_f64).exp_m1()).collect()]);
         let at = |tolerance: f64| bands.integrated(&[], tolerance, planck).unwrap();
         assert_eq!(at(1e-18), at(1e-14));
         assert!(

@@ -109,7 +109,7 @@ fn an_end_that_meets_the_requirement_but_for_rounding_is_the_answer() {
         let best = one_band(&anything.forward(Quantity::FNumber, fastest)).unwrap();
         let mut count = seed;
         // The first value is that of the best end; of the later ones a third are up to four units lower in the last place.
-        let mut uneven = |trial: &Trial| {
+        let mut uneven = |trial: &Trial| -> Result<f64> {
             let lower = if count > seed && count.is_multiple_of(3) { f64::from(count % 5) } else { 0.0 };
             count += 1;
             Ok(one_band(trial)? * (1.0 - lower * f64::EPSILON))
