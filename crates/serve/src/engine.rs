@@ -4,7 +4,6 @@ use crate::edit::{self, Edit};
 use crate::form::{self, Form};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::identifiability::decision::DecisionLaw;
 use hadar::inputs::inputs_of;
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
@@ -19,7 +18,7 @@ use hadar_report::words::probability::probability;
 use hadar_report::words::warnings::of_code;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::warning::Warning;
-use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Sizing, Study};
+use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Sizing, Study, YesNo};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -114,7 +113,7 @@ struct Pair {
     photons_required: String,
     statistical_distance: Option<String>,
     detection_probability: Option<String>,
-    told_apart: Option<bool>,
+    told: Option<&'static str>,
 }
 
 /// A warning or a condition as it is shown.
@@ -269,11 +268,8 @@ fn pair_shown(pair: &PairResult) -> Pair {
         distance_nearest: significant(pair.distance_nearest, 3),
         photons_required: photons_between(pair.photons_required_bounds),
         statistical_distance: pair.statistical_distance_bounds.map(|ends| between(ends, 3)),
-        detection_probability: pair.statistical_distance.map(|d| match pair.detection_probability_bounds {
-            Some(of_few) if pair.decided_by != Some(DecisionLaw::Gaussian) => between(of_few, 4),
-            _ => probability(d, 4),
-        }),
-        told_apart: pair.told_apart,
+        detection_probability: pair.statistical_distance.map(|d| probability(d, 4)),
+        told: pair.told.map(YesNo::name),
     }
 }
 

@@ -32,7 +32,6 @@ use hadar::demand::{self, Ledger};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::Status;
-use hadar::identifiability::decision::DecisionLaw;
 use hadar::identifiability::detection;
 use hadar::identifiability::multi;
 use hadar::identifiability::nearest::NearestDistance;
@@ -183,16 +182,15 @@ impl Study {
             local: required(local.distance),
             local_unknown_gain: required(unknown_gain.distance),
         });
-        let decided =
+        let decision =
             counting.as_ref().map(|counting| self.decided(kind, alternative, counting)).transpose()?;
-        let (statistical, decision) =
-            (decided.map(|(found, _)| found), decided.map(|(_, decision)| decision));
         // What is proved of all mixtures may not suffice where the worst that was found does.
         let proved = mixtures.is_none_or(|all| all.distance_lower >= self.required);
         let told = decision.map(|decision| match decision.told {
             YesNo::Yes if !proved => YesNo::Undecided,
             told => told,
         });
+        let statistical = decision.map(|decision| decision.found);
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
         let bounds = statistical.map(Statistical::bounds);
         let statistical = statistical.map(|found| found.distance);
@@ -202,18 +200,12 @@ impl Study {
                 Some(self.statistical_distance(DistanceKind::Nearest, alternative, counting)?)
             }
         };
-        let shortcut = counting.as_ref().map(|counting| {
-            let distance = match kind {
-                DistanceKind::Nearest => nearest.distance,
-                DistanceKind::Local => local.distance,
-                DistanceKind::LocalUnknownGain => unknown_gain.distance,
-            };
-            shortcut(counting, &signal, distance)
-        });
-        // Counts so few that Φ(d) does not hold.
-        let few = decision
-            .filter(|decision| decision.decided_by != DecisionLaw::Gaussian)
-            .map(|decision| decision.probability);
+        let by_kind = match kind {
+            DistanceKind::Nearest => nearest.distance,
+            DistanceKind::Local => local.distance,
+            DistanceKind::LocalUnknownGain => unknown_gain.distance,
+        };
+        let shortcut = counting.as_ref().map(|counting| shortcut(counting, &signal, by_kind));
         let enough = match kind {
             DistanceKind::Nearest if with_priors.is_none() => {
                 required(self.sure(nearest.distance, nearest.lower))
@@ -237,12 +229,7 @@ impl Study {
             distance_nearest_lower: nearest.lower,
             proof: self.proof_of(&nearest),
             relative_error_nearest: nearest.relative_error,
-            nearest_state: NearestState {
-                temperature_k: nearest.state.temperature_k,
-                lighting: nearest.state.lighting.clone(),
-                gain: nearest.state.gain,
-                environment_temperature_k: environment.then(|| nearest.state.environment_k.clone()),
-            },
+            nearest_state: NearestState::of(&nearest.state, environment),
             nearest_at_edge: nearest.at_edge.iter().map(|parameter| parameter_name(*parameter)).collect(),
             distance_return: back.distance,
             distance_return_lower: back.lower,
@@ -259,20 +246,12 @@ impl Study {
             decided_by: decision.map(|decision| decision.decided_by),
             relative_error_statistical,
             statistical_distance_shortcut: shortcut,
-            detection_probability: few
-                .map_or(statistical.map(detection::probability), |of_few| Some(of_few[1])),
-            detection_probability_bounds: decision.map(|decision| decision.probability),
-            miss_probability: few
-                .map_or(statistical.map(detection::miss_probability), |of_few| Some(1.0 - of_few[1])),
-            information_bits: few.map_or(statistical.map(detection::information_bits), |of_few| {
-                Some((2.0 * of_few[1]).log2())
-            }),
-            mutual_information_bits: statistical
-                .filter(|_| few.is_none())
-                .map(detection::mutual_information_bits),
-            two_sided_probability: statistical
-                .filter(|_| few.is_none())
-                .map(|d| detection::two_sided_probability(d, ratio)),
+            detection_probability: statistical.map(detection::probability),
+            detection_probability_bounds: bounds.map(|ends| ends.map(detection::probability)),
+            miss_probability: statistical.map(detection::miss_probability),
+            information_bits: statistical.map(detection::information_bits),
+            mutual_information_bits: statistical.map(detection::mutual_information_bits),
+            two_sided_probability: statistical.map(|d| detection::two_sided_probability(d, ratio)),
             error_bracket: statistical
                 .filter(|_| kind == DistanceKind::Nearest)
                 .map(detection::error_bracket),

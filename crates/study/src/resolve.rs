@@ -102,16 +102,8 @@ impl Study {
         };
         let (bands, integration, integrals) =
             integrated(&scenario, &asked, &bands, &spectra).map_err(|error| {
-                // A spectrum that does not reach the edges is told by its key.
-                let ends: Vec<f64> =
-                    bands.bands().iter().flat_map(|band| [band.low_cm1, band.high_cm1]).collect();
-                let groups = std::iter::once(&target).chain(&alternatives);
-                let mut each =
-                    groups.flat_map(|group| group.members.iter().map(move |member| (member, &group.key)));
-                let untold = each.find_map(|((material, _), key)| {
-                    material.emissivity(&ends).err().map(|error| error.at(scenario.place(key)))
-                });
-                untold.unwrap_or(error)
+                let mut groups = std::iter::once(&target).chain(&alternatives);
+                groups.find_map(|group| group.short_of(&bands, &scenario)).unwrap_or(error)
             })?;
 
         let nodes = bands.nodes_cm1();
@@ -131,15 +123,7 @@ impl Study {
         let target = members(&target)?;
         let groups = alternatives.iter().map(members).collect::<Result<Vec<_>>>()?;
         let alternatives: Vec<Surface> = groups.iter().flat_map(|group| group.surfaces.clone()).collect();
-        let behind = behind
-            .map(|(temperature_k, material)| {
-                let surface = match &material {
-                    Some(material) => on_nodes(material, "background.material")?,
-                    None => Surface::of(&Material::constant("blackbody", 1.0)?, nodes)?,
-                };
-                Ok::<_, Error>(Behind { surface, temperature_k })
-            })
-            .transpose()?;
+        let behind = behind.map(|of| self::behind(of, nodes, &on_nodes)).transpose()?;
         let required = required(&scenario)?;
         scenario.bands.source = asked;
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
@@ -194,6 +178,19 @@ fn surroundings(
         Ok(EnvironmentObject { temperature_k: object.temperature_k, emissivity })
     });
     Surroundings::new(nodes_cm1, objects.collect::<Result<_>>()?)
+}
+
+/// What is behind the target, at the nodes; a blackbody where it has no material.
+fn behind(
+    (temperature_k, material): (f64, Option<Cow<'_, Material>>),
+    nodes_cm1: &[f64],
+    on_nodes: &dyn Fn(&Material, &str) -> Result<Surface>,
+) -> Result<Behind> {
+    let surface = match &material {
+        Some(material) => on_nodes(material, "background.material")?,
+        None => Surface::of(&Material::constant("blackbody", 1.0)?, nodes_cm1)?,
+    };
+    Ok(Behind { surface, temperature_k })
 }
 
 /// The statistical distance that is asked for.

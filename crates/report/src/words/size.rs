@@ -6,7 +6,7 @@ mod text;
 
 pub use text::{check, text};
 
-use super::probability::{demanded, percent, reliability};
+use super::probability::{demanded, reliability};
 use super::shortfall::clauses;
 use super::text::numbers::in_a_row;
 use super::{Say, conditions};
@@ -118,19 +118,14 @@ fn answered(finding: &Finding) -> String {
                 significant(*photons, 3)
             )
         }
-        Answer::Judged {
-            undecided: true, reached: Some(reached), proved: Some(proved), probability, ..
-        } => {
-            let [proved, reached] = match probability {
-                Some(of_few) => of_few.map(percent),
-                None => [proved, reached].map(|d| reliability(*d)),
-            };
+        Answer::Judged { undecided: true, reached: Some(reached), proved: Some(proved), .. } => {
+            let [proved, reached] = [proved, reached].map(|d| reliability(*d));
             format!(
                 "Undecided: whether {camera} can tell {target} from {other} with {wanted} reliability; {proved} are proved, and no state \
                  was found in which it is less than {reached}."
             )
         }
-        Answer::Judged { enough, spoiled, reached, probability, .. } => {
+        Answer::Judged { enough, spoiled, reached, few_counts, .. } => {
             let (yes, can) = match (enough, spoiled.is_empty()) {
                 (true, true) => (yes(finding), "can"),
                 (true, false) => ("No".into(), "could"),
@@ -138,14 +133,11 @@ fn answered(finding: &Finding) -> String {
             };
             let end = match reached {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
-                Some(_) if probability.is_some() => {
-                    let most = probability.map_or_else(String::new, |[_, most]| percent(most));
-                    format!("; it reaches {most} at most, of counts so few that this is their own law.")
-                }
                 Some(reached) => {
                     let one = if finding.pixels.is_some() { "a pixel" } else { "it" };
                     let all = of_pixels(finding, *reached);
-                    format!("; {one} reaches {} at most{all}.", reliability(*reached))
+                    let few = if *few_counts { ", by the own law of counts so few" } else { "" };
+                    format!("; {one} reaches {} at most{few}{all}.", reliability(*reached))
                 }
                 None => ".".into(),
             };
@@ -252,7 +244,7 @@ mod tests {
             spoiled,
             reached: Some(2.0),
             proved: Some(2.0),
-            probability: None,
+            few_counts: false,
             limit: Some(2.0),
         })
     }
@@ -283,7 +275,7 @@ mod tests {
             spoiled: Vec::new(),
             reached: Some(1.1),
             proved: Some(0.8),
-            probability: None,
+            few_counts: false,
             limit: Some(1.1),
         };
         let said = finding(found).say();

@@ -174,7 +174,7 @@ function solvedCells(one) {
 }
 
 function pairRow(pair) {
-  const verdict = pair.told_apart === null ? "-" : pair.told_apart ? "yes" : "no";
+  const verdict = pair.told ?? "-";
   const numbers = [pair.distance_nearest, pair.photons_required, pair.statistical_distance, pair.detection_probability];
   return element(
     "tr", {},

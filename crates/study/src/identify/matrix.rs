@@ -215,7 +215,7 @@ impl Study {
                 self.alternatives.iter().enumerate(),
                 &[Thing::LocalDistances],
                 |(i, alternative)| {
-                    let (_, decision) = self.decided(kind, alternative, &counting)?;
+                    let decision = self.decided(kind, alternative, &counting)?;
                     Ok((decision.told != YesNo::Yes).then_some(i))
                 },
             )?

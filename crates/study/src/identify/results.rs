@@ -6,6 +6,7 @@ use hadar::demand::Work;
 use hadar::identifiability::Status;
 use hadar::identifiability::decision::DecisionLaw;
 use hadar::identifiability::detection::ErrorBracket;
+use hadar::scene::State;
 use hadar_scenario::{DistanceKind, Scenario};
 use std::collections::BTreeMap;
 
@@ -82,6 +83,18 @@ pub struct NearestState {
     /// Temperatures of the environment objects, K, where they are unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub environment_temperature_k: Option<Vec<f64>>,
+}
+
+impl NearestState {
+    /// Of a state, with the temperatures of the surroundings where they are unknown.
+    pub(crate) fn of(state: &State, environment: bool) -> Self {
+        Self {
+            temperature_k: state.temperature_k,
+            lighting: state.lighting.clone(),
+            gain: state.gain,
+            environment_temperature_k: environment.then(|| state.environment_k.clone()),
+        }
+    }
 }
 
 /// Photons for the requirement by each reading of the distance, shot noise only.
@@ -161,7 +174,8 @@ pub struct PairResult {
     pub photons_required_bounds: [Option<f64>; 2],
     /// Photons for the requirement by all three readings, as they were found.
     pub photons_required_by: PhotonsRequired,
-    /// Statistical distance of the camera by the chosen distance, with its noise, as a state that was found shows it.
+    /// Statistical distance of the camera by the chosen distance, with its noise, as a state that was found shows it; of few counts that at
+    /// which Φ is the probability by their own law.
     pub statistical_distance: Option<f64>,
     /// The same by the nearest distance: the limit, whichever decides.
     pub statistical_distance_nearest: Option<f64>,
@@ -175,7 +189,7 @@ pub struct PairResult {
     pub decided_by: Option<DecisionLaw>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
     pub statistical_distance_shortcut: Option<f64>,
-    /// Φ(d), or that of counts so few that Φ does not hold.
+    /// Φ(d).
     pub detection_probability: Option<f64>,
     /// What it is at least, as proved, and at most.
     pub detection_probability_bounds: Option<[f64; 2]>,

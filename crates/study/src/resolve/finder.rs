@@ -272,6 +272,13 @@ pub(super) struct Group<'a> {
 }
 
 impl<'a> Group<'a> {
+    /// That a member is not known at the edges of all bands, by its key.
+    pub(super) fn short_of(&self, bands: &Bands, scenario: &Scenario) -> Option<Error> {
+        let ends: Vec<f64> = bands.bands().iter().flat_map(|band| [band.low_cm1, band.high_cm1]).collect();
+        let error = self.members.iter().find_map(|(material, _)| material.emissivity(&ends).err())?;
+        Some(error.at(scenario.place(&self.key)))
+    }
+
     fn of_one(material: Cow<'a, Material>, key: &str) -> Self {
         let (name, key) = (material.name().to_owned(), key.to_owned());
         Self { name, key, spec: None, members: vec![(material, 1.0)] }

@@ -206,6 +206,16 @@ pub(crate) fn brightest(ranges: &Ranges) -> State {
     }
 }
 
+/// The scene in which every band is darkest.
+pub(crate) fn darkest(ranges: &Ranges) -> State {
+    State {
+        temperature_k: ranges.temperature_k()[0],
+        lighting: ranges.lighting().iter().map(|range| range[0]).collect(),
+        gain: 1.0,
+        environment_k: ranges.environment_k().iter().map(|range| range[0]).collect(),
+    }
+}
+
 /// Share of the hemisphere above the target that no object fills, at most.
 pub(crate) fn unlit(ranges: &Ranges) -> f64 {
     1.0 - ranges.lighting().iter().map(|range| range[0]).sum::<f64>()

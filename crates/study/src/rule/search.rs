@@ -7,7 +7,7 @@
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
-use super::envelope::{Estimate, Sighted, brightest, unlit};
+use super::envelope::{Estimate, Sighted, brightest, darkest, unlit};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged, Uncertain};
 use crate::condition::Condition;
@@ -117,22 +117,10 @@ impl TellApart {
         }
         let guarded = |uncertain: &Uncertain<'_>| self.guarded(uncertain, candidate, &worst, near, &at);
         let uncertainty = uncertain.as_ref().map(guarded).transpose()?;
-        let Judged { mut verdict, mut fails_by, mut undecided_by } =
+        let judged =
             uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
-        // 'Can' is said of what is proved, and of few counts by their own law: between that and the worst scene found it is undecided.
-        let counting = at.counting();
-        let surely = counting.as_ref().map_or(self.required, |counting| at.surely_required(counting));
-        let bound = worst.lower_bound.or((surely > self.required).then_some(distance));
-        let few_counts_may_do = match &counting {
-            Some(counting) if surely > self.required && fails_by == [Shortfall::Distance] => {
-                at.decided(self.scenario.requirement.by, surface, counting)?.1.told != YesNo::No
-            }
-            _ => false,
-        };
-        if few_counts_may_do || verdict == Verdict::Meets && bound.is_some_and(|bound| bound < surely) {
-            (verdict, undecided_by) = (Verdict::Undecided, vec![Shortfall::Distance]);
-            fails_by.clear();
-        }
+        let Judged { verdict, fails_by, undecided_by } =
+            self.as_proved(candidate, judged, &worst, (&at, surface))?;
         let passes = verdict == Verdict::Meets;
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
         let certificate =
@@ -202,6 +190,39 @@ impl TellApart {
             conditions,
             warnings,
         })
+    }
+
+    /// 'Can' is said of what is proved, and of few counts by their own law: between that and the worst scene found it is undecided.
+    fn as_proved(
+        &self,
+        candidate: &Candidate,
+        judged: Judged,
+        worst: &Searched,
+        (at, surface): (&Study, &Surface),
+    ) -> Result<Judged> {
+        let surely = self.surely_required(candidate);
+        let few_counts = surely > self.required;
+        let bound = worst.lower_bound.or(few_counts.then_some(worst.pair.distance));
+        let may_do = match at.counting() {
+            Some(counting) if few_counts && judged.fails_by == [Shortfall::Distance] => {
+                at.decided(self.scenario.requirement.by, surface, &counting)?.told != YesNo::No
+            }
+            _ => false,
+        };
+        if may_do || judged.verdict == Verdict::Meets && bound.is_some_and(|bound| bound < surely) {
+            let (fails_by, undecided_by) = (Vec::new(), vec![Shortfall::Distance]);
+            return Ok(Judged { verdict: Verdict::Undecided, fails_by, undecided_by });
+        }
+        Ok(judged)
+    }
+
+    /// The statistical distance that surely suffices in every scene, those of the fewest counts among them.
+    fn surely_required(&self, candidate: &Candidate) -> f64 {
+        let of = |sighted: &Sighted| {
+            let dark = Study { state: darkest(&sighted.ranges), ..sighted.study.clone() };
+            dark.counting().map_or(self.required, |counting| dark.surely_required(&counting))
+        };
+        candidate.sighted.iter().map(of).fold(self.required, f64::max)
     }
 
     /// What a 'yes' rests on; of a 'no' what was taken on the unfavourable side.
@@ -511,12 +532,7 @@ fn limiting(
         surroundings_k: environment_k,
         distance_m: at.scenario.target.distance_m,
         distance_matters,
-        nearest_state: NearestState {
-            temperature_k: pair.nearest.temperature_k,
-            lighting: pair.nearest.lighting.clone(),
-            gain: pair.nearest.gain,
-            environment_temperature_k: environment.then(|| pair.nearest.environment_k.clone()),
-        },
+        nearest_state: NearestState::of(&pair.nearest, environment),
         placeholders: at.target.placeholders(surface),
         hardware_m2_s: None,
     }

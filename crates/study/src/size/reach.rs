@@ -127,21 +127,9 @@ impl<'a> Reach<'a> {
         let distances = self.with_solvers(trial, |solvers, bands, counting| {
             let pair = [study.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
             let (found, nearest) = solvers.found(study, pair, (bands, counting), start)?;
-            let distances = match &nearest {
-                Some(nearest) => {
-                    let decision = study.decision(
-                        DistanceKind::Nearest,
-                        alternative,
-                        (bands, counting),
-                        found,
-                        nearest,
-                    )?;
-                    decision.distances(found)
-                }
-                None => found.solved_by(),
-            };
+            let decision = study.decision(alternative, (bands, counting), found, nearest.as_ref())?;
             state = nearest;
-            Ok(distances)
+            Ok(decision.found.solved_by())
         })?;
         self.state = state;
         Ok(distances)

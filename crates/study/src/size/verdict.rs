@@ -133,8 +133,8 @@ pub enum Answer {
         reached: Option<f64>,
         /// What is proved of it.
         proved: Option<f64>,
-        /// Probability of a right answer, at least and at most, of counts so few that Φ(d) does not hold.
-        probability: Option<[f64; 2]>,
+        /// Whether counts are so few that their own law decides.
+        few_counts: bool,
         /// That of the nearest distance, where it is known.
         limit: Option<f64>,
     },
@@ -162,8 +162,7 @@ impl Study {
             // Not to be proved is not to be impossible.
             let own = self.against(index);
             let kind = self.scenario.requirement.by;
-            let (_, decision) = own.decided(kind, &own.alternatives[index], &counting)?;
-            if decision.told != YesNo::No {
+            if own.decided(kind, &own.alternatives[index], &counting)?.told != YesNo::No {
                 return Ok(None);
             }
         }
@@ -179,7 +178,7 @@ impl Study {
             spoiled: spoiled.clone(),
             reached: None,
             proved: None,
-            probability: None,
+            few_counts: false,
             limit: None,
         };
         let brightest = self.brightest_member(camera);
@@ -232,9 +231,7 @@ impl Study {
         let proved = mixtures.map(|found| found.distance_lower);
         let far_enough = pair.told_apart;
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
-        let probability = pair
-            .detection_probability_bounds
-            .filter(|_| pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian));
+        let few_counts = pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian);
         let bounds = pair.statistical_distance_bounds;
         let lower = bounds.map(|[lower, _]| proved.map_or(lower, |proved| lower.min(proved)));
         let upper = bounds.map(|[_, upper]| mixtures.map_or(upper, |found| upper.min(found.distance)));
@@ -260,7 +257,7 @@ impl Study {
                 spoiled,
                 reached: upper,
                 proved: lower,
-                probability,
+                few_counts,
                 limit,
             },
         };

@@ -68,14 +68,9 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
             0.0 => "below 1e-300".to_owned(),
             miss => significant(miss, 3),
         };
-        let own = match (pair.decided_by, pair.detection_probability_bounds) {
-            (Some(law), Some([low, high])) if law != DecisionLaw::Gaussian => {
-                let between = between([low, high], 4);
-                format!("{between}, of counts so few that Phi(d) does not hold")
-            }
-            _ => probability(d, 4),
-        };
-        row(label, format!("{own} (error {error})"), "pairs.detection_probability");
+        let few = pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian);
+        let law = if few { ", by the own law of counts so few" } else { "" };
+        row(label, format!("{} (error {error}{law})", probability(d, 4)), "pairs.detection_probability");
         row("information log2 2P", format!("{} bit", significant(bits, 3)), "pairs.information_bits");
     }
     if let (true, Some(d)) = (by_local, pair.statistical_distance_nearest) {
