@@ -7,7 +7,7 @@
 //! The average is over a lattice of states θ_j, each of which stands for its cell: with ln p quadratic over the cell, of score s
 //! and information H in units of the cell's deviation (width/√12 along each axis),
 //! ln p̄_j = ln p(n | θ_j) + (t − ½t²) sᵀ(1 + H)⁻¹s − ½ ln det(1 + H),
-//! t = 1 unless the most likely place (1 + H)⁻¹s is beyond [`FARTHEST`] deviations, and then what brings it back to there: farther
+//! t = 1 unless the most likely place (1 + H)⁻¹s is beyond `FARTHEST` deviations, and then what brings it back to there: farther
 //! away nothing is quadratic. This is not exact, and makes the test no better than the best one. How much the lattice matters is told by the share of
 //! decisions that every second state alone would change.
 //!

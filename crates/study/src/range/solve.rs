@@ -4,9 +4,9 @@ use super::bounds::Ground;
 use super::results::DepthSolutions;
 use super::signals::DECIDES;
 use super::subject::{Measured, Resolved};
-use super::verified::{Asked, CLOSE, Change, Seen};
+use super::verified::{Asked, CLOSE, Change, Seen, as_f64};
 use super::{Informed, RangeStudy};
-use hadar::cube::{Cube, Shape};
+use hadar::cube::Shape;
 use hadar::error::Result;
 use hadar::ranging::depth::{
     DepthSolution, DepthTask, ExposureNoise, Image, StereoGeometry, WindowSamples, frame_is_over,
@@ -306,11 +306,4 @@ impl Measured {
         };
         Ok(Counts { rows: counts, first, var })
     }
-}
-
-pub(super) fn as_f64(cube: &Cube, rows: Range<usize>) -> Result<Vec<f64>> {
-    Ok(match cube {
-        Cube::F32(cube) => cube.read(rows, &mut Vec::new())?.iter().map(|n| f64::from(*n)).collect(),
-        Cube::F64(cube) => cube.read(rows, &mut Vec::new())?.to_vec(),
-    })
 }

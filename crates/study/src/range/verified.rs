@@ -19,6 +19,7 @@ use hadar::ranging::depth::{DepthSolution, StereoGeometry};
 use hadar::ranging::information::{Cell, information};
 use hadar::ranging::noise::NoiseVariance;
 use hadar_simulate::render::Part;
+use std::ops::Range;
 
 /// Relative distance of the value that is given from one that does not do.
 pub(super) const CLOSE: f64 = 1e-9;
@@ -224,10 +225,18 @@ pub(super) fn scaled(noise: &NoiseVariance, factor: f64) -> Result<NoiseVariance
         NoiseVariance::PerBand(var) => NoiseVariance::PerBand(var.iter().map(|var| var * factor).collect()),
         NoiseVariance::PerSample(cube) => {
             let shape = cube.shape();
-            let mut samples = super::solve::as_f64(cube, 0..shape.rows())?;
+            let mut samples = as_f64(cube, 0..shape.rows())?;
             samples.iter_mut().for_each(|var| *var *= factor);
             NoiseVariance::PerSample(Cube::from(MemoryCube::new(shape, samples)?))
         }
+    })
+}
+
+/// Samples of some rows of a cube.
+pub(super) fn as_f64(cube: &Cube, rows: Range<usize>) -> Result<Vec<f64>> {
+    Ok(match cube {
+        Cube::F32(cube) => cube.read(rows, &mut Vec::new())?.iter().map(|n| f64::from(*n)).collect(),
+        Cube::F64(cube) => cube.read(rows, &mut Vec::new())?.to_vec(),
     })
 }
 

@@ -9,6 +9,7 @@ use crate::distances::Statistical;
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::fisher::Counting;
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::{Nearer, NearestSolver};
 use hadar::policy::{CameraTask, Quantity, Solution, Trial};
@@ -101,12 +102,14 @@ pub(crate) struct Reach<'a> {
     /// Of another distance, the last one: bands as they are received from there, and what the path emits.
     elsewhere: Option<(Option<f64>, Bands, Vec<f64>)>,
     state: Option<State>,
+    /// Whether counts were so few that their own law decides: it is asked of every trial from then on.
+    few_counts: bool,
 }
 
 impl<'a> Reach<'a> {
     pub(crate) fn new(study: &'a Study, alternative: &'a Surface) -> Self {
         let own = Solvers::new(study, &study.bands);
-        Self { study, alternative, own, elsewhere: None, state: None }
+        Self { study, alternative, own, elsewhere: None, state: None, few_counts: false }
     }
 
     /// The statistical distance of a trial, its nearest state followed from the trial before.
@@ -122,16 +125,21 @@ impl<'a> Reach<'a> {
 
     fn evaluate(&mut self, trial: &Trial, start: Option<&State>) -> Result<[f64; 2]> {
         let (study, alternative) = (self.study, self.alternative);
-        self.state = None;
-        let mut state = None;
+        let by_distance = start.is_some() && !self.few_counts;
+        let (mut state, mut few_counts) = (None, self.few_counts);
         let distances = self.with_solvers(trial, |solvers, bands, counting| {
             let pair = [study.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
             let (found, nearest) = solvers.found(study, pair, (bands, counting), start)?;
+            if by_distance {
+                state = nearest;
+                return Ok(found.solved_by());
+            }
             let decision = study.decision(alternative, (bands, counting), found, nearest.as_ref())?;
+            few_counts |= decision.decided_by != DecisionLaw::Gaussian;
             state = nearest;
             Ok(decision.found.solved_by())
         })?;
-        self.state = state;
+        (self.state, self.few_counts) = (state, few_counts);
         Ok(distances)
     }
 
@@ -208,11 +216,12 @@ impl<'a> Reach<'a> {
             let solution = task.solve(quantity, |trial| self.followed(trial))?;
             let Some(value) = solution.value else { return Ok(solution) };
             // A speed is that of an exposure, which is where the search ended.
+            let few_counts = self.few_counts;
             let [_, anew] = self.anew(&task.forward(quantity, value))?;
-            if anew >= solution.statistical_distance * (1.0 - SAME) {
+            if few_counts == self.few_counts && anew >= solution.statistical_distance * (1.0 - SAME) {
                 return Ok(solution);
             }
-            // Another state is nearer at this noise: it is followed from now on.
+            // Another state is nearer at this noise, or counts are few there: that is followed from now on.
         }
         task.solve(quantity, |trial| Ok(self.anew(trial)?[1]))
     }

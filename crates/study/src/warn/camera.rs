@@ -3,6 +3,7 @@
 use super::super::identify::PairResult;
 use super::super::size::CameraResult;
 use super::super::{Proviso, Study, Warning};
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::instrument::Camera;
 use hadar::policy::caps::longest_wavelength_m;
 
@@ -108,6 +109,8 @@ impl Study {
 }
 
 fn shortcut(pair: &PairResult) -> Option<Warning> {
+    // Of few counts it is not the distance that is off.
+    pair.decided_by.filter(|law| *law == DecisionLaw::Gaussian)?;
     let (exact, shortcut) = (pair.statistical_distance?, pair.statistical_distance_shortcut?);
     let off = shortcut / exact - 1.0;
     (exact > 0.0 && off.abs() > SHORTCUT).then_some(Warning::GammaShortcut { off })

@@ -301,7 +301,9 @@ fn without_priors_an_average_is_the_law_of_two_points() {
     let wide = scene.bound(&free(&[Temperature]).prior(Temperature, 3.0).unwrap());
     let found = wide.average_probability(same, &counting(1e6)).unwrap();
     assert!(found.lower == Some(0.5) && found.upper < 0.51, "{found:?}");
-    assert_eq!(wide.photons_for_average(same, 0.8, &|_, _| ()).unwrap(), None);
+    // No number suffices, or none that is known, beyond what the digits of equal spectra tell.
+    let needed = wide.photons_for_average(same, 0.8, &|_, _| ()).unwrap();
+    assert!(needed.is_none_or(|needed| needed.upper.is_none() && needed.lower > 1e15), "{needed:?}");
 }
 
 /// What has no prior is the adversary's: the limit is no higher than where it is known, no test is promised anything, and with a

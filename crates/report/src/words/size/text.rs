@@ -1,7 +1,7 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
 use super::rows;
-use crate::text::footing::{assumptions, gaussian, warnings};
+use crate::text::footing::{assumptions, of_counts, warnings};
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::words::Say;
@@ -50,7 +50,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
     if let Some(found) = &result.companion {
         out.push_str(&companion::text(found, study.units()));
     }
-    out.push_str(&assumptions(study, gaussian(study)));
+    out.push_str(&assumptions(study, of_counts(study, &result.pairs)));
     out.push_str(&warnings(&result.warnings));
     out
 }

@@ -2,11 +2,12 @@
 
 use super::numbers::listed;
 use crate::words::Say;
+use hadar::identifiability::decision::DecisionLaw;
 use hadar::instrument::Readout;
 use hadar_formats::cube::Found;
 use hadar_scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario, Setting};
 use hadar_study::warning::by_code;
-use hadar_study::{Identification, Study, Warning};
+use hadar_study::{Identification, PairResult, Study, Warning};
 use std::fmt::Write as _;
 
 /// Headings that end an answer, in this order.
@@ -42,7 +43,7 @@ pub fn with_settings(answer: &str, settings: &[Setting]) -> String {
 
 /// What results rest on, and what the reader must know.
 pub(crate) fn footing(result: &Identification, study: &Study) -> String {
-    assumptions(study, gaussian(study)) + &warnings(&result.warnings)
+    assumptions(study, of_counts(study, &result.pairs)) + &warnings(&result.warnings)
 }
 
 /// What is unknown, and what is known of it beforehand.
@@ -76,6 +77,15 @@ fn unknown(scenario: &Scenario) -> String {
 }
 
 /// What distances take counts for, and what the one that decides is.
+pub(crate) fn of_counts(study: &Study, pairs: &[PairResult]) -> &'static str {
+    let few = |pair: &PairResult| pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian);
+    if pairs.iter().any(few) {
+        return "counts so few that their own law decides; two equally likely materials; its bounds are a limit, not a promise";
+    }
+    gaussian(study)
+}
+
+/// The same of counts that are many.
 pub(crate) fn gaussian(study: &Study) -> &'static str {
     match study.scenario().requirement.by {
         DistanceKind::Nearest => {
