@@ -58,6 +58,8 @@ pub struct RangePlan {
     pub skipping: Skipping,
     /// Whether yes or no is enough.
     pub verdict_alone: bool,
+    /// Whether what would have to change is left out, whose every look may render the scene.
+    pub bounds_alone: bool,
 }
 
 /// Is told how much of how much is done.
@@ -153,7 +155,7 @@ impl RangeStudy {
             return Ok(result);
         }
         if let Some(cube) = self.too_large_to_keep(shape) {
-            return self.streamed(cube, sink, progress);
+            return self.streamed(cube, plan, sink, progress);
         }
         let informed = self.informed(shape, progress)?;
         let ground = self.ground(&informed.truth, shape)?;
@@ -179,7 +181,10 @@ impl RangeStudy {
             maps.pictures = self.pictures(pair);
             maps.brightest = self.brightest(pair)?;
         }
-        let solve_for = self.solutions(&informed, shape, (&ground, &windows), &variances)?;
+        let solve_for = match plan.bounds_alone {
+            true => None,
+            false => self.solutions(&informed, shape, (&ground, &windows), &variances)?,
+        };
         // The views that are matched have no diffraction.
         let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
         let rows = self.line_rows(&maps.rows);

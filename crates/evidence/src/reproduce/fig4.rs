@@ -4,7 +4,6 @@ use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order, Progress};
 use super::texture::{global_entropy, local_entropy, standard_deviation};
 use hadar::cube::{Cube, MemoryCube, Rows as _};
-use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar::ranging::derivative::Derivative;
@@ -34,7 +33,7 @@ pub(super) fn study(toml: &str) -> Result<RangeStudy> {
 }
 
 pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
-    let plan = RangePlan { trials: TRIALS, seed: order.seed, skipping: Skipping::On, verdict_alone: false };
+    let plan = RangePlan { trials: TRIALS, seed: order.seed, bounds_alone: true, ..RangePlan::default() };
     let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&plan, None, progress)?;
     let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, None, progress)?;
     let dim = study(&dimmer())?.range(&plan, None, progress)?;
@@ -111,7 +110,11 @@ fn dependence() -> Result<(Table, String)> {
         ("100 times the exposure", "\"12 ms\"", "\"1.2 s\""),
         ("noise of 1e4 counts", "noise_electrons = 0", "noise_electrons = 10000"),
     ] {
-        let result = study(&coarse.replace(from, to))?.range(&RangePlan::default(), None, &|_, _| ())?;
+        let result = study(&coarse.replace(from, to))?.range(
+            &RangePlan { bounds_alone: true, ..RangePlan::default() },
+            None,
+            &|_, _| (),
+        )?;
         let error = |signal: Signal| {
             of(&result, "ground", signal)
                 .and_then(|found| found.depth_error_m)
@@ -260,7 +263,11 @@ fn picture_of(
 
 /// Fisher information, standard deviation and entropy side by side.
 pub(super) fn textures(order: Order) -> Result<Made> {
-    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&RangePlan::default(), None, &|_, _| ())?;
+    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(
+        &RangePlan { bounds_alone: true, ..RangePlan::default() },
+        None,
+        &|_, _| (),
+    )?;
     let columns = paper.shape.columns();
     let picture = |kind: PictureKind| {
         paper.maps.pictures.iter().find(|(found, _)| *found == kind).map(|(_, values)| values)

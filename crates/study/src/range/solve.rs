@@ -4,7 +4,7 @@ use super::bounds::Ground;
 use super::results::DepthSolutions;
 use super::signals::DECIDES;
 use super::subject::{Measured, Resolved};
-use super::verified::{Asked, CLOSE, Change, Seen, as_f64};
+use super::verified::{Asked, CLOSE, CLOSE_OF_RENDERED, Change, as_f64};
 use super::{Informed, RangeStudy};
 use hadar::cube::Shape;
 use hadar::error::Result;
@@ -28,7 +28,10 @@ pub(super) struct Every<'a> {
     pub(super) well: Option<(f64, f64)>,
     /// How near to a value that does not do what is given must be.
     pub(super) close: f64,
-    pub(super) seen: &'a dyn Fn(Change) -> Result<Option<Seen>>,
+    /// The error at the demanded share of all windows over what is allowed; `None` where no window is left.
+    pub(super) ratio: &'a dyn Fn(Change) -> Result<Option<f64>>,
+    /// The same as the camera is.
+    pub(super) ratio_now: f64,
 }
 
 /// Rows of counts of a view, in photons, with σ² of a sample of band b.
@@ -50,13 +53,14 @@ impl RangeStudy {
         let place = informed.left.iter().position(|map| map.signal == DECIDES);
         let Some(var) = place.and_then(|at| variances.get(at)) else { return Ok(None) };
         let decisive = ground.decisive(windows, var)?.filter(|(ratio, ..)| ratio.is_finite());
-        let Some((_, window, depth_m)) = decisive else { return Ok(None) };
+        let Some((ratio_now, window, depth_m)) = decisive else { return Ok(None) };
         let every = Every {
             pair: informed.pair.as_ref(),
             var_diffraction_px2: ground.var_diffraction_px2,
             well: self.photons_of_the_well(informed)?,
             close: CLOSE,
-            seen: &|change| self.seen_with(informed, shape, change),
+            ratio: &|change| self.ratio_with(informed, shape, change),
+            ratio_now,
         };
         self.solved(window, depth_m, &every)
     }
@@ -68,14 +72,7 @@ impl RangeStudy {
         depth_m: f64,
         every: &Every<'_>,
     ) -> Result<Option<DepthSolutions>> {
-        let here = Seen { met: false, window: (row, column), depth_m };
-        let Some(first) = self.of_window(here, every)? else { return Ok(None) };
-        let again =
-            |of: &dyn Fn(&DepthSolutions) -> Option<&DepthSolution>, seen: Seen| -> Result<Option<f64>> {
-                let found = self.of_window(seen, every)?;
-                let solution = found.as_ref().and_then(of);
-                Ok(solution.and_then(|solution| Some(solution.value? / solution.camera)).filter(|x| *x > 0.0))
-            };
+        let Some(first) = self.of_window((row, column), depth_m, every)? else { return Ok(None) };
         let as_it_is = Change {
             photons: 1.0,
             noise: 1.0,
@@ -95,11 +92,11 @@ impl RangeStudy {
             rises: true,
             best: 1e30,
             cap: None,
-            seen: &|factor| (every.seen)(Change { geometry: geometry(factor)?, ..as_it_is }),
-            of_window: &|seen| again(&|found| Some(&found.baseline_m), seen),
-            close: every.close,
+            ratio: &|factor| (every.ratio)(Change { geometry: geometry(factor)?, ..as_it_is }),
+            ratio_now: every.ratio_now,
+            close: if every.pair.is_some() { CLOSE_OF_RENDERED } else { every.close },
         }
-        .of_all(first.baseline_m.clone())?;
+        .of_all(first.baseline_m.clone());
         let Some(camera) = &self.camera else { return Ok(Some(DepthSolutions { baseline_m, ..first })) };
 
         let noise = self.exposure_noise(camera);
@@ -113,11 +110,11 @@ impl RangeStudy {
             rises: true,
             best: 1e30,
             cap: longest.min_by(|a, b| a.0.total_cmp(&b.0)),
-            seen: &|factor| {
+            ratio: &|factor| {
                 let noise = growth(factor) / growth(1.0);
-                (every.seen)(Change { photons: factor, noise, ..as_it_is })
+                (every.ratio)(Change { photons: factor, noise, ..as_it_is })
             },
-            of_window: &|seen| again(&|found| found.exposure_s.as_ref(), seen),
+            ratio_now: every.ratio_now,
             close: every.close,
         };
         let aperture_m = camera.focal_length_m / camera.f_number;
@@ -126,32 +123,31 @@ impl RangeStudy {
             rises: true,
             best: camera.f_number / instrument::FASTEST_F_NUMBER,
             cap: well(0.5, false),
-            seen: &|factor| {
+            ratio: &|factor| {
                 let var_diffraction_px2 = match every.var_diffraction_px2 {
                     0.0 => 0.0,
                     _ => self.var_diffraction_m2(aperture_m * factor)? / (pitch * pitch),
                 };
-                (every.seen)(Change { photons: factor * factor, var_diffraction_px2, ..as_it_is })
+                (every.ratio)(Change { photons: factor * factor, var_diffraction_px2, ..as_it_is })
             },
-            of_window: &|seen| again(&|found| found.aperture_m.as_ref(), seen),
+            ratio_now: every.ratio_now,
             close: every.close,
         };
         let noise = Asked {
             rises: false,
             best: 1e-30,
             cap: None,
-            seen: &|factor| (every.seen)(Change { noise: factor * factor, ..as_it_is }),
-            of_window: &|seen| again(&|found| found.noise_counts.as_ref(), seen),
+            ratio: &|factor| (every.ratio)(Change { noise: factor * factor, ..as_it_is }),
+            ratio_now: every.ratio_now,
             close: every.close,
         };
-        let of = |asked: Asked<'_>, first: &Option<DepthSolution>| {
-            first.clone().map(|first| asked.of_all(first)).transpose()
-        };
+        let of =
+            |asked: Asked<'_>, first: &Option<DepthSolution>| first.clone().map(|first| asked.of_all(first));
         Ok(Some(DepthSolutions {
             baseline_m,
-            exposure_s: of(exposure, &first.exposure_s)?,
-            aperture_m: of(aperture, &first.aperture_m)?,
-            noise_counts: of(noise, &first.noise_counts)?,
+            exposure_s: of(exposure, &first.exposure_s),
+            aperture_m: of(aperture, &first.aperture_m),
+            noise_counts: of(noise, &first.noise_counts),
             ..first
         }))
     }
@@ -165,8 +161,13 @@ impl RangeStudy {
     }
 
     /// Each quantity for one window, seen in a rendered pair or in cubes.
-    fn of_window(&self, seen: Seen, every: &Every<'_>) -> Result<Option<DepthSolutions>> {
-        let (Seen { window: (row, column), depth_m, .. }, pair) = (seen, every.pair);
+    fn of_window(
+        &self,
+        (row, column): (usize, usize),
+        depth_m: f64,
+        every: &Every<'_>,
+    ) -> Result<Option<DepthSolutions>> {
+        let pair = every.pair;
         let disparity = self.geometry.disparity_px(depth_m)?;
         let partner = (column as f64 - disparity).round();
         let left = self.samples(pair, true, row, column)?;

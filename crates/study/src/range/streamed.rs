@@ -16,11 +16,12 @@ use super::results::{
 use super::signals::{DECIDES, SignalMap};
 use super::solve::Every;
 use super::subject::{Depth, Measured, Resolved, Truth, nothing_left, nothing_to_see};
-use super::verified::{Change, Seen, scaled};
-use super::{MapSink, Progress};
+use super::verified::{Change, scaled};
+use super::{MapSink, Progress, RangePlan};
 use hadar::cube::Shape;
 use hadar::demand::{self, Ledger, Reason, Thing};
 use hadar::error::{Error, Result};
+use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::information::{Cell, InformationMap, Request, centres, information_by_rows};
 use hadar::ranging::noise::Joined;
 use std::collections::BTreeMap;
@@ -35,7 +36,7 @@ const KEPT: usize = 1 << 20;
 const AT_ONCE: usize = 1 << 16;
 
 /// How near to a value that does not do what is solved for must be: every step nearer is a pass over the cube.
-const CLOSE_OF_MANY: f64 = 1e-5;
+const CLOSE_OF_MANY: f64 = 1e-3;
 
 /// Signals of a cube.
 const SIGNALS: [Signal; 2] = [Signal::ThermalImage, Signal::HeatCube];
@@ -95,6 +96,7 @@ impl RangeStudy {
     pub(super) fn streamed(
         &self,
         cube: &Measured,
+        plan: &RangePlan,
         sink: Option<&dyn MapSink>,
         progress: Progress<'_>,
     ) -> Result<Ranging> {
@@ -142,7 +144,7 @@ impl RangeStudy {
             return Err(nothing_left(missing_windows));
         }
         let cells = setting.cells(&counted, &request)?;
-        let solve_for = setting.solutions(&counted)?;
+        let solve_for = if plan.bounds_alone { None } else { setting.solutions(&counted)? };
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
         demand::computed(Thing::Samples, shape.len() as u64);
@@ -340,13 +342,16 @@ impl Setting<'_> {
     /// What would have to change, so that it holds for the demanded share of all windows.
     fn solutions(&self, counted: &Counted) -> Result<Option<DepthSolutions>> {
         let (Some(depth_m), [_, of]) = (self.depth_m, &counted.signals) else { return Ok(None) };
-        let Some((_, window)) = self.at_share(&locked(&of.disparity_error_px)) else { return Ok(None) };
+        let Some((error_px, window)) = self.at_share(&locked(&of.disparity_error_px)) else {
+            return Ok(None);
+        };
         let every = Every {
             pair: None,
             var_diffraction_px2: self.var_diffraction_px2[0],
             well: None,
             close: CLOSE_OF_MANY,
-            seen: &|change| self.seen_with(depth_m, change),
+            ratio: &|change| self.ratio_with(depth_m, change),
+            ratio_now: error_px / self.allowed_px(depth_m, &self.study.geometry),
         };
         self.study.solved(window, depth_m, &every)
     }
@@ -359,13 +364,17 @@ impl Setting<'_> {
         error_px.is_finite().then_some((error_px, (self.rows.start + row, self.columns.start + column)))
     }
 
-    /// All windows with a change.
-    fn seen_with(&self, depth_m: f64, change: Change) -> Result<Option<Seen>> {
+    fn allowed_px(&self, depth_m: f64, geometry: &StereoGeometry) -> f64 {
+        self.study.scenario.requirement.error.at(depth_m) / geometry.metres_per_pixel(depth_m)
+    }
+
+    /// The error at the demanded share of all windows over what is allowed, with a change: within a step of the histogram, on the side of
+    /// 1 that the windows say.
+    fn ratio_with(&self, depth_m: f64, change: Change) -> Result<Option<f64>> {
         let noise = self.cube.noise_per_unit()?;
         let noise = scaled(noise.as_ref().unwrap_or(&self.cube.noise), change.noise / change.photons)?;
         let request = self.study.request(&noise, &[Cell::Full], self.shape);
-        let allowed_px =
-            self.study.scenario.requirement.error.at(depth_m) / change.geometry.metres_per_pixel(depth_m);
+        let allowed_px = self.allowed_px(depth_m, &change.geometry);
         let (errors, met) = (Mutex::new(Distribution::default()), AtomicUsize::new(0));
         information_by_rows(&self.cube.left, &request, &|cells| {
             let map = SignalMap::of(DECIDES, Cell::Full, cells);
@@ -379,7 +388,8 @@ impl Setting<'_> {
         let errors = locked(&errors);
         let share = met.load(Ordering::Relaxed) as f64 / errors.len() as f64;
         let met = share >= self.study.scenario.requirement.share;
-        Ok(self.at_share(&errors).map(|(_, window)| Seen { met, window, depth_m }))
+        let found = self.at_share(&errors).map(|(error_px, _)| error_px / allowed_px);
+        Ok(found.map(|ratio| if met { ratio.min(1.0) } else { ratio.max(1.0 + f64::EPSILON) }))
     }
 
     /// Bounds along the lines that are asked for.

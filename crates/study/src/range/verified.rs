@@ -1,9 +1,9 @@
 //! What would just meet the demand, asked of all windows.
 //!
 //! A quantity is solved for one window, that at the demanded share in the order of the windows' errors over what is allowed them.
-//! The order changes with the quantity, so the answer is put in: all windows are looked at there, the window that is at the share
-//! then is solved for, and so on, between the nearest value that does and the nearest that does not, which are halved where that leads
-//! out of them. What is given does, and is [`CLOSE`] to what does not.
+//! The order changes with the quantity, so the answer is put in, all windows are looked at there, and ln of the error at the share is
+//! followed over ln of the quantity by the secant (by halves where that is slow) to its crossing. What is given does, and is [`CLOSE`]
+//! to what does not.
 //!
 //! With k times the photons and q times the variance of the noise J(kN, qσ²) = k J(N, qσ²/k): one pass over the samples. What all
 //! windows say is monotone in exposure, aperture and noise, since each is (flicker grows no faster than the square of the photons);
@@ -21,8 +21,10 @@ use hadar::ranging::noise::NoiseVariance;
 use hadar_simulate::render::Part;
 use std::ops::Range;
 
-/// Relative distance of the value that is given from one that does not do.
-pub(super) const CLOSE: f64 = 1e-9;
+/// Relative distance, at most, of the value that is given from one that does not do.
+pub(super) const CLOSE: f64 = 1e-6;
+/// The same where each look renders the scene.
+pub(super) const CLOSE_OF_RENDERED: f64 = 1e-3;
 /// Passes over all windows for one quantity, at most.
 const PASSES: usize = 60;
 /// Factor by which a side without a value is looked for.
@@ -38,16 +40,6 @@ pub(super) struct Change {
     pub(super) geometry: StereoGeometry,
 }
 
-/// All windows at one value.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Seen {
-    /// Whether enough of them reach the demand.
-    pub(super) met: bool,
-    /// The window that decides, and its depth.
-    pub(super) window: (usize, usize),
-    pub(super) depth_m: f64,
-}
-
 /// A quantity that is solved for by its factor over the camera's own value.
 pub(super) struct Asked<'a> {
     /// Whether a larger value does better.
@@ -56,21 +48,34 @@ pub(super) struct Asked<'a> {
     pub(super) best: f64,
     /// The factor beyond which something else than the demand fails, and what to say of it.
     pub(super) cap: Option<(f64, String)>,
-    /// All windows at a factor; `None` where none is left.
-    pub(super) seen: &'a dyn Fn(f64) -> Result<Option<Seen>>,
-    /// The factor at which a window just does, if any.
-    pub(super) of_window: &'a dyn Fn(Seen) -> Result<Option<f64>>,
+    /// The error at the demanded share of all windows over what is allowed, at a factor; `None` where no window is left.
+    pub(super) ratio: &'a dyn Fn(f64) -> Result<Option<f64>>,
+    /// The same as the camera is.
+    pub(super) ratio_now: f64,
     /// How near to a value that does not do what is given must be.
     pub(super) close: f64,
 }
 
+/// A look at all windows: ln of the factor, and ln of the error over what is allowed there.
+#[derive(Debug, Clone, Copy)]
+struct Look {
+    x: f64,
+    f: f64,
+}
+
+impl Look {
+    fn does(self) -> bool {
+        self.f <= 0.0
+    }
+}
+
 impl Asked<'_> {
     /// `first`, a solution of one window, solved on until it holds for all.
-    pub(super) fn of_all(&self, first: DepthSolution) -> Result<DepthSolution> {
+    pub(super) fn of_all(&self, first: DepthSolution) -> DepthSolution {
         let camera = first.camera;
         // A quantity that is 0 has no factor.
         if !(camera > 0.0 && first.sigma_z_m.is_finite()) {
-            return Ok(first);
+            return first;
         }
         let none = |first: DepthSolution, reason: Option<String>| {
             let mut none = first;
@@ -78,78 +83,74 @@ impl Asked<'_> {
             none.reason = reason.or(none.reason);
             none
         };
-        let mut at = match first.value {
-            Some(value) if value > 0.0 => value / camera,
-            // What cannot be looked at does not do.
-            _ if (self.seen)(self.best).is_ok_and(|seen| seen.is_some_and(|seen| seen.met)) => self.best,
-            _ => return Ok(none(first, None)),
+        let guess = match first.value {
+            Some(value) if value > 0.0 => (value / camera).ln(),
+            _ if self.look(self.best.ln()).does() => self.best.ln(),
+            _ => return none(first, None),
         };
-        let (mut does, mut does_not): (Option<f64>, Option<f64>) = (None, None);
-        for _ in 0..PASSES {
-            let seen = (self.seen)(at).unwrap_or(None);
-            match seen {
-                Some(Seen { met: true, .. }) => does = Some(at),
-                _ => does_not = Some(at),
-            }
-            if let (Some(a), Some(b)) = (does, does_not)
-                && (a / b).ln().abs() <= self.close
-            {
-                break;
-            }
-            let solved = seen.map(|seen| (self.of_window)(seen)).transpose()?.flatten();
-            at = self.next(at, solved, does, does_not);
-        }
-        let Some(found) = does else { return Ok(none(first, None)) };
+        let Some(found) = self.nearest_that_does(guess).map(f64::exp) else { return none(first, None) };
         if let Some((most, reason)) = &self.cap
             && found > *most
         {
-            return Ok(none(first, Some(reason.clone())));
+            return none(first, Some(reason.clone()));
         }
         let mut solution = first;
         (solution.value, solution.reason) = (Some(camera * found), None);
-        Ok(solution)
+        solution
     }
 
-    /// Where to look next: at what the deciding window asks for, a little beyond it on the side that is not known yet, else half way.
-    fn next(&self, at: f64, solved: Option<f64>, does: Option<f64>, does_not: Option<f64>) -> f64 {
-        let better = if self.rises { 1.0 } else { -1.0 };
-        match (does, does_not) {
-            (Some(a), Some(b)) => {
-                let inside = |x: &f64| (x / a).ln() * (x / b).ln() < 0.0;
-                // The value itself may do or not by rounding: just beside it, towards the side that is further off.
-                let beside = |x: f64| {
-                    let towards = if (x / a).ln().abs() > (x / b).ln().abs() { a } else { b };
-                    x * (1.0 + 0.25 * self.close * (towards / x).ln().signum())
-                };
-                solved.filter(inside).map(beside).filter(inside).unwrap_or((a * b).sqrt())
-            }
-            // Nothing that fails is known: a little worse than what the window asks for, or much worse.
-            (Some(_), None) => match solved.filter(|x| (x / at).ln() * better < -self.close) {
-                Some(solved) => solved,
-                None if solved.is_some_and(|x| (x / at).ln().abs() <= self.close) => {
-                    at * (-better * 0.5 * self.close).exp()
+    /// What cannot be looked at does not do.
+    fn look(&self, x: f64) -> Look {
+        let ratio = (self.ratio)(x.exp()).ok().flatten().unwrap_or(f64::NAN);
+        Look { x, f: if ratio.is_nan() { f64::INFINITY } else { ratio.ln() } }
+    }
+
+    /// The value that does, as ln of the factor, that is [`Self::close`] to one that does not; the first look is at `guess`.
+    fn nearest_that_does(&self, guess: f64) -> Option<f64> {
+        let mut last = Look { x: 0.0, f: self.ratio_now.ln() };
+        let (mut does, mut does_not) = (last.does().then_some(last), (!last.does()).then_some(last));
+        let (mut x, mut width) = (guess, [f64::INFINITY; 2]);
+        for _ in 0..PASSES {
+            let look = self.look(x);
+            *(if look.does() { &mut does } else { &mut does_not }) = Some(look);
+            let secant = look.x - look.f * (look.x - last.x) / (look.f - last.f);
+            last = look;
+            x = match (does, does_not) {
+                (Some(a), Some(b)) => {
+                    let between = (a.x - b.x).abs();
+                    if between <= self.close {
+                        break;
+                    }
+                    // Half way where two looks have not halved what is left.
+                    let slow = between > 0.5 * width[0];
+                    width = [width[1], between];
+                    let inside = |x: &f64| (x - a.x) * (x - b.x) < 0.0;
+                    // Beyond the crossing by less than what is asked for, so that it lies between two near looks.
+                    let farther = if (secant - a.x).abs() > (secant - b.x).abs() { a.x } else { b.x };
+                    let beyond = secant + 0.4 * self.close * (farther - secant).signum();
+                    Some(beyond).filter(|x| !slow && inside(x)).unwrap_or(0.5 * (a.x + b.x))
                 }
-                None => at * STRIDE.powf(-better),
-            },
-            _ => match solved.filter(|x| (x / at).ln() * better > self.close) {
-                Some(solved) => solved,
-                None if solved.is_some_and(|x| (x / at).ln().abs() <= self.close) => {
-                    at * (better * 0.5 * self.close).exp()
+                (one, _) => {
+                    // Nothing on the other side is known: where the last two looks point to, if that is farther, or a stride on.
+                    let on = if self.rises == one.is_none() { 1.0 } else { -1.0 };
+                    let stride = look.x + on * STRIDE.ln();
+                    let ahead = secant + on * 0.4 * self.close;
+                    Some(ahead).filter(|x| (x - look.x) * on > 0.0 && x.is_finite()).unwrap_or(stride)
                 }
-                None => at * STRIDE.powf(better),
-            },
+            };
         }
+        does.map(|look| look.x)
     }
 }
 
 impl RangeStudy {
-    /// All windows of a rendered pair or of cubes with a change.
-    pub(super) fn seen_with(
+    /// The error at the demanded share of all windows over what is allowed, of a rendered pair or of cubes with a change.
+    pub(super) fn ratio_with(
         &self,
         informed: &Informed,
         shape: Shape,
         change: Change,
-    ) -> Result<Option<Seen>> {
+    ) -> Result<Option<f64>> {
         let moved = change.geometry.baseline_m() != self.geometry.baseline_m();
         let drawn = match (&self.subject, &self.bands) {
             (Resolved::Scene(scene), Some(bands)) if moved => {
@@ -203,8 +204,7 @@ impl RangeStudy {
         let window = self.scenario.stereo.window;
         let windows = ground.windows(&left, [window.half_rows(), window.half_columns()]);
         let variances = ground.variances(&left, right.as_ref(), &windows);
-        let Some((ratio, window, depth_m)) = ground.decisive(&windows, &variances)? else { return Ok(None) };
-        Ok(Some(Seen { met: ratio <= 1.0, window, depth_m }))
+        Ok(ground.decisive(&windows, &variances)?.map(|(ratio, ..)| ratio))
     }
 
     /// Factor of the photons at which the brightest sample of a frame fills its well, if that is known.

@@ -135,7 +135,8 @@ impl DepthClause {
 
     /// What is found from one distance.
     fn seen(&self, distance_m: f64, study: &RangeStudy) -> Result<Seen> {
-        let found = study.range(&RangePlan::default(), None, &|_, _| ())?;
+        let plan = RangePlan { bounds_alone: true, ..RangePlan::default() };
+        let found = study.range(&plan, None, &|_, _| ())?;
         let object = found.objects.iter().find(|object| object.name == self.demand.object.name());
         let by = |signal: Signal| {
             object.and_then(|object| object.signals.iter().find(|bounds| bounds.signal == signal))

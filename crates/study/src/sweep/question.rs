@@ -223,8 +223,12 @@ impl Question {
             }
             Self::Range => match RangingScenario::from_written(written)? {
                 RangingScenario::Stereo(scenario) => {
-                    let plan =
-                        RangePlan { seed: asking.seed, skipping: asking.skipping, ..RangePlan::default() };
+                    let plan = RangePlan {
+                        seed: asking.seed,
+                        skipping: asking.skipping,
+                        bounds_alone: !asking.wants("solve_for"),
+                        ..RangePlan::default()
+                    };
                     let found = RangeStudy::new(&scenario, library)?.range(&plan, None, &|_, _| ())?;
                     self.told(&found, &found.stats, asking)
                 }

@@ -57,7 +57,7 @@ fn what_is_worked_on_by_rows_is_what_is_kept() {
         let Resolved::Cube(cube) = &study.subject else { panic!("no cube") };
         let whole = study.range(&RangePlan::default(), None, &|_, _| ()).unwrap();
         let kept = Kept::default();
-        let rows = study.streamed(cube, Some(&kept), &|_, _| ()).unwrap();
+        let rows = study.streamed(cube, &RangePlan::default(), Some(&kept), &|_, _| ()).unwrap();
 
         let near = |found: f64, exact: f64| {
             let same = found == exact || found.is_nan() && exact.is_nan();

@@ -76,7 +76,7 @@ fn what_is_solved_for_holds_of_all_windows() {
             let study = study(folder.path(), &scenario(noise, baseline));
             let Resolved::Cube(cube) = &study.subject else { panic!("no cube") };
             match by_rows {
-                true => study.streamed(cube, None, &|_, _| ()).unwrap(),
+                true => study.streamed(cube, &RangePlan::default(), None, &|_, _| ()).unwrap(),
                 false => study.range(&RangePlan::default(), None, &|_, _| ()).unwrap(),
             }
         };
