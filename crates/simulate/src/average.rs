@@ -32,7 +32,7 @@ const MOST_DRAWS: usize = 100_000;
 /// Terms of a likelihood this much below its largest, in logarithm, are none.
 const NEGLIGIBLE: f64 = 40.0;
 /// Deviations of a cell beyond which a state does not stand for it.
-const FARTHEST: f64 = 4.0;
+const FARTHEST: f64 = 2.5;
 /// Least mean count that has a logarithm.
 const DARK: f64 = 1e-300;
 
@@ -193,14 +193,13 @@ impl AverageScene<'_> {
         let prior = &self.priors[class];
         let parameters: Vec<Parameter> = prior.parameters().collect();
         let lattice = Lattice::new(STATES, prior.axes(), rng);
-        let share = (STATES as f64).powf(-1.0 / prior.axes().max(1) as f64) / 12.0_f64.sqrt();
         let mut jacobian = self.jacobian();
         let mut nodes = Vec::with_capacity(STATES);
         for i in 0..STATES {
             let shares = lattice.folded(i);
             let Some(state) = prior.state(&shares) else { continue };
             self.evaluate(&mut jacobian, class, &state, &parameters);
-            let widths: Vec<f64> = prior.widths(&shares, share).collect();
+            let widths: Vec<f64> = prior.cell_deviations(&shares, STATES).collect();
             nodes.push(self.node(&jacobian, &widths, middle));
         }
         if nodes.is_empty() {

@@ -2,9 +2,11 @@
 
 mod defaults;
 mod finder;
+mod magnitudes;
 
 use self::defaults::{check_range, fill, state_range, unknowns};
 use self::finder::Finder;
+use self::magnitudes::check_temperatures;
 use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
 use super::camera::check_time;
@@ -60,6 +62,7 @@ impl Study {
     /// The same with all members of classes side by side: those of the target's are [`Study::targets`], the first of which is the
     /// target, and those of the alternatives' are alternatives of their own.
     pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
+        check_temperatures(scenario)?;
         let mut scenario = scenario.clone();
         let mut finder = Finder {
             scenario: &scenario,

@@ -10,7 +10,6 @@
 mod asked;
 mod average;
 mod experiment;
-mod magnitudes;
 mod noise_curves;
 mod photons;
 mod standing;

@@ -75,7 +75,8 @@ impl Bands {
     /// that must be integrated at the wavenumbers it is given (cm⁻¹), one vector per spectrum.
     ///
     /// # Errors
-    /// A tolerance that is not positive, an error of `integrands`, a piece that does not converge, or more than 10⁷ nodes.
+    /// A tolerance that is not positive, an error of `integrands`, an integral that is no number, a piece that does not converge, or
+    /// more than 10⁷ nodes.
     pub fn integrated_where(
         &self,
         which: &[bool],
@@ -212,11 +213,12 @@ impl<F: Fn(&[f64]) -> Result<Vec<Vec<f64>>>> Work<'_, F> {
             found.resize_with(values.len(), Vec::new);
             for (found, values) in found.iter_mut().zip(&values) {
                 let mut at = 0;
-                found.extend(pieces.iter().map(|piece| {
+                for piece in pieces {
                     let own = at..at + RULES[piece.rule + next];
                     at = own.end;
-                    crate::sum::dot(&values[own.clone()], &weights[own])
-                }));
+                    let integral = crate::sum::dot(&values[own.clone()], &weights[own]);
+                    found.push(check::finite("integral of a spectrum over a band", integral, "")?);
+                }
             }
         }
         Ok(found)
@@ -288,6 +290,15 @@ mod tests {
             let value = fine.bands.weigh(&line(903.0, width)(fine.bands.nodes_cm1()).unwrap()[0])[0];
             let exact = width * ((47.0 / width).atan() + (53.0 / width).atan());
             assert!((value / exact - 1.0).abs() < 1e-9, "{width}: {value} {exact}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused_at_once() {
+        let bands = Bands::from_rows([(900.0, 100.0)]).unwrap();
+        for large in [f64::NAN, f64::INFINITY, 1e308] {
+            let found = bands.integrated(&[], 1e-9, |nodes| Ok(vec![vec![large; nodes.len()]]));
+            assert!(found.unwrap_err().to_string().contains("integral of a spectrum"));
         }
     }
 

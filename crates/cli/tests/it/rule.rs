@@ -274,7 +274,7 @@ fn limiting_scenario(scene: &hadar_study::LimitingScene, camera: &str, required:
     Scenario::from_toml(&text, None).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// 1e-9: the crossing is found to the last bits, the nearest distance itself to 1e-11.
+/// 3e-9: a thousand-millionth more is asked for than is required; the crossing is found to the last bits, the nearest distance itself to 1e-11.
 #[test]
 fn what_would_fix_a_camera_does_when_it_is_put_back() {
     let now = answer(RULE).cameras[0].statistical_distance;
@@ -298,7 +298,7 @@ fn what_would_fix_a_camera_does_when_it_is_put_back() {
             let sizing = Study::new(&scenario, library()).and_then(|study| study.size()).unwrap();
             let reached = sizing.verdict.statistical_distance.unwrap() / required;
             let exact = quantity.key() != "frames";
-            assert!(reached > 1.0 - 1e-9 && (!exact || reached < 1.0 + 1e-9), "{quantity:?}: {reached}");
+            assert!(reached > 1.0 - 1e-9 && (!exact || reached < 1.0 + 3e-9), "{quantity:?}: {reached}");
             seen += 1;
         }
         assert!(seen >= 2, "{fixes:?}");
@@ -414,10 +414,12 @@ fn a_material_is_not_told_from_itself_by_any_camera() {
     assert!(answer.cameras.iter().all(|camera| !camera.passes && camera.margin == 0.0));
 }
 
-/// Photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ at 900.5 cm⁻¹: 2cν²/(e^x − 1).
+/// Photons s⁻¹ m⁻² sr⁻¹ between 900 and 901 cm⁻¹: 2cν²/(e^x − 1) by Simpson's rule.
 fn blackbody(kelvin: f64) -> f64 {
-    let nu_per_m = 900.5e2;
-    2.0 * 299_792_458.0 * nu_per_m * nu_per_m * 100.0 / (1.438_776_877e-2 * nu_per_m / kelvin).exp_m1()
+    let at = |nu_per_m: f64| {
+        2.0 * 299_792_458.0 * nu_per_m * nu_per_m * 100.0 / (1.438_776_877e-2 * nu_per_m / kelvin).exp_m1()
+    };
+    (at(900e2) + 4.0 * at(900.5e2) + at(901e2)) / 6.0
 }
 
 /// One band, nothing unknown, target lit wholly: d grows with T from 0 at the temperature of the surroundings, so the share

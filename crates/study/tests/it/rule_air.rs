@@ -49,7 +49,7 @@ fn the_worst_distance_may_be_between_the_ends() {
 fn the_nearest_distance_may_be_the_worst() {
     let verdict = judged("skin", "pmma", "1000 m", 2.4);
     assert!(!verdict.passes, "{verdict:?}");
-    assert!((verdict.statistical_distance / 2.157_968_8 - 1.0).abs() < 1e-6, "{verdict:?}");
+    assert!((verdict.statistical_distance / 2.157_949_5 - 1.0).abs() < 1e-6, "{verdict:?}");
     assert!((verdict.limiting.distance_m.unwrap() / 10.0 - 1.0).abs() < 1e-9);
     assert_eq!(verdict.certificate.kind, Proof::BranchAndBound, "{verdict:?}");
     let lower = verdict.lower_bound.unwrap();

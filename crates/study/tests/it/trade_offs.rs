@@ -57,13 +57,13 @@ fn reached(sizing: &Sizing) -> f64 {
     sizing.verdict.statistical_distance.unwrap()
 }
 
-/// 1e-9: as every solution that goes through the text of a scenario.
+/// 3e-9: a thousand-millionth more is asked for than is required, and the solution goes through the text of a scenario.
 #[test]
 fn distance_and_speed_can_be_fed_back() {
     let sizing = size(SCENE);
     let distance = solution(&sizing, Quantity::Distance).value.unwrap();
     let there = size(&SCENE.replace("30 m\"\nsize", &format!("{distance:e} m\"\nsize")));
-    assert!((reached(&there) - 1.0).abs() < 1e-9, "{distance}: {}", reached(&there));
+    assert!((reached(&there) - 1.0).abs() < 3e-9, "{distance}: {}", reached(&there));
     // From there the target is smaller than its pixel, whose footprint is 0.3 m at 450 m.
     assert!(distance > 450.0 && codes(&there).contains(&"target-smaller-than-pixel"));
     assert!(!codes(&sizing).contains(&"target-smaller-than-pixel"));
@@ -74,7 +74,7 @@ fn distance_and_speed_can_be_fed_back() {
         .replace("\"30 mph\"", &format!("\"{speed:e} m/s\""))
         .replace("netd =", &format!("exposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.3\nnetd ="));
     let then = size(&text);
-    assert!((reached(&then) - 1.0).abs() < 1e-9, "{}", reached(&then));
+    assert!((reached(&then) - 1.0).abs() < 3e-9, "{}", reached(&then));
     let blur = then.camera.unwrap().motion_blur_pixels.unwrap();
     assert!((blur - 1.0).abs() < 1e-9, "{blur}");
 }
@@ -90,13 +90,16 @@ fn a_solution_names_the_limits_it_breaks() {
     let exposure = solution(&sizing, Quantity::Exposure);
     let of: Vec<_> = exposure.caps.iter().map(|cap| (cap.code.name(), cap.blocks)).collect();
     assert_eq!(of, [("motion", true), ("frame-rate", true), ("full-well", true)], "{exposure:?}");
-    assert!(exposure.value.unwrap() > 1.0 / 60.0);
+    // It would tell the spectra apart, and blurs.
+    assert!(exposure.value.is_none() && exposure.reason.is_some(), "{exposure:?}");
+    let needed = exposure.necessary.unwrap();
+    assert!(needed > 1.0 / 60.0);
     let speed = solution(&sizing, Quantity::Speed);
     let of: Vec<_> = speed.caps.iter().map(|cap| cap.code.name()).collect();
     assert_eq!(of, ["motion", "frame-rate", "full-well"]);
     // In units of speed: a frame leads to the speed that moves a pixel in it.
-    let frame = speed.caps[1].limit / speed.value.unwrap();
-    assert!((frame / (60.0 * exposure.value.unwrap()) - 1.0).abs() < 1e-9, "{frame}");
+    let frame = speed.caps[1].limit / speed.necessary.unwrap();
+    assert!((frame / (60.0 * needed) - 1.0).abs() < 3e-9, "{frame}");
     // Least demanding: no limit in the way.
     let easy = size(&SCENE.replace("distance = 1.0", "distance = 0.1"));
     assert!(solution(&easy, Quantity::Exposure).caps.is_empty());
@@ -125,7 +128,7 @@ fn points_of_the_curves_meet_the_demand() {
             "f_number = {f_number:e}\nexposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd_temperature = \"30 degC\"\nnetd_f_number = 1.3\nnetd ="
         );
         let there = reached(&size(&SCENE.replace("netd =", &keys)));
-        assert!((there - 1.0).abs() < 1e-9, "f/{f_number}, {exposure} s: {there}");
+        assert!((there - 1.0).abs() < 3e-9, "f/{f_number}, {exposure} s: {there}");
     }
     // The camera lies on the curve of what is as good as it is.
     for curve in &curves {
@@ -150,11 +153,11 @@ fn what_the_solver_finds_is_on_the_curves_and_classified() {
         let curves = study.trade_offs(&sizing).unwrap();
         let of = |y: Quantity| curves.iter().find(|curve| curve.y == y).unwrap();
         let [exposure, speed] =
-            [Quantity::Exposure, Quantity::Speed].map(|q| solution(&sizing, q).value.unwrap());
+            [Quantity::Exposure, Quantity::Speed].map(|q| solution(&sizing, q).necessary.unwrap());
         let alone = of(Quantity::Exposure).points.iter().find(|point| point.x == 1.3).unwrap();
         let start = of(Quantity::Speed).points.iter().find(|point| point.y.is_some()).unwrap();
-        assert!((alone.y.unwrap() / exposure - 1.0).abs() < 1e-9);
-        assert!((start.x / exposure - 1.0).abs() < 1e-9 && (start.y.unwrap() / speed - 1.0).abs() < 1e-9);
+        assert!((alone.y.unwrap() / exposure - 1.0).abs() < 3e-9);
+        assert!((start.x / exposure - 1.0).abs() < 3e-9 && (start.y.unwrap() / speed - 1.0).abs() < 3e-9);
         for point in [alone, start] {
             assert_eq!(point.within_limits.is_some(), allowed, "{point:?}");
             let breaks = point.capped.iter().any(|code| *code != CapCode::Diffraction);

@@ -383,9 +383,7 @@ impl Shifted {
         }
         one.middles = Cloud::new(&middles, &[], r);
         one.classes = at.each_ref().map(|at| Cloud::new(at, &[], r));
-        // A cell along each axis, over √12.
         let points = lattices.known.points();
-        let share = (points as f64).powf(-1.0 / axes.max(1) as f64) / 12.0_f64.sqrt();
         let (mut at, mut cells): ([Vec<f64>; 2], [Vec<f64>; 2]) = Default::default();
         for i in 0..points {
             let shares = lattices.known.folded(i);
@@ -393,7 +391,7 @@ impl Shifted {
                 let Some(state) = prior.state(&shares) else { continue };
                 let (x, _) = reading.of(class, &state, true);
                 at[class].extend(project(&x).0);
-                for (axis, width) in prior.widths(&shares, share).enumerate() {
+                for (axis, width) in prior.cell_deviations(&shares, points).enumerate() {
                     let change = reading.change(axis, &x);
                     cells[class].extend(span.iter().map(|basis| width * dot(basis, &change)));
                 }

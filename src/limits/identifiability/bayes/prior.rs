@@ -23,6 +23,9 @@ use std::f64::consts::SQRT_2;
 /// Deviations from the mean beyond which a prior is nothing (2.6e-12 of it, 1.3e-10 of its variance).
 const REACH: f64 = 7.0;
 
+/// Share of an outermost cell that is left out where its width is told: a Gaussian goes on as far as it is looked at.
+const OUTERMOST: f64 = 1.0 / 64.0;
+
 /// Generating vector, good for 2¹⁰ to 2²⁰ points and fair below.
 const GENERATORS: [u64; 20] = [
     1, 182_667, 469_891, 498_753, 110_745, 446_979, 250_185, 118_627, 245_333, 283_199, 408_519, 391_023,
@@ -98,13 +101,15 @@ impl PriorSpace {
         self.allowed(&mut state).then_some(state)
     }
 
-    /// Widths of a step of `share` of each prior about the state at `shares`, in the units of the parameters; at most σ.
-    pub fn widths<'s>(&'s self, shares: &'s [f64], share: f64) -> impl Iterator<Item = f64> + 's {
+    /// Deviations of the parameters over the cell of one of `points` states, that at `shares`, in their units: the cell's width
+    /// over √12, which ends within the prior.
+    pub fn cell_deviations<'s>(&'s self, shares: &'s [f64], points: usize) -> impl Iterator<Item = f64> + 's {
+        let step = (points as f64).powf(-1.0 / self.axes().max(1) as f64);
         self.priors.iter().zip(shares).map(move |(prior, &at)| {
-            let z = quantile(at, prior.sides);
-            let [low, high] = prior.sides.map(|side| 0.5 * erfc(-side / SQRT_2));
-            let density = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
-            prior.sigma * (share * (high - low) / density).min(1.0)
+            let low = (at - 0.5 * step).min(1.0 - step).max(0.0);
+            let end =
+                |share: f64| quantile(share.clamp(OUTERMOST * step, 1.0 - OUTERMOST * step), prior.sides);
+            prior.sigma * (end(low + step) - end(low)) / 12.0_f64.sqrt()
         })
     }
 

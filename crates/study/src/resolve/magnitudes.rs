@@ -5,6 +5,7 @@
 
 use crate::Study;
 use hadar::error::{Error, Result};
+use hadar_scenario::Scenario;
 use std::ops::{Range, RangeInclusive};
 
 /// Photons, and noise in counts.
@@ -17,21 +18,27 @@ const DISTANCE: Range<f64> = 1e-9..1e9;
 /// Temperatures, K.
 const TEMPERATURE_K: RangeInclusive<f64> = 1e-6..=1e6;
 
+/// Temperatures that a scene could have: asked before any spectrum is made of them.
+pub(super) fn check_temperatures(scenario: &Scenario) -> Result<()> {
+    let objects = scenario.environment.iter().enumerate();
+    let objects = objects.map(|(k, object)| (format!("environment[{k}].temperature"), object.temperature_k));
+    let target = ("target.temperature".to_owned(), scenario.target.temperature_k);
+    let behind = scenario.background.iter();
+    let behind = behind.map(|behind| ("background.temperature".to_owned(), behind.temperature_k));
+    let ends = scenario.alternatives.temperature_range_k.iter().flatten();
+    let ends = ends.map(|kelvin| ("alternatives.temperature".to_owned(), *kelvin));
+    for (key, kelvin) in std::iter::once(target).chain(objects).chain(behind).chain(ends) {
+        if !TEMPERATURE_K.contains(&kelvin) {
+            let error = Error::out_of_range("temperature", kelvin, "K", "between 1e-6 and 1e6 K");
+            return Err(error.at(scenario.place(&key)));
+        }
+    }
+    Ok(())
+}
+
 impl Study {
     /// Numbers that a scene could have, a target that radiates at all, a camera whose noise can be squared.
-    pub(crate) fn check_magnitudes(&self) -> Result<()> {
-        let objects = self.scenario.environment.iter().enumerate();
-        let objects =
-            objects.map(|(k, object)| (format!("environment[{k}].temperature"), object.temperature_k));
-        let target = ("target.temperature".to_owned(), self.scenario.target.temperature_k);
-        let ends = self.scenario.alternatives.temperature_range_k.iter().flatten();
-        let ends = ends.map(|kelvin| ("alternatives.temperature".to_owned(), *kelvin));
-        for (key, kelvin) in std::iter::once(target).chain(objects).chain(ends) {
-            if !TEMPERATURE_K.contains(&kelvin) {
-                let error = Error::out_of_range("temperature", kelvin, "K", "between 1e-6 and 1e6 K");
-                return Err(error.at(self.scenario.place(&key)));
-            }
-        }
+    pub(super) fn check_magnitudes(&self) -> Result<()> {
         if !DISTANCE.contains(&self.required) {
             let error =
                 Error::out_of_range("statistical distance", self.required, "", "between 1e-9 and 1e9");
