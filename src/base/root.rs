@@ -5,6 +5,9 @@ use crate::error::{Error, Result};
 /// Share of the value at one end below which the value at the other is zero but for rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Share of x below which a step of Newton's method is the last one.
+const STEP: f64 = 1e-8;
+
 /// Where an increasing function of x crosses zero, to the last few bits of x. An end where it is zero but for rounding is the
 /// crossing.
 ///
@@ -63,9 +66,47 @@ pub fn crossing_between(low: [f64; 2], high: [f64; 2], mut f: impl FnMut(f64) ->
     Ok(if fa.abs() < fb.abs() { a } else { b })
 }
 
+/// Where an increasing function crosses zero between `low` and `high`, from `start` on by Newton's method, by halves where that leads
+/// out: `f` gives value and slope. An end where it does not cross.
+pub fn crossing_by_newton(low: f64, high: f64, start: f64, f: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let ([mut low, mut high], mut x) = ([low, high], start);
+    for _ in 0..200 {
+        let [value, slope] = f(x);
+        *(if value < 0.0 { &mut low } else { &mut high }) = x;
+        let newton = x - value / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if value == 0.0 {
+            break;
+        }
+        // The last step squares what it is short of.
+        let is_there = (next - x).abs() <= STEP * x.abs();
+        x = next;
+        if is_there {
+            break;
+        }
+    }
+    x
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn newton_finds_what_halving_does() {
+        for root in [1e-9, 0.25, 0.5, 1.0 - 1e-6] {
+            // Of one curvature, of two, and with poles at the ends.
+            let cube = |x: f64| [(x - root).powi(3) + 1e-3 * (x - root), 3.0 * (x - root).powi(2) + 1e-3];
+            let poles = |x: f64| {
+                let at = |x: f64| 1.0 / (1.0 - x) - 1.0 / x;
+                [at(x) - at(root), 1.0 / (1.0 - x).powi(2) + 1.0 / (x * x)]
+            };
+            for found in [crossing_by_newton(0.0, 1.0, 0.5, cube), crossing_by_newton(0.0, 1.0, 0.5, poles)] {
+                assert!((found / root - 1.0).abs() < 1e-9, "{found} {root}");
+            }
+        }
+        assert!(crossing_by_newton(0.0, 1.0, 0.5, |x| [x + 1.0, 1.0]) < 1e-15);
+    }
 
     #[test]
     fn crossings_are_found_to_the_last_bits() {

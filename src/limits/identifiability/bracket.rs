@@ -31,7 +31,7 @@ pub(super) mod tilted;
 use self::tilted::{Moments, Tilted};
 use super::detection;
 use crate::error::{Error, Result};
-use crate::root::crossing;
+use crate::root::crossing_by_newton;
 use crate::statistics::Statistics;
 use crate::sum::Compensated;
 use std::f64::consts::LN_2;
@@ -166,7 +166,10 @@ impl KnownStates {
             return 1.0;
         }
         // Any s gives a valid bound; ½ is a good one.
-        crossing(0.0, 1.0, |s| Ok(self.at(s).slope)).unwrap_or(0.5)
+        crossing_by_newton(0.0, 1.0, 0.5, |s| {
+            let Moments { slope, variance, .. } = self.at(s);
+            [slope, variance]
+        })
     }
 }
 

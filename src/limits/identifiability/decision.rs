@@ -139,19 +139,17 @@ fn without_reading(law: &RatioLaw) -> DecisionBounds {
     if let Some(many) = close.and_then(|close| taken_for_normal(close, law.states())) {
         return bounds(many, DecisionLaw::Gaussian);
     }
+    let close = close.unwrap_or([0.0, 0.5]);
+    // Found inside the rigorous bracket, which is wider.
+    if let Some(found) = law.quick_error().filter(|found| found.numerical < SETTLED) {
+        let numerical = 2.0 * found.numerical + 1e-13 * (10.0 - found.ln_error.max(-1e6));
+        let exact = [found.error * (1.0 - numerical), found.error * (1.0 + numerical)];
+        return bounds(meet(exact, close), DecisionLaw::Exact);
+    }
     let bracket = law.states().bracket();
     // Rounding of the exponents.
     let slack = 1e-13 * (10.0 - bracket.ln_lower.max(-1e6));
-    let rigorous = [bracket.lower * (1.0 - slack), bracket.upper * (1.0 + slack)];
-    let rigorous = meet(rigorous, close.unwrap_or([0.0, 0.5]));
-    match law.quick_error().filter(|found| found.numerical < SETTLED) {
-        Some(found) => {
-            let numerical = 2.0 * found.numerical + 1e-13 * (10.0 - found.ln_error.max(-1e6));
-            let exact = [found.error * (1.0 - numerical), found.error * (1.0 + numerical)];
-            bounds(meet(exact, rigorous), DecisionLaw::Exact)
-        }
-        None => bounds(rigorous, DecisionLaw::Bracket),
-    }
+    bounds(meet([bracket.lower * (1.0 - slack), bracket.upper * (1.0 + slack)], close), DecisionLaw::Bracket)
 }
 
 /// What lies in both; the first where nothing does, which is rounding.

@@ -36,9 +36,9 @@ use self::effort::{Effort, QUICK, WHOLE};
 use self::integrals::Integrals;
 use self::line::Line;
 use super::bracket::KnownStates;
-use super::bracket::tilted::Tilted;
+use super::bracket::tilted::{Moments, Tilted};
 use crate::error::Result;
-use crate::root::crossing;
+use crate::root::crossing_by_newton;
 use crate::statistics::Statistics;
 use std::f64::consts::LN_2;
 
@@ -212,12 +212,10 @@ impl RatioLaw {
 
     /// The s of the steepest descent of φ/z(1 − z).
     fn saddle(&self) -> f64 {
-        let rising = |s: f64| Ok(self.states.at(s).slope - 1.0 / s + 1.0 / (1.0 - s));
-        match (rising(EDGE), rising(1.0 - EDGE)) {
-            (Ok(low), _) if low >= 0.0 => EDGE,
-            (_, Ok(high)) if high <= 0.0 => 1.0 - EDGE,
-            _ => crossing(EDGE, 1.0 - EDGE, rising).unwrap_or(0.5),
-        }
+        crossing_by_newton(EDGE, 1.0 - EDGE, 0.5, |s| {
+            let (t, Moments { slope, variance, .. }) = (1.0 - s, self.states.at(s));
+            [slope - 1.0 / s + 1.0 / t, variance + 1.0 / (s * s) + 1.0 / (t * t)]
+        })
     }
 
     /// Error probabilities from the integrals; nothing if they are no numbers or outside the rigorous bracket.

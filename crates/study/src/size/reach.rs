@@ -2,7 +2,8 @@
 //!
 //! From trial to trial the nearest state is followed: it moves little, and a refinement takes a fraction of a search.
 //! What was solved for is searched anew at the end; where another state is nearer there, that one is followed. Where what is proved
-//! stays behind what was found, more is asked for until what is proved is enough too.
+//! stays behind what was found, more is asked for until what is proved is enough too. The law of few counts takes longer than the
+//! distance: it is asked at a solution by the distance, and what comes of it tells by the secant what to ask of the distance.
 
 use super::super::{Study, Surface};
 use crate::distances::Statistical;
@@ -19,8 +20,8 @@ use hadar_scenario::DistanceKind;
 
 /// Relative difference between a followed and a fully searched nearest distance that is rounding.
 const SAME: f64 = 1e-10;
-/// How often another state may turn out nearer before every trial is searched in full.
-const TURNS: usize = 4;
+/// How often another state may turn out nearer, or few counts ask for another distance, before every trial is searched in full.
+const TURNS: usize = 8;
 /// How often more is asked for until what is proved suffices.
 const RAISES: usize = 8;
 /// Share by which more is asked for than is required, so that what is put in meets it whatever rounding does.
@@ -102,7 +103,7 @@ pub(crate) struct Reach<'a> {
     /// Of another distance, the last one: bands as they are received from there, and what the path emits.
     elsewhere: Option<(Option<f64>, Bands, Vec<f64>)>,
     state: Option<State>,
-    /// Whether counts were so few that their own law decides: it is asked of every trial from then on.
+    /// Whether counts were so few, where a trial was searched in full, that their own law decides.
     few_counts: bool,
 }
 
@@ -115,22 +116,22 @@ impl<'a> Reach<'a> {
     /// The statistical distance of a trial, its nearest state followed from the trial before.
     pub(crate) fn followed(&mut self, trial: &Trial) -> Result<f64> {
         let start = self.state.take();
-        self.evaluate(trial, start.as_ref()).map(|[_, found]| found)
+        let by_law = start.is_none() || self.few_counts;
+        self.evaluate(trial, start.as_ref(), by_law).map(|[_, found]| found)
     }
 
     /// The statistical distance of a trial, as proved and as found, its nearest state searched in full.
     pub(crate) fn anew(&mut self, trial: &Trial) -> Result<[f64; 2]> {
-        self.evaluate(trial, None)
+        self.evaluate(trial, None, true)
     }
 
-    fn evaluate(&mut self, trial: &Trial, start: Option<&State>) -> Result<[f64; 2]> {
+    fn evaluate(&mut self, trial: &Trial, start: Option<&State>, by_law: bool) -> Result<[f64; 2]> {
         let (study, alternative) = (self.study, self.alternative);
-        let by_distance = start.is_some() && !self.few_counts;
-        let (mut state, mut few_counts) = (None, self.few_counts);
+        let (mut state, mut few_counts) = (None, !by_law && self.few_counts);
         let distances = self.with_solvers(trial, |solvers, bands, counting| {
             let pair = [study.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
             let (found, nearest) = solvers.found(study, pair, (bands, counting), start)?;
-            if by_distance {
+            if !by_law {
                 state = nearest;
                 return Ok(found.solved_by());
             }
@@ -212,16 +213,34 @@ impl<'a> Reach<'a> {
 
     /// Solves by the states that are found.
     fn solve_found(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
+        // What is asked of the distance, and what came of the last one, as logarithms over what is required.
+        let (mut asked, mut last) = (0.0, None);
         for _ in 0..TURNS {
-            let solution = task.solve(quantity, |trial| self.followed(trial))?;
-            let Some(value) = solution.value else { return Ok(solution) };
+            let aimed = CameraTask { required: task.required * f64::exp(asked), ..task.clone() };
+            let mut solution = aimed.solve(quantity, |trial| {
+                let start = self.state.take();
+                self.evaluate(trial, start.as_ref(), false).map(|[_, found]| found)
+            })?;
+            let Some(value) = solution.value else { break };
             // A speed is that of an exposure, which is where the search ended.
-            let few_counts = self.few_counts;
             let [_, anew] = self.anew(&task.forward(quantity, value))?;
-            if few_counts == self.few_counts && anew >= solution.statistical_distance * (1.0 - SAME) {
+            let found = match self.few_counts {
+                true if quantity == Quantity::Frames => break,
+                true => (anew / task.required).ln(),
+                // Where another state is nearer at this noise, that is followed from now on.
+                false if anew >= solution.statistical_distance * (1.0 - SAME) => return Ok(solution),
+                false => {
+                    (asked, last) = (0.0, None);
+                    continue;
+                }
+            };
+            if found.abs() <= SAME {
+                solution.statistical_distance = anew;
                 return Ok(solution);
             }
-            // Another state is nearer at this noise, or counts are few there: that is followed from now on.
+            let slope = last.map_or(1.0, |(asked_before, before)| (found - before) / (asked - asked_before));
+            last = Some((asked, found));
+            asked -= found / if slope > 0.2 { slope } else { 1.0 };
         }
         task.solve(quantity, |trial| Ok(self.anew(trial)?[1]))
     }

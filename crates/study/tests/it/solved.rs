@@ -8,11 +8,14 @@ use hadar_testing::seeded;
 use proptest::prelude::*;
 use std::sync::OnceLock;
 
-fn size(text: &str) -> Sizing {
+pub(crate) fn library() -> &'static Library {
     static LIBRARY: OnceLock<Library> = OnceLock::new();
-    let library = LIBRARY.get_or_init(|| Library::embedded().unwrap());
+    LIBRARY.get_or_init(|| Library::embedded().unwrap())
+}
+
+fn size(text: &str) -> Sizing {
     let scenario = Scenario::from_toml(text, None).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    Study::new(&scenario, library)
+    Study::new(&scenario, library())
         .and_then(|study| study.size())
         .unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
@@ -32,7 +35,7 @@ const MATERIALS: [&str; 10] = [
 
 /// A camera before a target and several alternatives, with what limits it beside the statistical distance.
 #[derive(Debug, Clone)]
-struct Task {
+pub(crate) struct Task {
     target: usize,
     alternatives: Vec<usize>,
     class: bool,
@@ -40,13 +43,13 @@ struct Task {
     lighting: f64,
     unknown: &'static str,
     air: bool,
-    exposure_s: f64,
+    pub(crate) exposure_s: f64,
     pixel_m: f64,
     f_number: f64,
-    noise: f64,
+    pub(crate) noise: f64,
     frames: u32,
     flicker: f64,
-    full_well: Option<f64>,
+    pub(crate) full_well: Option<f64>,
     speed: Option<f64>,
     distance_m: f64,
     harder: f64,
@@ -54,7 +57,12 @@ struct Task {
 
 impl Task {
     /// The scenario with one figure replaced.
-    fn scenario(&self, required: f64, changed: Option<(Quantity, f64)>, exposure_s: Option<f64>) -> String {
+    pub(crate) fn scenario(
+        &self,
+        required: f64,
+        changed: Option<(Quantity, f64)>,
+        exposure_s: Option<f64>,
+    ) -> String {
         let value = |quantity, own: f64| match changed {
             Some((other, value)) if other == quantity => value,
             _ => own,
@@ -104,7 +112,7 @@ impl Task {
 }
 
 prop_compose! {
-    fn task()(
+    pub(crate) fn task()(
         (target, alternatives) in (0..10usize, prop::collection::vec(0..10usize, 2..5)),
         (class, air) in (prop::bool::weighted(0.3), prop::bool::weighted(0.3)),
         (temperature_k, lighting) in (270.0..330.0f64, 0.1..0.9f64),

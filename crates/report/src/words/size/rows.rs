@@ -132,7 +132,8 @@ fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> 
             if solution.necessary.is_some_and(|other| !same(value, other)) && solution.reason.is_none() =>
         {
             let necessary = in_unit(solved, solution.necessary.unwrap_or(value), units);
-            format!("{}, {necessary} at least", in_unit(solved, value, units))
+            let side = if solved.is_least() { "at least" } else { "at most" };
+            format!("{}, {necessary} {side}", in_unit(solved, value, units))
         }
         (Some(value), _) => in_unit(solved, value, units),
         (None, Some(reason)) if solution.necessary.is_some() => {
