@@ -25,7 +25,7 @@ const TURNS: usize = 8;
 /// How often more is asked for until what is proved suffices.
 const RAISES: usize = 8;
 /// Share by which more is asked for than is required, so that what is put in meets it whatever rounding does.
-const SURELY: f64 = 1e-9;
+pub(crate) const SURELY: f64 = 1e-9;
 
 /// The solvers of one set of bands.
 pub(crate) struct Solvers<'a> {

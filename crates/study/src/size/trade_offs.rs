@@ -1,7 +1,8 @@
 //! Two quantities at a time, for the scenario's camera and the limiting alternative.
 
 use crate::Study;
-use crate::size::{Reach, Sizing};
+use crate::size::Sizing;
+use crate::size::reach::{Reach, SURELY};
 use hadar::error::Result;
 use hadar::parallel;
 use hadar::policy::trade_off::{self, PAIRS, POINTS, TradeOff};
@@ -53,8 +54,11 @@ impl Study {
         let brightest = |trial: &Trial| self.brightest(trial);
         let given = self.circumstances(&brightest);
         let mut solved = result.solve_for.iter().flat_map(|solutions| &solutions.0);
-        let alone = solved.find(|(quantity, _)| *quantity == pair.0).and_then(|(_, found)| found.value);
-        let as_now = result.verdict.statistical_distance.unwrap_or(0.0);
+        let alone = solved
+            .find(|(quantity, _)| *quantity == pair.0)
+            .and_then(|(_, found)| found.value.or(found.necessary));
+        // More is asked for than is required, and the camera itself does as now.
+        let as_now = result.verdict.statistical_distance.unwrap_or(0.0) * (1.0 - 2.0 * SURELY);
         let mut reach = Reach::new(self, alternative);
         let curve = trade_off::trace(
             &self.task(camera),

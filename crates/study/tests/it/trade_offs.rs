@@ -76,7 +76,7 @@ fn distance_and_speed_can_be_fed_back() {
     let then = size(&text);
     assert!((reached(&then) - 1.0).abs() < 3e-9, "{}", reached(&then));
     let blur = then.camera.unwrap().motion_blur_pixels.unwrap();
-    assert!((blur - 1.0).abs() < 1e-9, "{blur}");
+    assert!((blur - 1.0).abs() < 3e-9, "{blur}");
 }
 
 #[test]
@@ -134,7 +134,8 @@ fn points_of_the_curves_meet_the_demand() {
     for curve in &curves {
         let own = curve.points.iter().find(|point| (point.x / curve.camera.0 - 1.0).abs() < 1e-9);
         let Some(own) = own else { continue };
-        assert!((own.y_as_now.unwrap() / curve.camera.1 - 1.0).abs() < 1e-5, "{:?}", curve.y);
+        let as_now = own.y_as_now.unwrap_or(f64::NAN);
+        assert!((as_now / curve.camera.1 - 1.0).abs() < 1e-5, "{:?}: {as_now} {:?}", curve.y, curve.camera);
     }
 }
 
@@ -157,7 +158,8 @@ fn what_the_solver_finds_is_on_the_curves_and_classified() {
         let alone = of(Quantity::Exposure).points.iter().find(|point| point.x == 1.3).unwrap();
         let start = of(Quantity::Speed).points.iter().find(|point| point.y.is_some()).unwrap();
         assert!((alone.y.unwrap() / exposure - 1.0).abs() < 3e-9);
-        assert!((start.x / exposure - 1.0).abs() < 3e-9 && (start.y.unwrap() / speed - 1.0).abs() < 3e-9);
+        let both = [start.x / exposure, start.y.unwrap() / speed];
+        assert!(both.iter().all(|ratio| (ratio - 1.0).abs() < 3e-9), "{both:?}");
         for point in [alone, start] {
             assert_eq!(point.within_limits.is_some(), allowed, "{point:?}");
             let breaks = point.capped.iter().any(|code| *code != CapCode::Diffraction);
