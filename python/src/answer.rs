@@ -306,7 +306,7 @@ pub(crate) fn range_(
             RangingScenario::Stereo(scenario) => {
                 let study = RangeStudy::new(&scenario, &reading.library()?)?;
                 let (seed, skipping) = (common.seed, common.skipping());
-                let plan = RangePlan { trials, seed, skipping, verdict_alone: false };
+                let plan = RangePlan { trials, seed, skipping, ..RangePlan::default() };
                 let mut result = study.range(&plan, None, &|_, _| ())?;
                 let text = range::text(&result);
                 result.stats.add(&no_report());

@@ -52,19 +52,18 @@ fn disorder(value: &Value, place: &str, seen: &mut usize, found: &mut Vec<String
         if let Some(own) = stem("_upper").and_then(of) {
             ordered(key.clone(), own, one);
         }
-        if key.contains("bounds") || key.contains("interval") || key.contains("bracket") {
-            if let Value::Array(ends) = one
-                && let [low, high] = &ends[..]
-            {
-                ordered(key.clone(), low, high);
-                // The figure that the ends are of: `photons` of `photons_bounds`.
-                for own in [key.replace("_bounds", ""), key.replace("_interval", "")] {
-                    if own != *key
-                        && let Some(own) = of(&own)
-                    {
-                        ordered(format!("{key}, lower"), low, own);
-                        ordered(format!("{key}, upper"), own, high);
-                    }
+        let of_both = ["bounds", "interval", "bracket"].iter().any(|part| key.contains(part));
+        if let (true, Value::Array(ends)) = (of_both, one)
+            && let [low, high] = &ends[..]
+        {
+            ordered(key.clone(), low, high);
+            // The figure that the ends are of: `photons` of `photons_bounds`.
+            for own in [key.replace("_bounds", ""), key.replace("_interval", "")] {
+                if own != *key
+                    && let Some(own) = of(&own)
+                {
+                    ordered(format!("{key}, lower"), low, own);
+                    ordered(format!("{key}, upper"), own, high);
                 }
             }
         }
