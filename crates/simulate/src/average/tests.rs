@@ -14,7 +14,7 @@ use hadar::scene::EnvironmentObject;
 #[test]
 fn the_bayes_test_keeps_the_bracket() {
     let mut rng = generator(40, 0);
-    for scene in 0..10 {
+    for scene in 0..6 {
         let mut uniform = |low: f64, high: f64| rng.random_range(low..high);
         let bands = Bands::uniform(750.0, 1250.0, 50.0).unwrap();
         let object = EnvironmentObject { temperature_k: uniform(270.0, 300.0), emissivity: None };
