@@ -212,9 +212,11 @@ impl<'a> Comparison<'a> {
         (self.work.separation.iter().zip(sums).map(quotient).collect(), other)
     }
 
-    /// Bands of the target in which a state counts as good as nothing.
-    pub(super) fn dark(&mut self, target: &Target<'_>, state: &State) -> Vec<usize> {
-        self.separate(target, state, false);
+    /// Bands of the target in which a state counts as good as nothing; `is_there`: it was the last one that was compared.
+    pub(super) fn dark(&mut self, target: &Target<'_>, state: &State, is_there: bool) -> Vec<usize> {
+        if !is_there {
+            self.separate(target, state, false);
+        }
         let lines = self.lines(target);
         let is_dark = |&w: &usize| {
             let other = lines.counts.mul_add(lines.signal[w], lines.noise[w]);
