@@ -50,8 +50,9 @@ const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
 /// Share of the terms that a separation is made of below which a distance is nothing but rounding.
 const NOTHING_OF_TERMS: f64 = 1e-15;
-/// How many times a distance its error is estimated to be where it is nothing but rounding: the estimate is some ten times too large.
-const NOTHING_BUT_ROUNDING: f64 = 10.0;
+/// How many times a distance its error is estimated to be where it is nothing but rounding: deep in the Wien tail
+/// the estimate is hundreds of times too large, and a distance called 0 is a claim.
+const NOTHING_BUT_ROUNDING: f64 = 1e3;
 
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
