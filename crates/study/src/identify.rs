@@ -174,8 +174,9 @@ impl Study {
         // Priors weigh by the number of photons they compete with: the camera's, else those required.
         let with_priors = self.photons_by_priors(alternative)?;
         let photons = camera_photons.or(with_priors.and_then(|by| by.of(kind))).unwrap_or(f64::INFINITY);
-        let PerPhoton { local, local_unknown_gain: unknown_gain, nearest, back } =
-            self.per_photon(alternative, photons)?;
+        let per_photon = self.per_photon(alternative, photons)?;
+        let by_kind = per_photon.distance(kind);
+        let PerPhoton { local, local_unknown_gain: unknown_gain, nearest, back } = per_photon;
         let required = |distance: f64| policy::photons_required(self.required, distance);
         let required_by = with_priors.unwrap_or_else(|| PhotonsRequired {
             nearest: required(nearest.distance),
@@ -186,10 +187,8 @@ impl Study {
             counting.as_ref().map(|counting| self.decided(kind, alternative, counting)).transpose()?;
         // What is proved of all mixtures may not suffice where the worst that was found does.
         let proved = mixtures.is_none_or(|all| all.distance_lower >= self.required);
-        let told = decision.map(|decision| match decision.told {
-            YesNo::Yes if !proved => YesNo::Undecided,
-            told => told,
-        });
+        let told =
+            decision.map(|one| if one.told == YesNo::Yes && !proved { YesNo::Undecided } else { one.told });
         let statistical = decision.map(|decision| decision.found);
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
         let bounds = statistical.map(Statistical::bounds);
@@ -199,11 +198,6 @@ impl Study {
             (_, Some(counting)) => {
                 Some(self.statistical_distance(DistanceKind::Nearest, alternative, counting)?)
             }
-        };
-        let by_kind = match kind {
-            DistanceKind::Nearest => nearest.distance,
-            DistanceKind::Local => local.distance,
-            DistanceKind::LocalUnknownGain => unknown_gain.distance,
         };
         let shortcut = counting.as_ref().map(|counting| shortcut(counting, &signal, by_kind));
         let enough = match kind {

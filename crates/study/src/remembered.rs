@@ -8,6 +8,7 @@ use hadar::identifiability::local::LocalDistance;
 use hadar::identifiability::nearest::{NearestDistance, StateRange};
 use hadar::scene::{State, Surroundings};
 use hadar::spectrum::Bands;
+use hadar_scenario::DistanceKind;
 use std::sync::{Arc, Mutex};
 
 /// Pairs that are kept at most; looking through more would take longer than computing one.
@@ -45,6 +46,17 @@ pub(super) struct PerPhoton {
     pub(super) nearest: NearestDistance,
     /// From the nearest state back to the target.
     pub(super) back: NearestDistance,
+}
+
+impl PerPhoton {
+    /// The distance of a kind.
+    pub(super) const fn distance(&self, kind: DistanceKind) -> f64 {
+        match kind {
+            DistanceKind::Nearest => self.nearest.distance,
+            DistanceKind::Local => self.local.distance,
+            DistanceKind::LocalUnknownGain => self.local_unknown_gain.distance,
+        }
+    }
 }
 
 impl Remembered {

@@ -64,13 +64,7 @@ impl Study {
     pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
         check_temperatures(scenario)?;
         let mut scenario = scenario.clone();
-        let mut finder = Finder {
-            scenario: &scenario,
-            library,
-            warnings: Vec::new(),
-            skies: Vec::new(),
-            left_out: Vec::new(),
-        };
+        let mut finder = Finder::new(&scenario, library);
         finder.check_names()?;
         let target =
             finder.group("target.material", &scenario.target.material, scenario.target.extrapolate)?;

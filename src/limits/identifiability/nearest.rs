@@ -48,8 +48,8 @@ const BEYOND: f64 = 1e100;
 /// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
 const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
-/// Share of the terms that a separation is made of below which a distance is nothing but rounding.
-const NOTHING_OF_TERMS: f64 = 1e-15;
+/// Share of the terms that a separation is made of below which a distance is nothing but rounding: fourteen digits cancel.
+const NOTHING_OF_TERMS: f64 = 1e-14;
 /// How many times a distance its error is estimated to be where it is nothing but rounding: deep in the Wien tail
 /// the estimate is hundreds of times too large, and a distance called 0 is a claim.
 const NOTHING_BUT_ROUNDING: f64 = 1e3;

@@ -102,9 +102,7 @@ impl RangeStudy {
         let noise = self.exposure_noise(camera);
         let stretch = noise.exposure_s / noise.noise_exposure_s;
         let growth = |factor: f64| instrument::noise::growth(stretch * factor, noise.flicker_fraction);
-        let frame = camera
-            .frame_s()
-            .map(|frame_s| (frame_s / camera.exposure_s * (1.0 + CLOSE), frame_is_over(frame_s)));
+        let frame = camera.frame_s().map(|frame_s| (frame_s / camera.exposure_s, frame_is_over(frame_s)));
         let longest = [well(1.0, true), frame].into_iter().flatten();
         let exposure = Asked {
             rises: true,

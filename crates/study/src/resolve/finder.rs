@@ -9,8 +9,8 @@ use std::borrow::Cow;
 
 /// Looks materials up and collects what is to be said about them.
 pub(super) struct Finder<'a> {
-    pub(super) scenario: &'a Scenario,
-    pub(super) library: &'a Library,
+    scenario: &'a Scenario,
+    library: &'a Library,
     pub(super) warnings: Vec<Warning>,
     /// Skies of the library that were left out of the alternatives.
     pub(super) skies: Vec<String>,
@@ -19,6 +19,11 @@ pub(super) struct Finder<'a> {
 }
 
 impl<'a> Finder<'a> {
+    /// Before anything was looked up.
+    pub(super) const fn new(scenario: &'a Scenario, library: &'a Library) -> Self {
+        Self { scenario, library, warnings: Vec::new(), skies: Vec::new(), left_out: Vec::new() }
+    }
+
     pub(super) fn find(
         &mut self,
         key: &str,

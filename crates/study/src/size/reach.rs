@@ -221,7 +221,17 @@ impl<'a> Reach<'a> {
                 let start = self.state.take();
                 self.evaluate(trial, start.as_ref(), false).map(|[_, found]| found)
             })?;
-            let Some(value) = solution.value else { break };
+            let Some(value) = solution.value else {
+                // What the distance does not reach the law of few counts may.
+                let by_law = task.solve(quantity, |trial| {
+                    let start = self.state.take();
+                    self.evaluate(trial, start.as_ref(), true).map(|[_, found]| found)
+                })?;
+                if by_law.value.is_none() {
+                    return Ok(by_law);
+                }
+                break;
+            };
             // A speed is that of an exposure, which is where the search ended.
             let [_, anew] = self.anew(&task.forward(quantity, value))?;
             let found = match self.few_counts {

@@ -57,8 +57,8 @@ impl Study {
         let alone = solved
             .find(|(quantity, _)| *quantity == pair.0)
             .and_then(|(_, found)| found.value.or(found.necessary));
-        // More is asked for than is required, and the camera itself does as now.
-        let as_now = result.verdict.statistical_distance.unwrap_or(0.0) * (1.0 - 2.0 * SURELY);
+        // What is proved of the camera is what is solved for, a little more than is asked: so the camera itself does as now.
+        let as_now = result.verdict.lower.unwrap_or(0.0) * (1.0 - 2.0 * SURELY);
         let mut reach = Reach::new(self, alternative);
         let curve = trade_off::trace(
             &self.task(camera),
