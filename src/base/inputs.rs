@@ -1,29 +1,88 @@
 //! What a job reads, noted where it is read, so that no list of it can forget a file.
 //!
-//! Who asks opens a list on its thread; readers of files note their path, what is built in is noted with its content. Where no
+//! Who asks opens a list on its thread; readers of files note their path with what they read of it, what is built in is noted with its
+//! content. Where no
 //! list is open nothing is noted. Readers read on the thread that asks, never in parallel.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::fs::Metadata;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 thread_local! {
     static OPEN: RefCell<Option<Inputs>> = const { RefCell::new(None) };
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileRead {
+    /// As it was named.
+    pub path: PathBuf,
+    /// What it held.
+    pub held: Held,
+}
+
+/// What a file held when it was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Held {
+    /// Bytes of this SHA-256, in hexadecimal digits.
+    Sha256(String),
+    /// What it still holds as long as this is true of it: too much to be kept, it is read part by part.
+    Since(Stamp),
+}
+
+/// By which a file is known that nobody has written to or put another one in the place of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stamp {
+    length: u64,
+    modified: Option<SystemTime>,
+    /// Device, number on it, and when the system last changed what it knows of the file, which nobody can set (seconds, ns).
+    known_by: [i128; 4],
+}
+
+impl Stamp {
+    /// That of an open file.
+    #[must_use]
+    pub fn of(found: &Metadata) -> Self {
+        #[cfg(unix)]
+        let known_by = {
+            use std::os::unix::fs::MetadataExt as _;
+            [found.dev().into(), found.ino().into(), found.ctime().into(), found.ctime_nsec().into()]
+        };
+        #[cfg(not(unix))]
+        let known_by = [0; 4];
+        Self { length: found.len(), modified: found.modified().ok(), known_by }
+    }
 }
 
 /// What was read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Inputs {
-    /// Files, in the order they were first read, as they were named.
-    pub files: Vec<PathBuf>,
+    /// Files, in the order they were first read; one of which the content changed between is there with each.
+    pub files: Vec<FileRead>,
     /// Folders whose files were looked for, as they were named: a file more there is another answer.
     pub folders: Vec<PathBuf>,
     /// What can be read only once, such as standard input: what it is called, and its content.
     pub streams: Vec<(String, Vec<u8>)>,
     /// Content of what is built in, by kind and name (`material`, `skin`).
     pub built_in: BTreeMap<(&'static str, String), Vec<u8>>,
+}
+
+impl Inputs {
+    /// The files, as they were named.
+    #[must_use]
+    pub fn paths(&self) -> Vec<PathBuf> {
+        let mut paths: Vec<PathBuf> = Vec::with_capacity(self.files.len());
+        for file in &self.files {
+            if !paths.contains(&file.path) {
+                paths.push(file.path.clone());
+            }
+        }
+        paths
+    }
 }
 
 /// A list that is open on this thread until it is dropped.
@@ -66,7 +125,7 @@ pub fn inputs_of<T>(job: impl FnOnce() -> T) -> (T, Inputs) {
 
 /// What another list has was read.
 pub fn add(other: &Inputs) {
-    other.files.iter().for_each(|path| file(path));
+    other.files.iter().for_each(|read| file(&read.path, read.held.clone()));
     other.folders.iter().for_each(|path| folder(path));
     other.streams.iter().for_each(|(name, content)| stream(name, content));
     OPEN.with_borrow_mut(|open| {
@@ -78,13 +137,13 @@ pub fn add(other: &Inputs) {
     });
 }
 
-/// A file was read.
-pub fn file(path: &Path) {
+/// A file was read, and held this.
+pub fn file(path: &Path, held: Held) {
     OPEN.with_borrow_mut(|open| {
         if let Some(inputs) = open
-            && !inputs.files.iter().any(|known| known == path)
+            && !inputs.files.iter().any(|known| known.path == path && known.held == held)
         {
-            inputs.files.push(path.to_owned());
+            inputs.files.push(FileRead { path: path.to_owned(), held });
         }
     });
 }

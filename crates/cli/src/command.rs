@@ -30,6 +30,7 @@ mod stderr;
 mod sweep;
 mod terminal;
 mod threads;
+mod verify;
 
 use self::global::Global;
 use self::stderr::say;
@@ -37,6 +38,7 @@ use self::terminal::Stream;
 use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
+use std::ffi::{OsStr, OsString};
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
@@ -83,6 +85,9 @@ enum Command {
     /// Two reports or two answers held against each other: what was asked, the verdict, figures that moved, warnings; exit code 0
     /// where they are the same, 1 where they differ, 2 where one cannot be read
     Diff(diff::DiffArgs),
+    /// A report made again from what it says it was made of, every file compared byte by byte; exit code 0 where all are the same, 1
+    /// where one is not
+    Verify(verify::VerifyArgs),
     /// The main job as a page in the browser of this machine: a form, the verdict, pictures that follow a slider
     Serve(serve::ServeArgs),
     /// What a shell needs to complete commands and flags; to be sourced, or written where it looks for it
@@ -133,11 +138,17 @@ fn line() -> clap::Command {
 pub(crate) fn parsed_by<C: FromArgMatches>(
     line: &clap::Command,
 ) -> std::result::Result<(C, Global), clap::Error> {
-    let words = std::env::args_os().collect::<Vec<_>>();
-    let found = line.clone().try_get_matches_from(&words).map_err(|error| {
-        let words: Vec<String> =
-            words.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-        flags::explained(line, error, &words)
+    parsed_from(line, &std::env::args_os().collect::<Vec<_>>())
+}
+
+/// Words read by a command line, the first of which is the program's name.
+fn parsed_from<C: FromArgMatches>(
+    line: &clap::Command,
+    words: &[impl Into<OsString> + Clone + AsRef<OsStr>],
+) -> std::result::Result<(C, Global), clap::Error> {
+    let found = line.clone().try_get_matches_from(words).map_err(|error| {
+        let words = words.iter().skip(1).map(|word| word.as_ref().to_string_lossy().into_owned());
+        flags::explained(line, error, &words.collect::<Vec<_>>())
     })?;
     let global = flags::given(line, &found)?;
     Ok((C::from_arg_matches(&found)?, global))
@@ -163,6 +174,11 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Evidence(_) => None,
         _ => Some(prepared(global, true)?),
     };
+    dispatch(command, global)
+}
+
+/// Does what a command says, where all is prepared.
+fn dispatch(command: &Command, global: &Global) -> Result<ExitCode> {
     match command {
         Command::Size(args) => size::run(args, global),
         Command::Identify(args) => identify::run(args, global),
@@ -178,6 +194,7 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Materials(args) => materials::run(args, global),
         Command::Cameras(args) => cameras::run(args, global),
         Command::Diff(args) => Ok(diff::run(args, global)),
+        Command::Verify(args) => verify::run(args, global),
         Command::Serve(args) => serve::run(args, global),
         Command::Completions(args) => shell::completions(args, line()),
         Command::Man(_) => shell::man(line(), global),

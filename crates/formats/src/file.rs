@@ -1,7 +1,8 @@
 //! Files of a user's: only those with an end. A pipe that nobody writes would be waited for, a device has no end.
 
+use crate::hash::sha256;
 use hadar::error::{Error, Result};
-use hadar::inputs;
+use hadar::inputs::{self, Held, Stamp};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -12,11 +13,18 @@ pub const READ_SPECTRUM: &str = "read the spectrum";
 /// The longest file that is taken for text, bytes.
 const LONGEST_FILE: u64 = 1 << 26;
 
-/// Opens an ordinary file, and notes that it was read.
+/// Opens an ordinary file to be read part by part, and notes it as it is now.
 ///
 /// # Errors
 /// No such file, a directory, a pipe or device, no permission; the message says what `action` could not be done.
 pub fn open(path: &Path, action: &str) -> Result<File> {
+    let file = opened(path, action)?;
+    let found = file.metadata().map_err(|error| Error::file(action, path, error.kind()))?;
+    inputs::file(path, Held::Since(Stamp::of(&found)));
+    Ok(file)
+}
+
+fn opened(path: &Path, action: &str) -> Result<File> {
     let refused = |reason: &str| Error::file(action, path, reason);
     let failed = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => refused("there is no such file; check its name and folder"),
@@ -30,17 +38,17 @@ pub fn open(path: &Path, action: &str) -> Result<File> {
     if !found.is_file() {
         return Err(refused("this is no ordinary file but a pipe or a device; copy its content to one"));
     }
-    let file = File::open(path).map_err(failed)?;
-    inputs::file(path);
-    Ok(file)
+    File::open(path).map_err(failed)
 }
 
-/// All bytes of an ordinary file.
+/// All bytes of an ordinary file, which are noted by their hash.
 ///
 /// # Errors
 /// As [`open`]; a file of more than `most` bytes.
 pub fn bytes(path: &Path, action: &str, most: u64) -> Result<Vec<u8>> {
-    read(open(path, action)?, path, action, most)
+    let bytes = read(opened(path, action)?, path, action, most)?;
+    inputs::file(path, Held::Sha256(sha256(&bytes)));
+    Ok(bytes)
 }
 
 /// All bytes of what can be read only once, such as standard input, and notes that it was read; `name` stands for a path.

@@ -18,6 +18,7 @@ mod bands;
 pub mod cube;
 pub mod envi_header;
 pub mod file;
+pub mod hash;
 mod library;
 mod members;
 mod noise_variance;

@@ -2,18 +2,23 @@
 //!
 //! A report owns what the [`Manifest`] in its folder lists, as long as it is as it was written, and replaces nothing else. Files of
 //! others are refused, or left alone where that is asked for ([`Strangers`]), and what the run itself reads is never replaced. Hidden
-//! files, and folders that are reports themselves, are nobody's concern and stay.
+//! files, and folders that are reports themselves, are nobody's concern and stay. No link in the folder is followed.
+//!
+//! What is found in a folder is never acted upon, since anybody may have put it there: a list of files, of a report that is whole or of
+//! one that was begun, only says which files may be replaced, and only those that have the content that it gives.
 //!
 //! What is promised of a process that is killed at any time: a report of its own, in a folder that holds nothing else, is exchanged
 //! for the new one in one step, where the file system has that step (those of Linux and macOS do). Where the folder itself must stay,
 //! since other files are in it, or it is the current folder, a mount point or another user's, files are moved into it one by one;
-//! `hadar.json` goes first and comes last, so that a folder with it is whole, and one without it is completed by the next run that
-//! names it. Of a computer that loses its power no more is promised than its file system does.
+//! `hadar.json` goes first and comes last, so that a folder with it is whole, and one without it is none until the next run that names
+//! it has replaced what was moved. Of a computer that loses its power no more is promised than its file system does.
 
 mod disk;
+pub(crate) mod inside;
 mod staging;
 
-use self::staging::{Staging, clear, is_staging};
+pub use self::inside::Inside;
+use self::staging::{Left, Staging, begun, clear, is_staging};
 use crate::manifest::{self, Manifest, Provenance};
 use hadar::error::{Error, Result};
 use std::fs;
@@ -92,11 +97,13 @@ impl Scratch {
     /// A folder that cannot be written to.
     pub fn temporary() -> Result<Self> {
         let home = std::env::temp_dir();
-        let made = clear(&home, None).and_then(|()| Staging::in_folder(&home));
-        made.map(|staging| Self { staging, _above: Above(Vec::new()) }).map_err(|error| {
-            let reason = format!("{error}; name another folder by TMPDIR, or a report by --out");
-            Error::file("keep the maps in", &home, reason)
-        })
+        clear(&home, Left::Unfinished);
+        Staging::in_folder(&home).map(|staging| Self { staging, _above: Above(Vec::new()) }).map_err(
+            |error| {
+                let reason = format!("{error}; name another folder by TMPDIR, or a report by --out");
+                Error::file("keep the maps in", &home, reason)
+            },
+        )
     }
 
     /// A folder for them.
@@ -115,10 +122,18 @@ pub struct Folder {
 
 /// What is in a folder.
 struct Content {
-    /// Of the report that is there; empty where there is none.
-    manifest: Option<Manifest>,
+    /// The list of the report that is there; then those of what was begun and not finished.
+    manifests: Vec<Manifest>,
     /// Whether nothing but that report is in it.
     alone: bool,
+}
+
+impl Content {
+    /// Whether a file or folder is listed, and whether it is as it was listed.
+    fn knows(&self, place: &Path, name: &str) -> (bool, bool) {
+        let owns = |manifest: &Manifest| manifest.owns(place, name) || manifest.owns_folder(place, name);
+        (self.manifests.iter().any(|manifest| manifest.lists(name)), self.manifests.iter().any(owns))
+    }
 }
 
 impl Folder {
@@ -140,14 +155,16 @@ impl Folder {
         self.place().ok().zip(other.place().ok()).is_some_and(|(own, other)| own == other)
     }
 
-    /// Makes sure that a report can be written, before any work is done for it. Finishes what a run that was killed has left.
+    /// Makes sure that a report can be written, before any work is done for it. Then clears away what dead runs have left beside it.
     ///
     /// # Errors
-    /// A path that is a file or a link to nothing, where nothing may be written, or with files of others in it.
+    /// A path that is a file or a link to nothing, where nothing may be written, with a name that is too long, or with files of
+    /// others in it.
     pub fn check(&self) -> Result<()> {
         let place = self.place()?;
-        self.recover(&place)?;
         self.content(&place)?;
+        clear_beside(&place);
+        clear(&place, Left::Unfinished);
         let home = nearest_folder(&place).unwrap_or_else(|| PathBuf::from("."));
         Staging::in_folder(&home).map(drop).map_err(|error| self.refused(&error))
     }
@@ -211,15 +228,11 @@ impl Folder {
     /// As [`Folder::check`] and [`Folder::check_inputs`]; a disk that is full. Then what was there is there unchanged.
     pub fn write(&self, files: &[(String, Held)], provenance: &Provenance, inputs: &[PathBuf]) -> Result<()> {
         let place = self.place()?;
-        self.recover(&place)?;
         let content = self.content(&place)?;
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
         self.check_inputs(inputs, &names)?;
-        // A file cannot take the place of a folder: found out before the first one is moved.
-        if let Some((name, _)) = files.iter().find(|(name, _)| place.join(name).is_dir()) {
-            let reason = format!("its `{name}` is a folder, which no file may replace; name another folder");
-            return Err(Error::file("write the report", &self.named, reason));
-        }
+        // Found out before the first one is moved.
+        self.check_ways(&place, &names)?;
         let hashes = files.iter().map(|(name, held)| Ok((name.as_str(), held.sha256()?)));
         let hashes: io::Result<Vec<_>> = hashes.collect();
         let manifest = Manifest::of(provenance, hashes.map_err(|error| self.refused(&error))?);
@@ -235,15 +248,41 @@ impl Folder {
             )
         };
         let whole = match place.parent().filter(|_| content.alone) {
-            Some(parent) => exchanged(&place, parent, content.manifest.as_ref(), &fill),
+            Some(parent) => exchanged(&place, parent, content.manifests.first(), &fill),
             None => Ok(false),
         };
         let written = match whole {
-            Ok(true) => return Ok(()),
-            Ok(false) => moved(&place, &fill),
+            Ok(true) => Ok(()),
+            Ok(false) => moved(&place, &manifest, &content.manifests, &fill),
             Err(error) => Err(error),
         };
-        written.map_err(|error| self.refused(&error))
+        written.map_err(|error| self.refused(&error))?;
+        clear_beside(&place);
+        clear(&place, Left::Replaced);
+        Ok(())
+    }
+
+    /// Makes sure that every name is one of a file in the folder: no folder is in its place, and no file or link where it has a folder.
+    fn check_ways(&self, place: &Path, names: &[&str]) -> Result<()> {
+        let refuse = |found: String| {
+            let reason = format!("{found}; name another folder");
+            Err(Error::file("write the report", &self.named, reason))
+        };
+        for name in names {
+            if place.join(name).is_dir() {
+                return refuse(format!("its `{name}` is a folder, which no file may replace"));
+            }
+            for above in Path::new(name).ancestors().skip(1).filter(|above| !above.as_os_str().is_empty()) {
+                let found = place.join(above).symlink_metadata();
+                if found.is_ok_and(|found| !found.is_dir()) {
+                    let above = above.display();
+                    return refuse(format!(
+                        "its `{above}` is a file or a link, where the report has a folder"
+                    ));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The folder without links, so that what is beside it is beside it.
@@ -265,22 +304,22 @@ impl Folder {
         }
         let rest = self.named.strip_prefix(&home).unwrap_or(&self.named);
         let home = home.canonicalize().map_err(|error| self.refused(&error))?;
+        // A system that meets a missing folder first does not tell that a name below it is too long.
+        let too_long = |path: PathBuf| {
+            path.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::InvalidFilename)
+        };
+        let room = staging::longest_way(&home.join(rest));
+        if rest.components().any(|part| too_long(home.join(part))) || too_long(room) {
+            return Err(refuse("the name is longer than its file system takes; name another folder"));
+        }
         Ok(if rest.as_os_str().is_empty() { home } else { home.join(rest) })
-    }
-
-    /// Clears what dead processes have left here and beside, and finishes what they had complete.
-    fn recover(&self, place: &Path) -> Result<()> {
-        // Where the parent is still to be made, runs have begun above it.
-        let home = place.parent().and_then(nearest_folder);
-        let beside = home.map_or(Ok(()), |home| clear(&home, None));
-        let within = beside.and_then(|()| clear(place, Some(&|ready| publish(ready, place))));
-        within.map_err(|error| self.refused(&error))
     }
 
     /// What is in the folder, if it may be written to.
     fn content(&self, place: &Path) -> Result<Content> {
-        let manifest = Manifest::in_folder(place);
-        let mut content = Content { manifest, alone: true };
+        let of_begun = begun(place).into_iter().flat_map(|folders| folders.map(|f| Manifest::in_folder(&f)));
+        let manifests = std::iter::once(Manifest::in_folder(place)).chain(of_begun).flatten();
+        let mut content = Content { manifests: manifests.collect(), alone: true };
         if !place.exists() {
             return Ok(content);
         }
@@ -290,10 +329,7 @@ impl Folder {
         names.sort();
         for name in names {
             let (name, path) = (name.to_string_lossy().into_owned(), place.join(&name));
-            let (owned, listed) = content.manifest.as_ref().map_or((false, false), |manifest| {
-                let owned = manifest.owns(place, &name) || manifest.owns_folder(place, &name);
-                (owned, manifest.lists(&name))
-            });
+            let (listed, owned) = content.knows(place, &name);
             if owned {
                 continue;
             }
@@ -303,12 +339,12 @@ impl Folder {
                     || is_hidden(&name)
                     || (!path.is_symlink() && Manifest::in_folder(&path).is_some()));
             if !bystander && self.strangers == Strangers::Refuse {
-                let found = match (listed, &content.manifest) {
+                let found = match (listed, content.manifests.is_empty()) {
                     (true, _) => format!("its `{name}` was changed since hadar wrote it"),
-                    (false, Some(_)) => {
+                    (false, false) => {
                         format!("`{name}` in it was not written by the run of hadar that wrote the rest")
                     }
-                    (false, None) => {
+                    (false, true) => {
                         format!("it holds `{name}`, and no {} says that hadar wrote it", manifest::NAME)
                     }
                 };
@@ -371,37 +407,37 @@ fn exchanged(
 }
 
 /// Makes a report within its folder, and moves its files one by one.
-fn moved(place: &Path, fill: &dyn Fn(&Path) -> io::Result<()>) -> io::Result<()> {
+fn moved(
+    place: &Path,
+    new: &Manifest,
+    before: &[Manifest],
+    fill: &dyn Fn(&Path) -> io::Result<()>,
+) -> io::Result<()> {
     disk::create_dir_all(place)?;
     let mut staging = Staging::in_folder(place)?;
     fill(&staging.new_report())?;
-    let ready = staging.commit()?;
-    publish(&ready, place)?;
+    let [ready, old] = staging.commit()?;
+    let inside = Inside::open(place)?;
+    // From here on the folder is no whole report, and says so.
+    if inside.file(manifest::NAME).is_ok() {
+        disk::create_dir_all(&old)?;
+        disk::rename(&place.join(manifest::NAME), &old.join(manifest::NAME))?;
+    }
+    for old in before {
+        let obsolete = old.files.iter().map(|file| &file.name).filter(|name| !new.lists(name));
+        obsolete.filter(|name| old.owns(place, name)).try_for_each(|name| inside.remove(name))?;
+    }
+    let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
+    names.into_iter().try_for_each(|name| inside.take(&ready.join(name), name))?;
     staging.done();
     Ok(())
 }
 
-/// Moves a complete report into its folder, from wherever the one who began was stopped.
-fn publish(ready: &Path, place: &Path) -> io::Result<()> {
-    let Some(new) = Manifest::in_folder(ready) else { return Ok(()) };
-    // From here on the folder is no whole report, and says so.
-    let old = ready.with_file_name("old");
-    if Manifest::in_folder(place).is_some() {
-        disk::create_dir_all(&old)?;
-        disk::rename(&place.join(manifest::NAME), &old.join(manifest::NAME))?;
+/// Clears what dead runs have left beside a folder. Where the parent is still to be made, runs have begun above it.
+fn clear_beside(place: &Path) {
+    if let Some(home) = place.parent().and_then(nearest_folder) {
+        clear(&home, Left::Unfinished);
     }
-    if let Some(old) = Manifest::in_folder(&old) {
-        let obsolete = old.files.iter().map(|file| &file.name).filter(|name| !new.lists(name));
-        obsolete
-            .filter(|name| old.owns(place, name))
-            .try_for_each(|name| disk::remove_file(&place.join(name)))?;
-    }
-    let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
-    names.filter(|name| ready.join(name).exists()).try_for_each(|name| {
-        let path = place.join(name);
-        path.parent().map_or(Ok(()), disk::create_dir_all)?;
-        disk::rename(&ready.join(name), &path)
-    })
 }
 
 /// Whether two paths belong to the same user and group.

@@ -32,6 +32,7 @@ pub mod size;
 pub mod sweep;
 pub mod table;
 pub mod tables;
+pub mod verify;
 pub mod words;
 
 pub use words::text;

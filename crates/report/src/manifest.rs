@@ -3,19 +3,25 @@
 //! Nothing in it depends on when or where it was made: no time, no machine, no folder of the one who ran it. The same program with
 //! the same command and inputs writes the same bytes, so that anyone can check a report by making it again.
 
+use crate::folder::inside::{self, Inside};
 use crate::json;
-use hadar::error::{Error, Result};
+use hadar::error::Result;
 use hadar::inputs::Inputs;
+use hadar_formats::hash;
+pub use hadar_formats::hash::sha256;
+pub(crate) use hadar_formats::hash::sha256_of;
 use hadar_scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::fs::File;
-use std::io::Read as _;
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 /// The name of the file.
 pub const NAME: &str = "hadar.json";
+
+/// What is read of a manifest at most, bytes.
+const LONGEST: u64 = 1 << 26;
 
 /// The version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -98,12 +104,12 @@ impl Provenance {
     /// That of a run which read `inputs`, the scenario first.
     ///
     /// # Errors
-    /// A file that can no longer be read.
+    /// A file that can no longer be read, or that was changed while it was read.
     pub fn of(commit: &str, command: Vec<String>, seed: u64, inputs: &Inputs) -> Result<Self> {
         // What is no file names others from the current directory.
         let first = match inputs.streams.first() {
             Some((name, _)) => Some(Path::new(name)),
-            None => inputs.files.first().map(PathBuf::as_path),
+            None => inputs.files.first().map(|file| file.path.as_path()),
         };
         let home = first.and_then(|file| std::path::absolute(file).ok());
         let home = home.as_deref().and_then(Path::parent);
@@ -112,11 +118,10 @@ impl Provenance {
             .iter()
             .map(|(name, content)| Input { path: name.clone(), sha256: Some(sha256(content)) })
             .collect();
-        for file in &inputs.files {
-            let beside = home.and_then(|home| from(home, file));
-            let sha256 =
-                sha256_of_file(file).map_err(|error| Error::file("read for its hash", file, error.kind()))?;
-            listed.push(Input { path: slashed(beside.as_deref().unwrap_or(file)), sha256 });
+        for (file, sha256) in hash::of_all_read(inputs)? {
+            let beside = home.and_then(|home| from(home, &file));
+            let path = slashed(beside.as_deref().unwrap_or(&file));
+            listed.push(Input { path, sha256: Some(sha256) });
         }
         for ((kind, name), content) in &inputs.built_in {
             listed.push(Input { path: format!("built-in: {kind} {name}"), sha256: Some(sha256(content)) });
@@ -148,35 +153,20 @@ impl Manifest {
 
     /// The manifest in a folder; `None` where there is none, or none of this program.
     pub(crate) fn in_folder(folder: &Path) -> Option<Self> {
-        let path = folder.join(NAME);
-        // A link could name a file of anyone.
-        if !path.symlink_metadata().ok()?.is_file() {
-            return None;
-        }
-        let manifest: Self = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+        let file = Inside::open(folder).ok()?.file(NAME).ok()?;
+        let mut text = Vec::new();
+        file.take(LONGEST).read_to_end(&mut text).ok()?;
+        let manifest: Self = serde_json::from_slice(&text).ok()?;
         // Names of files in this folder and below: whoever changed the list reaches no others by it.
-        let inside = |name: &str| {
-            let path = PathBuf::from(name);
-            let plain = path.components().all(|part| matches!(part, Component::Normal(_)));
-            plain && !name.is_empty() && name != NAME
-        };
+        let inside = |name: &str| inside::is_within(name) && name != NAME;
         manifest.files.iter().all(|file| inside(&file.name)).then_some(manifest)
     }
 
-    /// Whether a file of the folder is listed and as it was written.
+    /// Whether a file of the folder is listed and as it was written. No link on the way is followed.
     pub(crate) fn owns(&self, folder: &Path, name: &str) -> bool {
-        let path = folder.join(name);
-        // No link on the way leads out of it.
-        let inner = Path::new(name).ancestors().skip(1).filter(|above| *above != Path::new(""));
-        let plain = path.symlink_metadata().is_ok_and(|found| found.is_file())
-            && inner
-                .into_iter()
-                .all(|above| folder.join(above).symlink_metadata().is_ok_and(|found| found.is_dir()));
+        let Ok(file) = Inside::open(folder).and_then(|inside| inside.file(name)) else { return false };
         let listed = self.files.iter().find(|file| file.name == name);
-        plain
-            && (name == NAME
-                || listed
-                    .is_some_and(|file| sha256_of_file(&path).ok().flatten().as_ref() == Some(&file.sha256)))
+        name == NAME || listed.is_some_and(|listed| sha256_of(file).is_ok_and(|now| now == listed.sha256))
     }
 
     /// Whether a folder in it holds files of the run alone, unchanged.
@@ -223,13 +213,7 @@ fn slashed(path: &Path) -> String {
     path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// SHA-256 (FIPS 180-4) in hexadecimal digits.
-#[must_use]
-pub fn sha256(bytes: &[u8]) -> String {
-    digits(Sha256::new_with_prefix(bytes))
-}
-
-/// That of a file's content; `None` of what is no ordinary file, which may have been read up.
+/// SHA-256 of a file's content; `None` of what is no ordinary file, which may have been read up.
 ///
 /// # Errors
 /// A file that cannot be read.
@@ -237,32 +221,19 @@ pub fn sha256_of_file(path: &Path) -> std::io::Result<Option<String>> {
     if !path.metadata()?.is_file() {
         return Ok(None);
     }
-    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut part)? {
-            0 => return Ok(Some(digits(hash))),
-            read => hash.update(&part[..read]),
-        }
-    }
-}
-
-fn digits(hash: Sha256) -> String {
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256_of(File::open(path)?).map(Some)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// FIPS 180-4, example of one block.
     #[test]
-    fn the_hash_is_that_of_the_standard() {
-        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(sha256(b"abc"), expected);
+    fn what_is_no_ordinary_file_has_no_hash() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("abc"), "abc").unwrap();
-        assert_eq!(sha256_of_file(&folder.path().join("abc")).unwrap().unwrap(), expected);
-        assert_eq!(sha256_of_file(folder.path()).unwrap(), None);
+        let of = |name: &str| sha256_of_file(&folder.path().join(name)).unwrap();
+        assert_eq!((of("abc"), of("")), (Some(sha256(b"abc")), None));
     }
 
     #[test]

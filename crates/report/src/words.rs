@@ -26,6 +26,7 @@ pub(crate) mod simulate;
 pub mod size;
 pub(crate) mod sweep;
 pub mod text;
+pub(crate) mod verify;
 pub mod warnings;
 
 use hadar_study::spoken::Phrase;

@@ -47,6 +47,7 @@ const TAKEN: &[(&str, &[Flags])] = &[
     ("cameras compare", &[PRINTED, CAMERAS]),
     ("serve", &[MATERIALS, CAMERAS, &["threads", "quiet"]]),
     ("diff", &[&["json", "quiet"]]),
+    ("verify", &[&["json", "threads", "quiet"]]),
     ("completions", &[]),
     ("man", &[FOLDER, &["quiet"]]),
     ("explain", &[&["json"]]),

@@ -7,23 +7,24 @@ use super::terminal::Stream;
 use clap::{ArgMatches, Args};
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::inputs;
+use hadar::inputs::{self, Held};
 use hadar::material::Library;
 use hadar::units::decimal_comma;
 use hadar_formats::ReadLibrary as _;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::json;
-use hadar_report::manifest::{Provenance, answer_json};
+use hadar_report::manifest::{Input, Provenance, answer_json, sha256};
 use hadar_report::text::{self, with_settings};
 use hadar_scenario::{Scenario, Setting, Written};
 use hadar_study::warning::Warning;
 use hadar_study::{Condition, OwnCameras, Study};
 use serde_json::Value;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Flags that several commands have; which of them a command takes is said in one table.
 #[derive(Debug, Clone, Args)]
@@ -84,6 +85,36 @@ pub struct Global {
     /// Words of the command that are of other scenarios.
     #[arg(skip)]
     of_others: Vec<String>,
+    /// Of a report that is made again: what it says of itself.
+    #[arg(skip)]
+    remade: Option<Arc<Remade>>,
+}
+
+/// What a report says of itself that is made again.
+#[derive(Debug)]
+pub(super) struct Remade {
+    /// The file of the question as the command names it, and the text that stands in its place.
+    asked: Option<(PathBuf, String)>,
+    stored: Provenance,
+    /// What was read now.
+    inputs: Mutex<Vec<Input>>,
+}
+
+impl Remade {
+    pub(super) fn new(asked: Option<(PathBuf, String)>, stored: Provenance) -> Self {
+        Self { asked, stored, inputs: Mutex::default() }
+    }
+
+    /// What was read until its report was written.
+    pub(super) fn inputs(&self) -> Vec<Input> {
+        self.inputs.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// That of the report, once what was read now is kept to be compared.
+    fn provenance(&self, now: Provenance) -> Provenance {
+        *self.inputs.lock().unwrap_or_else(PoisonError::into_inner) = now.inputs;
+        self.stored.clone()
+    }
 }
 
 impl Global {
@@ -108,7 +139,14 @@ impl Global {
             said_of_library: Arc::default(),
             kept: None,
             of_others: Vec::new(),
+            remade: None,
         }
+    }
+
+    /// The same for a report that is made again into a folder of its own, with nothing printed.
+    pub(super) fn made_again(self, out: &Path, remade: Arc<Remade>, by: &Self) -> Self {
+        let (out, kept) = (Some(out.to_owned()), Some(Arc::default()));
+        Self { out, kept, remade: Some(remade), quiet: true, threads: by.threads, ..self }
     }
 
     /// The embedded library with the user's own materials.
@@ -137,10 +175,15 @@ impl Global {
 
     /// A file of a question as it is to be read, with what was set; `-` is standard input.
     pub(super) fn written(&self, path: &Path) -> Result<Written> {
-        let written = match path.as_os_str() == "-" {
-            true => Written::from_stdin(std::io::stdin().lock()),
-            false => Written::from_file(path),
-        }?;
+        let asked = self.remade.as_ref().and_then(|remade| remade.asked.as_ref());
+        let written = match asked {
+            Some((path, text)) => {
+                inputs::file(path, Held::Sha256(sha256(text.as_bytes())));
+                Written::of(text, Some(path))
+            }
+            None if path.as_os_str() == "-" => Written::from_stdin(std::io::stdin().lock())?,
+            None => Written::from_file(path)?,
+        };
         for (index, one) in self.set.iter().enumerate() {
             if self.set.iter().skip(index + 1).any(|other| other.key == one.key) {
                 let found = Error::malformed("it is set twice", "name it once");
@@ -199,7 +242,7 @@ impl Global {
     /// Makes sure, before the work, that what was read so far is not where the report will be.
     pub(super) fn inputs_are_safe(&self) -> Result<()> {
         match &self.out {
-            Some(out) => self.folder(out).check_inputs(&inputs::so_far().files, &provenance::USUAL_NAMES),
+            Some(out) => self.folder(out).check_inputs(&inputs::so_far().paths(), &provenance::USUAL_NAMES),
             None => Ok(()),
         }
     }
@@ -291,13 +334,24 @@ impl Global {
 
     /// Who makes the report of what.
     pub(super) fn provenance(&self) -> Result<Provenance> {
-        provenance::of_this_run(self.seed, &self.of_others)
+        self.provenance_with(&BTreeMap::new())
+    }
+
+    /// The same, where more of what is built in was used than was noted.
+    pub(super) fn provenance_with(&self, built_in: &BTreeMap<String, Input>) -> Result<Provenance> {
+        let mut now = provenance::of_this_run(self.seed, &self.of_others)?;
+        now.inputs.retain(|input| !built_in.contains_key(&input.path));
+        now.inputs.extend(built_in.values().cloned());
+        Ok(match &self.remade {
+            Some(remade) => remade.provenance(now),
+            None => now,
+        })
     }
 
     /// Writes the files, with the answer and a page of all where there is an answer, and says where.
     pub fn write(&self, bundle: &Bundle, out: &Path, answer: Option<&str>) -> Result<()> {
         let bundle = self.formatted(bundle)?;
-        let (provenance, inputs) = (self.provenance()?, inputs::so_far().files);
+        let (provenance, inputs) = (self.provenance()?, inputs::so_far().paths());
         let about = About { answer: answer.unwrap_or_default(), provenance: &provenance, inputs: &inputs };
         let folder = self.folder(out);
         let count = match answer {

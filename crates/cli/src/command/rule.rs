@@ -5,7 +5,9 @@ use super::several;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
+use hadar::inputs::inputs_of;
 use hadar::material::Library;
+use hadar_formats::file;
 use hadar_report::manifest::{Input, sha256_of_file};
 use hadar_report::rule;
 use hadar_scenario::rule::{Citation, Figure};
@@ -15,8 +17,6 @@ use hadar_study::{
     CameraAnswer, Condition, Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning,
 };
 use serde_json::Value;
-use std::fs::File;
-use std::io::Read as _;
 use std::iter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -55,6 +55,13 @@ pub(super) struct RuleArgs {
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
     on: Option<Date>,
+}
+
+impl RuleArgs {
+    /// Whether a certificate is held against what is found now.
+    pub(super) const fn verifies(&self) -> bool {
+        self.verify.is_some()
+    }
 }
 
 fn on(text: &str) -> std::result::Result<Date, String> {
@@ -129,16 +136,13 @@ struct Set {
 fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     global.writes_nothing("--verify")?;
     global.sets_nothing("a certificate")?;
-    let action = "read the certificate";
     let told = |found: String| {
         let instead = "name the certificate.json of a report by hadar rule";
         Error::malformed(found, instead).in_file(certificate)
     };
     // Not an input of the rule, as what is read by the library is.
-    let mut bytes = Vec::new();
-    let read =
-        File::open(certificate).and_then(|file| file.take(LONGEST_CERTIFICATE).read_to_end(&mut bytes));
-    read.map_err(|error| Error::file(action, certificate, error.kind()))?;
+    let (bytes, _) = inputs_of(|| file::bytes(certificate, "read the certificate", LONGEST_CERTIFICATE));
+    let bytes = bytes?;
     let text = String::from_utf8(bytes).map_err(|_| told("this is not UTF-8 text".into()))?;
     let before = rule::parsed(&text).map_err(|error| error.in_file(certificate))?;
     let of = |value: &Value, key: &str| value.get(key).cloned().unwrap_or_default();

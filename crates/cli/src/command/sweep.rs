@@ -3,13 +3,14 @@
 mod journal;
 mod work;
 
-use self::journal::{Entry, Hashes, Journal};
-use super::global::{By, Global};
+use self::journal::{By, Entry, Hashes, Journal};
+use super::global::{self, Global};
 use super::provenance;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
-use hadar::inputs::{self, inputs_of};
+use hadar::inputs::{self, Held, inputs_of};
+use hadar_formats::hash;
 use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Input, VERSION, sha256, sha256_of_file};
@@ -17,12 +18,13 @@ use hadar_report::sweep::{self, Gathered, Swept};
 use hadar_report::words;
 use hadar_scenario::Written;
 use hadar_study::Remembered;
-use hadar_study::sweep::{Asking, Axis, Cases, Plan, Question};
+use hadar_study::sweep::{Asking, Axis, Cases, Cell, Plan, Question, Record};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{BuildHasher as _, RandomState};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 #[derive(Debug, Args)]
 pub(super) struct SweepArgs {
@@ -43,13 +45,33 @@ pub(super) struct SweepArgs {
     columns: Vec<String>,
     /// The distance that decides, instead of the scenario's
     #[arg(long)]
-    by: Option<By>,
+    by: Option<global::By>,
     /// Compute every n-th row alone, from the i-th on; the last shard that ends writes the table
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: String,
-    /// Compute nothing, and write the table of the rows that are there
+    /// Write the table of the rows that are there, and compute none of the others
     #[arg(long)]
     merge: bool,
+    /// Rows of earlier runs and of other shards that are computed again before the table is written, taken at random: a number, or
+    /// `all` of them
+    #[arg(long, value_name = "N|all", default_value = "5", value_parser = recompute)]
+    recompute: Recompute,
+}
+
+/// How many rows of others are computed again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Recompute {
+    Some(usize),
+    All,
+}
+
+fn recompute(text: &str) -> std::result::Result<Recompute, String> {
+    match text.trim() {
+        "all" => Ok(Recompute::All),
+        number => {
+            number.parse().map(Recompute::Some).map_err(|_| "write a number of rows, or all".to_owned())
+        }
+    }
 }
 
 /// What is printed with `--json`.
@@ -63,8 +85,10 @@ struct Summary<'a> {
     to_go: usize,
     /// Rows that this run computed.
     computed: usize,
-    /// Rows that were there.
+    /// Rows that were there, of earlier runs or other shards.
     kept: usize,
+    /// How many of these were computed again, and found the same.
+    recomputed: usize,
     first_failure: Option<&'a str>,
     files: Vec<String>,
 }
@@ -106,49 +130,96 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
     let keys: Vec<String> = (0..plan.rows()).map(|row| key(&sweep, &plan, row)).collect();
     let journal = Journal::open(out, shard)?;
     let mut done = BTreeSet::new();
-    journal.read(&mut |entry| {
-        if entry.error.is_none() && entry.holds(&hashes) {
+    journal.read(&mut |entry, _| {
+        if args.recompute != Recompute::All && entry.error.is_none() && entry.holds(&hashes) {
             done.insert(entry.key);
         }
     })?;
     let own = |row: &usize| row % shard[1] + 1 == shard[0] && !args.merge;
     let open: Vec<usize> = (0..plan.rows()).filter(own).filter(|row| !done.contains(&keys[*row])).collect();
-    let kept = keys.iter().filter(|key| done.contains(*key)).count();
     drop(done);
     let stats = Mutex::new(Work::default());
-    let bar = global.progress("rows");
-    let job = |index: usize| {
-        let Some((row, key)) = open.get(index).and_then(|row| Some((*row, keys.get(*row)?))) else {
-            return Ok(());
-        };
+    let answered_anew = |row: usize| -> Result<Entry> {
         let written = file.with(plan.settings(row));
         let (answer, read) =
             inputs_of(|| catch_unwind(AssertUnwindSafe(|| question.answer(&written, &asking))));
         let outcome = match answer {
             Ok(Ok(answer)) => {
-                if let Ok(mut stats) = stats.lock() {
-                    stats.add(&answer.work);
-                }
+                stats.lock().unwrap_or_else(PoisonError::into_inner).add(&answer.work);
                 Ok(answer.record)
             }
             Ok(Err(error)) => Err(error.to_string()),
             Err(_) => Err("the program failed in this row; report this as a bug".to_owned()),
         };
-        journal.write(&Entry::new(key.clone(), &read, outcome, &hashes))
+        Entry::new(keys.get(row).cloned().unwrap_or_default(), &read, outcome)
+    };
+    let bar = global.progress("rows");
+    let job = |index: usize| match open.get(index) {
+        Some(row) => journal.write(&answered_anew(*row)?),
+        None => Ok(()),
     };
     work::each(open.len(), &job, &|done, all| bar.set(done, all))?;
     bar.finish();
     let _report = journal.lock_report()?;
-    let (gathered, built_in) = gathered(&journal, &plan, &keys, &hashes)?;
-    let swept = Swept { question, gathered, chosen: columns };
-    let stats = stats.into_inner().unwrap_or_default();
-    answered(&swept, [open.len(), kept], &built_in, &stats, args, global)
+    let there = gathered(&journal, &plan, &keys)?;
+    let again = sample(&there.of_others, args.recompute);
+    let same = |index: usize| match again.get(index) {
+        Some(row) => is_same(*row, &there.gathered, answered_anew(*row)?.outcome(), out),
+        None => Ok(()),
+    };
+    work::each(again.len(), &same, &|_, _| ())?;
+    let swept = Swept {
+        question,
+        gathered: there.gathered,
+        chosen: columns,
+        kept: there.of_others.len(),
+        recomputed: again.len(),
+    };
+    let stats = stats.into_inner().unwrap_or_else(PoisonError::into_inner);
+    answered(&swept, open.len(), &there.built_in, &stats, args, global)
+}
+
+/// Rows of others that are looked at again: which ones, nobody can foresee who wrote them.
+fn sample(of_others: &BTreeSet<usize>, most: Recompute) -> Vec<usize> {
+    let mut rows: Vec<usize> = of_others.iter().copied().collect();
+    if let Recompute::Some(most) = most {
+        let chance = RandomState::new();
+        rows.sort_by_cached_key(|row| chance.hash_one(row));
+        rows.truncate(most);
+    }
+    rows
+}
+
+/// Refuses rows of others, of which one is not what is found now.
+fn is_same(
+    row: usize,
+    gathered: &Gathered,
+    now: std::result::Result<Record, String>,
+    out: &Path,
+) -> Result<()> {
+    let before = gathered.record(row);
+    let told =
+        |cell: Option<&Cell>| cell.map_or_else(|| "nothing".to_owned(), |cell| cell.to_json().to_string());
+    let found = match now {
+        Err(message) => format!("fails: {message}"),
+        Ok(mut now) => {
+            now.retain(|_, cell| *cell != Cell::Empty);
+            let names = before.keys().chain(now.keys());
+            let Some(name) = names.into_iter().find(|name| before.get(*name) != now.get(*name)) else {
+                return Ok(());
+            };
+            format!("has {} where {} is found now, as `{name}`", told(before.get(name)), told(now.get(name)))
+        }
+    };
+    let instead = "ask with --recompute all, or remove its folder .sweep: none of these rows is believed";
+    let found = format!("row {row}, of an earlier run or another shard, {found}");
+    Err(Error::malformed(found, instead).in_file(out))
 }
 
 /// Writes the table where all rows are there, or all that there are are asked for, and says what there is.
 fn answered(
     swept: &Swept,
-    [computed, kept]: [usize; 2],
+    computed: usize,
     built_in: &BTreeMap<String, Input>,
     stats: &Work,
     args: &SweepArgs,
@@ -172,10 +243,8 @@ fn answered(
         let bundle = sweep::bundle(swept, &title)?;
         let bundle = global.formatted(&bundle)?;
         files.extend(bundle.names().map(str::to_owned));
-        let mut provenance = global.provenance()?;
-        provenance.inputs.retain(|input| !built_in.contains_key(&input.path));
-        provenance.inputs.extend(built_in.values().cloned());
-        let inputs = inputs::so_far().files;
+        let provenance = global.provenance_with(built_in)?;
+        let inputs = inputs::so_far().paths();
         let about = About { answer: &text, provenance: &provenance, inputs: &inputs };
         let count = bundle.write_report(&global.folder(out), &about)?;
         global.note(&format!("wrote {count} files to {}", out.join("").display()));
@@ -191,7 +260,8 @@ fn answered(
         failed,
         to_go,
         computed,
-        kept,
+        kept: swept.kept,
+        recomputed: swept.recomputed,
         first_failure: failures.first().map(|(_, message)| *message),
         files,
     };
@@ -201,29 +271,57 @@ fn answered(
     Ok(if lost { ExitCode::from(1) } else { ExitCode::SUCCESS })
 }
 
-/// What is there of the rows, and what of the program itself it rests on; their files are noted as read.
-fn gathered(
-    journal: &Journal,
-    plan: &Plan,
-    keys: &[String],
-    hashes: &Hashes,
-) -> Result<(Gathered, BTreeMap<String, Input>)> {
+/// What is there of the rows.
+struct There {
+    gathered: Gathered,
+    /// Rows that were answered by others.
+    of_others: BTreeSet<usize>,
+    /// What of the program itself they rest on.
+    built_in: BTreeMap<String, Input>,
+}
+
+/// Gathers the rows whose files are as they were; the files are noted as read.
+///
+/// # Errors
+/// A file that was changed after this run had read it: its rows are not of one table.
+fn gathered(journal: &Journal, plan: &Plan, keys: &[String]) -> Result<There> {
     let mut rows: HashMap<&str, Vec<usize>> = HashMap::new();
     for (row, key) in keys.iter().enumerate() {
         rows.entry(key).or_default().push(row);
     }
-    let mut gathered = Gathered::new(plan.inputs(), plan.rows());
-    let mut built_in = BTreeMap::new();
-    let mut files: BTreeSet<PathBuf> = BTreeSet::new();
-    journal.read(&mut |entry| {
-        let Some(rows) = rows.get(entry.key.as_str()).filter(|_| entry.holds(hashes)) else { return };
-        files.extend(entry.files().map(Path::to_owned));
-        built_in.extend(entry.built_in.iter().map(|input| (input.path.clone(), input.clone())));
+    let (gathered, of_others, built_in) =
+        (Gathered::new(plan.inputs(), plan.rows()), BTreeSet::new(), BTreeMap::new());
+    let mut there = There { gathered, of_others, built_in };
+    // As they are now, not as they were when the work began.
+    let hashes = Hashes::default();
+    let mut files: BTreeMap<PathBuf, String> = BTreeMap::new();
+    let mut changed = None;
+    journal.read(&mut |entry, by| {
+        let Some(rows) = rows.get(entry.key.as_str()) else { return };
+        if !entry.holds(&hashes) {
+            if by == By::Own {
+                changed = changed.take().or_else(|| entry.changed(&hashes));
+            }
+            return;
+        }
+        files.extend(entry.files().map(|(path, hash)| (path.to_owned(), hash.to_owned())));
+        there.built_in.extend(entry.built_in.iter().map(|input| (input.path.clone(), input.clone())));
         let outcome = entry.outcome();
-        rows.iter().for_each(|row| gathered.put(*row, outcome.clone()));
+        for row in rows {
+            if by == By::Another && outcome.is_ok() {
+                there.of_others.insert(*row);
+            }
+            there.gathered.put(*row, outcome.clone());
+        }
     })?;
-    files.iter().for_each(|path| inputs::file(path));
-    Ok((gathered, built_in))
+    if let Some(path) = changed {
+        let reason = "it was changed while the sweep ran; run it again, and the rows that rest on it are computed anew";
+        return Err(Error::file("take as an input of all rows", &path, reason));
+    }
+    for (path, hash) in files {
+        inputs::file(&path, Held::Sha256(hash));
+    }
+    Ok(there)
 }
 
 /// Which rows of how many are this run's, from 1.
@@ -260,12 +358,11 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
     parts.push(format!("{:?}", file.settings));
     parts.push(format!("{:?}", file.cameras));
     // The scenario and the cases are read as text above and row by row.
-    let read = inputs::so_far().files;
-    let libraries = read.iter().filter(|path| global.library.iter().any(|library| path.starts_with(library)));
-    for path in libraries {
-        let hash =
-            sha256_of_file(path).map_err(|error| Error::file("read for its hash", path, error.kind()))?;
-        parts.push(format!("{} {hash:?}", path.display()));
+    let read = hash::of_all_read(&inputs::so_far())?;
+    let libraries =
+        read.iter().filter(|(path, _)| global.library.iter().any(|library| path.starts_with(library)));
+    for (path, hash) in libraries {
+        parts.push(format!("{} {hash}", path.display()));
     }
     Ok(sha256(parts.join("\0").as_bytes()))
 }

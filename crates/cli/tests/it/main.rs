@@ -51,6 +51,7 @@ mod spectra;
 mod stand_in;
 mod sweep;
 mod vectors;
+mod verify;
 mod written;
 
 mod support {

@@ -333,6 +333,90 @@ fn two_processes_do_not_work_on_the_same_rows() {
     assert_eq!(folder.json(&arguments)["answered"], 2);
 }
 
+/// Rows that somebody else wrote are told by computing some of them again; all of them, where that is asked for.
+#[test]
+fn a_forged_row_is_not_believed() {
+    let folder = Folder::with(SCENARIO);
+    let arguments =
+        ["sweep", "a.toml", "--out", "out", "--vary", "target.distance=5 m,6 m,7 m", "--columns", "verdict"];
+    assert_eq!(folder.json(&arguments)["answered"], 3);
+    let [journal, table] = ["out/.sweep/1-of-1.jsonl", "out/sweep.csv"].map(|name| folder.path().join(name));
+    let (true_rows, true_table) = (fs::read_to_string(&journal).unwrap(), fs::read(&table).unwrap());
+    let forgeries: [&dyn Fn(&str) -> String; 4] = [
+        &|row| row.replace("\"verdict.met\":false", "\"verdict.met\":true"),
+        &|row| row.replace("\"verdict.lower\":", "\"verdict.lower\":9"),
+        &|row| row.replace("\"verdict.scope\":\"pixel\",", ""),
+        &|row| row.replace("\"verdict.scope\"", "\"verdict.more\":1,\"verdict.scope\""),
+    ];
+    for forged in forgeries {
+        for which in 0..3 {
+            let rows = true_rows.lines().enumerate();
+            let rows: Vec<String> =
+                rows.map(|(at, row)| if at == which { forged(row) } else { row.to_owned() }).collect();
+            assert_ne!(rows.join("\n"), true_rows.trim_end());
+            fs::write(&journal, rows.join("\n") + "\n").unwrap();
+            let message = folder.refusal(&arguments);
+            assert!(
+                message.contains(&format!("row {which}, of an earlier run or another shard, has ")),
+                "{message}"
+            );
+            assert_eq!(fs::read(&table).unwrap(), true_table);
+            // Its own rows are those of this run, whatever else stands there.
+            let all = folder.json(&[&arguments[..], &["--recompute", "all"]].concat());
+            assert_eq!((&all["computed"], &all["kept"]), (&3.into(), &0.into()), "{all}");
+            assert_eq!(fs::read(&table).unwrap(), true_table);
+            fs::write(&journal, &true_rows).unwrap();
+        }
+    }
+    let kept = folder.run(&[&arguments[..], &["--recompute", "2"]].concat());
+    let said =
+        "Of these 3 are of earlier runs or other shards; 2 of them were computed again, and are the same.";
+    assert!(kept.stdout.contains(said), "{}", kept.stdout);
+    let usage = folder.run(&[&arguments[..], &["--recompute", "some"]].concat());
+    assert_eq!(usage.code, 2);
+    assert!(usage.stderr.contains("write a number of rows, or all"), "{}", usage.stderr);
+}
+
+/// Neither the folder of the rows nor a file in it leads anywhere else.
+#[cfg(unix)]
+#[test]
+fn no_link_of_the_rows_is_followed() {
+    use std::os::unix::fs::symlink;
+    let arguments =
+        ["sweep", "a.toml", "--out", "out", "--vary", "target.distance=5 m,6 m", "--columns", "verdict"];
+    let plant = |name: &str, how: &dyn Fn(&std::path::Path, &std::path::Path)| {
+        let folder = Folder::with(SCENARIO);
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir_all(at("away")).unwrap();
+        fs::write(at("away/precious"), "mine\n").unwrap();
+        fs::create_dir_all(at("out").join(name).parent().unwrap()).unwrap();
+        how(folder.path(), &at("out").join(name));
+        let message = folder.refusal(&arguments);
+        assert!(
+            message.contains("is a link or no ordinary file, which is not followed"),
+            "{name}: {message}"
+        );
+        assert_eq!(fs::read_to_string(at("away/precious")).unwrap(), "mine\n", "{name}");
+        assert_eq!(fs::read_dir(at("away")).unwrap().count(), 1, "{name}");
+    };
+    let file =
+        |home: &std::path::Path, at: &std::path::Path| symlink(home.join("away/precious"), at).unwrap();
+    let none = |home: &std::path::Path, at: &std::path::Path| symlink(home.join("away/none"), at).unwrap();
+    let hard =
+        |home: &std::path::Path, at: &std::path::Path| fs::hard_link(home.join("away/precious"), at).unwrap();
+    let folder = |home: &std::path::Path, at: &std::path::Path| symlink(home.join("away"), at).unwrap();
+    let pipe = |_: &std::path::Path, at: &std::path::Path| {
+        assert!(std::process::Command::new("mkfifo").arg(at).status().unwrap().success());
+    };
+    for how in [&file as &dyn Fn(&std::path::Path, &std::path::Path), &none, &hard, &folder, &pipe] {
+        plant(".sweep/1-of-1.jsonl", how);
+        plant(".sweep/report.lock", how);
+    }
+    plant(".sweep/2-of-2.jsonl", &file);
+    plant(".sweep", &folder);
+    plant(".sweep", &file);
+}
+
 /// Other commands answer rows as well; the air's scenario through `range`, a list of cameras through `rule`.
 #[test]
 fn every_kind_of_file_is_asked_by_its_command() {

@@ -6,11 +6,11 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 #[cfg(test)]
-use super::tests::calls::call;
+pub(super) use super::tests::calls::call;
 
 /// A place where a process can be ended.
 #[cfg(not(test))]
-const fn call() -> io::Result<()> {
+pub(super) const fn call() -> io::Result<()> {
     Ok(())
 }
 
@@ -24,12 +24,15 @@ pub(super) fn private_folder(home: &Path, prefix: &str, random: usize) -> io::Re
     builder.tempdir_in(home).map(tempfile::TempDir::keep)
 }
 
-/// Whether a folder is open to its owner alone, as [`private_folder`] makes it.
+/// Whether a folder is this user's and open to nobody else, as [`private_folder`] makes it.
 pub(super) fn is_private(folder: &Path) -> bool {
     #[cfg(unix)]
     {
-        use std::os::unix::fs::PermissionsExt as _;
-        folder.symlink_metadata().is_ok_and(|found| found.permissions().mode() & 0o777 == 0o700)
+        use std::os::unix::fs::MetadataExt as _;
+        let own = rustix::process::geteuid().as_raw();
+        let is_own =
+            |found: fs::Metadata| found.is_dir() && found.uid() == own && found.mode() & 0o777 == 0o700;
+        folder.symlink_metadata().is_ok_and(is_own)
     }
     #[cfg(not(unix))]
     {

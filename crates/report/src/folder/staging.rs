@@ -3,7 +3,10 @@
 //!
 //! `.hadar-XXXXXXXXXXXX/` holds `new/`, the report, and `lock`, which stays locked as long as the process lives, whatever its number
 //! and wherever it runs. It is made exclusively and open to its owner alone, so that no link planted before is followed. Once `new/`
-//! is complete and must be moved file by file, it is called `ready/`: then whoever finds it without its process finishes the work.
+//! is complete and must be moved file by file, it is called `ready/`, and `old/` has the list of the report that goes: whoever finds
+//! them without their process knows by the two lists which files in the folder are hadar's, and replaces them by its own.
+//!
+//! A folder of the name that is another user's, or open to others, is nobody's here: it is neither read nor removed.
 //!
 //! A process can be killed between any two calls. The lock has the name `unlocked` until it is locked, it is removed after everything
 //! else, and the folder after it. A dead process thus leaves one of three states, each of which is recognised: a `lock` that can be
@@ -11,6 +14,7 @@
 //! another folder if it finds the first one cleared away by somebody else.
 
 use super::disk;
+use crate::manifest;
 use std::fs::{File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,13 +27,22 @@ const LOCK: &str = "lock";
 const UNLOCKED: &str = "unlocked";
 const NEW: &str = "new";
 const READY: &str = "ready";
+const OLD: &str = "old";
+/// Room for the name of a file with its folder.
+const LONGEST_NAME: usize = 100;
 /// A folder without a lock that can be asked is left alone so long: its process may only just have made it.
 const DEAD_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// Folders that are made until one is not taken for that of a dead process.
 const ATTEMPTS: usize = 100;
 
-/// What finishes a complete report that must be moved.
-pub(super) type Finish<'a> = &'a dyn Fn(&Path) -> io::Result<()>;
+/// Which folders of dead processes go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Left {
+    /// Those that nothing was moved out of.
+    Unfinished,
+    /// All, since a report has taken the place of what was moved.
+    Replaced,
+}
 
 /// A folder of this process.
 #[derive(Debug)]
@@ -80,12 +93,12 @@ impl Staging {
         self.folder.join(NEW)
     }
 
-    /// From now on the report is moved into its folder, by this process or by the next; where it is.
-    pub(super) fn commit(&mut self) -> io::Result<PathBuf> {
-        let ready = self.folder.join(READY);
+    /// From now on the report is moved into its folder; where it is, and where the list of the old one goes.
+    pub(super) fn commit(&mut self) -> io::Result<[PathBuf; 2]> {
+        let [ready, old] = [READY, OLD].map(|name| self.folder.join(name));
         disk::rename(&self.new_report(), &ready)?;
         self.kept = true;
-        Ok(ready)
+        Ok([ready, old])
     }
 
     /// The work is done, or was undone.
@@ -122,33 +135,46 @@ fn remove(folder: &Path, lock: &mut Option<File>) {
     }
 }
 
-/// Removes the staging folders in `home` whose processes are dead. Reports in them that were complete are handed to `finish` before;
-/// without it their folders stay, for the run that names `home`. What cannot be removed stays, as what may still be in use.
-pub(super) fn clear(home: &Path, finish: Option<Finish<'_>>) -> io::Result<()> {
-    let Ok(entries) = disk::entries(home) else { return Ok(()) };
-    for folder in entries.iter().map(std::fs::DirEntry::path).filter(|path| is_staging(path)) {
+/// Removes the staging folders in `home` whose processes are dead. What cannot be removed stays, as what may still be in use.
+pub(super) fn clear(home: &Path, left: Left) {
+    for folder in own(home) {
         let Ok(lock) = disk::open_lock(&folder.join(LOCK)) else { continue };
         let Some(lock) = lock else {
             clear_begun(&folder);
             continue;
         };
-        if is_dead(&folder, &lock) {
-            let ready = folder.join(READY);
-            if ready.symlink_metadata().is_ok_and(|found| found.is_dir()) {
-                let Some(finish) = finish else { continue };
-                finish(&ready)?;
-            }
+        if is_dead(&folder, &lock) && (left == Left::Replaced || !is_begun(&folder)) {
             remove(&folder, &mut Some(lock));
         }
     }
-    Ok(())
+}
+
+/// Folders of a process whose report was begun to be moved out of them into `home`: of the new report and of the old one.
+pub(super) fn begun(home: &Path) -> impl Iterator<Item = [PathBuf; 2]> {
+    let begun = own(home).filter(|folder| is_begun(folder));
+    begun.map(|folder| [READY, OLD].map(|name| folder.join(name)))
+}
+
+/// Whether a report waits to be moved: its list goes last.
+fn is_begun(folder: &Path) -> bool {
+    let ready = folder.join(READY);
+    ready.symlink_metadata().is_ok_and(|found| found.is_dir()) && ready.join(manifest::NAME).exists()
+}
+
+/// Staging folders in `home` that are this user's.
+fn own(home: &Path) -> impl Iterator<Item = PathBuf> {
+    let entries = disk::entries(home).into_iter().flatten().map(|entry| entry.path());
+    entries.filter(|path| is_staging(path) && disk::is_private(path))
+}
+
+/// The longest way that a report takes to its folder.
+pub(super) fn longest_way(place: &Path) -> PathBuf {
+    let staging = format!("{PREFIX}{}", "x".repeat(RANDOM));
+    place.join(staging).join(READY).join("x".repeat(LONGEST_NAME))
 }
 
 /// Removes a staging folder that has no lock yet, or none any more. Nothing but an empty file and an empty folder is ever removed.
 fn clear_begun(folder: &Path) {
-    if !disk::is_private(folder) && !is_old(folder) {
-        return;
-    }
     match disk::open_lock(&folder.join(UNLOCKED)) {
         Ok(Some(lock)) if is_dead(folder, &lock) && lock.metadata().is_ok_and(|found| found.len() == 0) => {
             // As long as it is held here, its process cannot give it its name.

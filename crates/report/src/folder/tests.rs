@@ -191,6 +191,7 @@ fn what_only_has_the_name_of_a_staging_folder_stays() {
     .map(at);
     made(&name, true);
     made(&open, false);
+    fs::write(open.join("lock"), "").unwrap();
     made(&full, true);
     fs::write(full.join("mine"), "mine").unwrap();
     made(&written, true);
@@ -211,9 +212,9 @@ fn what_only_has_the_name_of_a_staging_folder_stays() {
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 9);
 }
 
-/// A run into a folder within a report that was half moved leaves it to the run that names it.
+/// A report that was half moved is replaced by the next run that names its folder, and by no other; what is in it is hadar's all the same.
 #[test]
-fn a_report_half_moved_is_left_to_the_run_that_names_it() {
+fn a_report_half_moved_is_replaced_by_the_run_that_names_it() {
     let home = tempfile::tempdir().unwrap();
     let folder = Folder::new(home.path(), Strangers::KeepBesides);
     fs::write(home.path().join("mine"), "mine").unwrap();
@@ -224,9 +225,17 @@ fn a_report_half_moved_is_left_to_the_run_that_names_it() {
     });
     assert!(half.is_some());
     write(&Folder::new(home.path().join("below"), Strangers::Refuse), &["x.csv"], "1").unwrap();
-    assert!(!whole(home.path()));
     folder.check().unwrap();
-    let mut expected = of(&["a.csv", "c.csv"], "2");
+    assert!(!whole(home.path()), "nothing that is found is acted upon");
+    fs::remove_file(home.path().join("mine")).unwrap();
+    fs::write(home.path().join(".mine"), "").unwrap();
+    let careful = Folder::new(home.path(), Strangers::Refuse);
+    careful.check().unwrap();
+    fs::write(home.path().join("mine"), "mine").unwrap();
+    refusal(careful.check(), "`mine` in it was not written by the run");
+    write(&folder, &["a.csv", "d.csv"], "3").unwrap();
+    let mut expected = of(&["a.csv", "d.csv"], "3");
+    expected.insert(".mine".into(), String::new());
     expected.insert("mine".into(), "mine".into());
     assert!(whole(home.path()) && content(home.path()) == expected);
 }
@@ -254,4 +263,74 @@ fn a_large_file_is_taken_from_where_it_was_made() {
     }
     let left = fs::read_dir(home.path()).unwrap().count();
     assert_eq!(left, 2, "nothing is left beside the reports");
+}
+
+/// Whatever is planted in the folder, a run writes nowhere else, and replaces no file that it cannot know.
+#[test]
+#[cfg(unix)]
+fn what_is_planted_is_not_believed() {
+    use std::os::unix::fs::symlink;
+    let list = |names: &[(&str, &str)]| {
+        let files = names.iter().map(|(name, text)| (*name, manifest::sha256(text.as_bytes())));
+        Manifest::of(&Provenance::default(), files).to_json().unwrap()
+    };
+    for (strangers, private) in
+        [Strangers::Refuse, Strangers::KeepBesides].into_iter().flat_map(|s| [(s, true), (s, false)])
+    {
+        let home = tempfile::tempdir().unwrap();
+        let at = |name: &str| home.path().join(name);
+        let other = Folder::new(at("other"), Strangers::Refuse);
+        write(&other, &["x.csv", "y.csv"], "1").unwrap();
+        fs::create_dir(at("away")).unwrap();
+        fs::write(at("away/keys"), "mine").unwrap();
+        fs::create_dir(at("out")).unwrap();
+        // One as a dead process leaves it, with a report of anything; one whose report is a link to another one.
+        let [full, linked] = ["out/.hadar-00000000000a", "out/.hadar-00000000000b"].map(at);
+        for staging in [&full, &linked] {
+            made(staging, private);
+            fs::write(staging.join("lock"), "").unwrap();
+        }
+        fs::create_dir_all(full.join("ready/sub")).unwrap();
+        for name in ["x.csv", "sub/keys"] {
+            fs::write(full.join("ready").join(name), "theirs").unwrap();
+        }
+        let names = [("x.csv", "theirs"), ("sub/keys", "theirs")];
+        fs::write(full.join("ready/hadar.json"), list(&names)).unwrap();
+        symlink(at("other"), linked.join("ready")).unwrap();
+        symlink(at("away"), at("out/sub")).unwrap();
+        fs::write(at("out/x.csv"), "mine").unwrap();
+        let folder = Folder::new(at("out"), strangers);
+        let outcome = folder.check().and_then(|()| write(&folder, &["x.csv", "sub/keys"], "2"));
+        refusal(
+            outcome,
+            if strangers == Strangers::Refuse { "x.csv" } else { "its `sub` is a file or a link" },
+        );
+        assert_eq!(fs::read_to_string(at("away/keys")).unwrap(), "mine");
+        assert_eq!(fs::read_to_string(at("out/x.csv")).unwrap(), "mine");
+        assert_eq!(content(&at("other")), of(&["x.csv", "y.csv"], "1"));
+        if strangers == Strangers::KeepBesides {
+            write(&folder, &["x.csv"], "2").unwrap();
+            assert_eq!(fs::read_to_string(at("out/x.csv")).unwrap(), "x.csv 2");
+            assert_eq!(full.exists(), !private, "it goes if it may be this user's");
+        }
+        // Even where the link appears between the look and the move.
+        let inside = Inside::open(&at("out")).unwrap();
+        fs::write(at("new"), "").unwrap();
+        assert!(inside.take(&at("new"), "sub/keys").is_err() && inside.remove("sub/keys").is_err());
+        assert!(inside.file("sub/keys").is_err());
+        assert!(inside.take(&at("new"), "../away/keys").is_err() && inside.file("../new").is_err());
+        symlink("x.csv", at("out/link")).unwrap();
+        assert!(inside.file("link").is_err() && inside.file("x.csv").is_ok());
+        assert_eq!(fs::read_to_string(at("away/keys")).unwrap(), "mine");
+    }
+}
+
+#[test]
+fn a_name_that_is_too_long_is_found_before_the_work() {
+    let home = tempfile::tempdir().unwrap();
+    for name in ["x".repeat(300), format!("not/there/{}", "x".repeat(300)), "xy/".repeat(1400)] {
+        let folder = Folder::new(home.path().join(name), Strangers::Refuse);
+        refusal(folder.check(), "the name is longer than its file system takes");
+    }
+    Folder::new(home.path().join("x".repeat(255)), Strangers::Refuse).check().unwrap();
 }

@@ -43,6 +43,13 @@ impl Gathered {
         }
     }
 
+    /// What a row answers.
+    #[must_use]
+    pub fn record(&self, row: usize) -> Record {
+        let cell = |(name, cells): (&String, &Vec<Cell>)| Some((name.clone(), cells.get(row)?.clone()));
+        self.values.iter().filter_map(cell).filter(|(_, cell)| *cell != Cell::Empty).collect()
+    }
+
     /// How many rows there are to be.
     #[must_use]
     pub fn rows(&self) -> usize {

@@ -12,6 +12,10 @@ pub struct Swept {
     pub gathered: Gathered,
     /// Columns of answers that were chosen, in their order; all where empty.
     pub chosen: Vec<String>,
+    /// Rows of earlier runs or of other shards.
+    pub kept: usize,
+    /// How many of those were computed again and found the same.
+    pub recomputed: usize,
 }
 
 impl Swept {

@@ -57,8 +57,8 @@ pub(super) fn fill(
         // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
         // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
         let used = CameraSpec::of(camera);
-        // What nobody stated and may be worse is not stated by the program either.
-        let is_open = |key: &str| camera.assumed.iter().any(|one| one.favourable && one.figure == key);
+        // What nobody stated is not stated by the program either: asked again, the echo rests on it as this answer does.
+        let is_open = |key: &str| camera.assumed.iter().any(|one| one.figure == key);
         let noise_is_open =
             TABLE.iter().any(|row| matches!(row.part, Part::Condition(_)) && is_open(row.key));
         for row in TABLE {

@@ -2,23 +2,31 @@
 //!
 //! A line is written when its row is done, so that a process that is killed loses no more than the rows in work; what it left of a
 //! line is no JSON and is passed over. Every process writes into a file of its own shard, which it holds locked. A row is found
-//! again by what it was asked, not by its number; it counts as done as long as every file that it read is as it was.
+//! again by what it was asked, not by its number; it counts as done as long as every file that it read is as it was: with a row stands
+//! the hash of the bytes that were read for it.
+//!
+//! Anybody may have written a line. Those of this run are told from others by what it wrote; a sample of the others is computed again
+//! before they are believed ([`super`]). No link is followed, neither of the folder nor of a file in it.
 
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
 use hadar::material::is_spectra;
+use hadar_formats::hash;
+use hadar_report::folder::Inside;
 use hadar_report::json;
 use hadar_report::manifest::{Input, sha256, sha256_of_file};
 use hadar_study::sweep::{Cell, Record};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
+use std::fs::{self, File, TryLockError};
+use std::io::{BufRead as _, BufReader, ErrorKind, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 const FOLDER: &str = ".sweep";
 const ENDING: &str = "jsonl";
+/// The longest line that is read as one, bytes.
+const LONGEST_LINE: u64 = 1 << 28;
 
 /// A row that was asked.
 #[derive(Debug, Serialize, Deserialize)]
@@ -40,13 +48,10 @@ impl Entry {
         key: String,
         read: &Inputs,
         outcome: std::result::Result<Record, String>,
-        hashes: &Hashes,
-    ) -> Self {
-        let files = read.files.iter().chain(&read.folders).map(|path| {
-            let path = std::path::absolute(path).unwrap_or_else(|_| path.clone());
-            let hash = hashes.of(&path);
-            (path, hash)
-        });
+    ) -> Result<Self> {
+        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let files = hash::of_all_read(read)?.into_iter().map(|(path, hash)| (absolute(&path), Some(hash)));
+        let folders = read.folders.iter().map(|path| (absolute(path), names_in(path)));
         let built_in = read.built_in.iter().map(|((kind, name), content)| Input {
             path: format!("built-in: {kind} {name}"),
             sha256: Some(sha256(content)),
@@ -56,7 +61,7 @@ impl Entry {
             Err(message) => (Some(message), Record::new()),
         };
         let values = record.iter().map(|(name, cell)| (name.clone(), cell.to_json())).collect();
-        Self { key, files: files.collect(), built_in: built_in.collect(), error, values }
+        Ok(Self { key, files: files.chain(folders).collect(), built_in: built_in.collect(), error, values })
     }
 
     /// Whether every file that it read is as it was.
@@ -64,9 +69,15 @@ impl Entry {
         self.files.iter().all(|(path, hash)| hash.is_some() && hashes.of(path) == *hash)
     }
 
-    /// Files that were read.
-    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
-        self.files.iter().map(|(path, _)| path.as_path()).filter(|path| !path.is_dir())
+    /// A file that it read and that is not as it was.
+    pub(super) fn changed(&self, hashes: &Hashes) -> Option<PathBuf> {
+        self.files.iter().find(|(path, hash)| hashes.of(path) != *hash).map(|(path, _)| path.clone())
+    }
+
+    /// Files that were read, with their hashes.
+    pub(super) fn files(&self) -> impl Iterator<Item = (&Path, &str)> {
+        let read = self.files.iter().filter_map(|(path, hash)| Some((path.as_path(), hash.as_deref()?)));
+        read.filter(|(path, _)| !path.is_dir())
     }
 
     /// What it says.
@@ -81,7 +92,7 @@ impl Entry {
     }
 }
 
-/// SHA-256 of files, each read once.
+/// SHA-256 of files as they are at a time, each read once.
 #[derive(Debug, Default)]
 pub(super) struct Hashes(Mutex<BTreeMap<PathBuf, Option<String>>>);
 
@@ -111,7 +122,19 @@ fn names_in(folder: &Path) -> Option<String> {
 #[derive(Debug)]
 pub(super) struct Journal {
     folder: PathBuf,
+    inside: Inside,
     file: Mutex<File>,
+    /// Hashes of the lines that this run has written, by what was asked.
+    own: Mutex<BTreeMap<String, String>>,
+}
+
+/// Whose row it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum By {
+    /// Of this run.
+    Own,
+    /// Of an earlier one, of another shard, or of whoever wrote into the folder.
+    Another,
 }
 
 impl Journal {
@@ -121,10 +144,11 @@ impl Journal {
     /// Another process that has it open; a folder that cannot be written to.
     pub(super) fn open(out: &Path, [shard, shards]: [usize; 2]) -> Result<Self> {
         let folder = out.join(FOLDER);
-        let failed = |error: std::io::Error| Error::file("write the rows of the sweep", &folder, error);
-        fs::create_dir_all(&folder).map_err(failed)?;
-        let path = folder.join(format!("{shard}-of-{shards}.{ENDING}"));
-        let mut file = OpenOptions::new().create(true).read(true).append(true).open(&path).map_err(failed)?;
+        let failed =
+            |error: std::io::Error| Error::file("write the rows of the sweep", &folder, told(&error));
+        fs::create_dir_all(out).map_err(failed)?;
+        let inside = Inside::open(out).and_then(|out| out.folder(FOLDER)).map_err(failed)?;
+        let mut file = inside.appended(&format!("{shard}-of-{shards}.{ENDING}")).map_err(failed)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
                 let reason =
@@ -142,7 +166,7 @@ impl Journal {
         if last != [b'\n'] {
             file.write_all(b"\n").map_err(failed)?;
         }
-        Ok(Self { folder, file: Mutex::new(file) })
+        Ok(Self { folder, inside, file: Mutex::new(file), own: Mutex::default() })
     }
 
     /// Writes a row.
@@ -152,28 +176,37 @@ impl Journal {
     pub(super) fn write(&self, entry: &Entry) -> Result<()> {
         let line = format!("{}\n", json::value(entry)?);
         let failed = |reason: String| Error::file("write the rows of the sweep", &self.folder, reason);
-        let mut file = self.file.lock().map_err(|error| failed(error.to_string()))?;
-        file.write_all(line.as_bytes()).map_err(|error| failed(error.to_string()))
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        file.write_all(line.as_bytes()).map_err(|error| failed(error.to_string()))?;
+        let hash = sha256(line.trim_end().as_bytes());
+        self.own.lock().unwrap_or_else(PoisonError::into_inner).insert(entry.key.clone(), hash);
+        Ok(())
     }
 
-    /// Hands on every row that any shard has written, in no order of meaning.
+    /// Hands on every row that any shard has written, in no order of meaning; of what this run computed its own rows alone.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub(super) fn read(&self, each: &mut dyn FnMut(Entry)) -> Result<()> {
-        let failed = |error: std::io::Error| Error::file("read the rows of the sweep", &self.folder, error);
-        let mut paths: Vec<PathBuf> = fs::read_dir(&self.folder)
+    pub(super) fn read(&self, each: &mut dyn FnMut(Entry, By)) -> Result<()> {
+        let failed =
+            |error: std::io::Error| Error::file("read the rows of the sweep", &self.folder, told(&error));
+        let mut names: Vec<String> = fs::read_dir(&self.folder)
             .map_err(failed)?
-            .filter_map(|found| Some(found.ok()?.path()))
-            .filter(|path| path.extension().is_some_and(|ending| ending == ENDING))
+            .filter_map(|found| found.ok()?.file_name().into_string().ok())
+            .filter(|name| Path::new(name).extension().is_some_and(|ending| ending == ENDING))
             .collect();
-        paths.sort();
-        for path in paths {
-            let mut lines = BufReader::new(File::open(path).map_err(failed)?);
+        names.sort();
+        let own = self.own.lock().unwrap_or_else(PoisonError::into_inner);
+        for name in names {
+            let mut lines = BufReader::new(self.inside.file(&name).map_err(failed)?);
             let mut line = Vec::new();
-            while lines.read_until(b'\n', &mut line).map_err(failed)? > 0 {
-                if let Ok(entry) = serde_json::from_slice(&line) {
-                    each(entry);
+            while (&mut lines).take(LONGEST_LINE).read_until(b'\n', &mut line).map_err(failed)? > 0 {
+                if let Ok(entry) = serde_json::from_slice::<Entry>(&line) {
+                    match own.get(&entry.key).map(|hash| *hash == sha256(line.trim_ascii_end())) {
+                        None => each(entry, By::Another),
+                        Some(true) => each(entry, By::Own),
+                        Some(false) => {}
+                    }
                 }
                 line.clear();
             }
@@ -183,13 +216,19 @@ impl Journal {
 
     /// Waits for others that write the report of the same rows; they wait as long as the lock is held.
     pub(super) fn lock_report(&self) -> Result<File> {
-        let failed = |error: std::io::Error| Error::file("write the report", &self.folder, error);
-        let file = OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(self.folder.join("report.lock"))
-            .map_err(failed)?;
+        let failed = |error: std::io::Error| Error::file("write the report", &self.folder, told(&error));
+        let file = self.inside.appended("report.lock").map_err(failed)?;
         drop(file.lock());
         Ok(file)
+    }
+}
+
+/// Why a file of the folder cannot be had.
+fn told(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotADirectory | ErrorKind::InvalidInput => {
+            "it, or a file in it, is a link or no ordinary file, which is not followed; remove it".to_owned()
+        }
+        _ => error.to_string(),
     }
 }

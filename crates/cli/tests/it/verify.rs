@@ -1,0 +1,145 @@
+//! Reports made again: those of every command are the same, byte by byte, and nothing that is changed in one goes unseen.
+
+use crate::support::folder::{Folder, SCENARIO};
+use hadar_testing::repository;
+use std::fs;
+use std::path::Path;
+
+/// What a report says that it was made by, and what it has in its folder.
+const COMMANDS: &[&[&str]] = &[
+    &["size", "a.toml"],
+    &["size", "completed.toml", "--set", "camera.frames=8"],
+    &["size", "../work/a.toml", "--library", "mine"],
+    &["identify", "a.toml", "--matrix"],
+    &["identify", "a.toml", "--seed", "3", "--by", "local"],
+    &["simulate", "a.toml", "--spectra", "40"],
+    &["range", "examples/street.toml"],
+    &["materials", "plot", "skin"],
+    &["sweep", "a.toml", "--vary", "target.distance=5 m,6 m", "--columns", "verdict"],
+    &["rule", "examples/stand_in.toml"],
+];
+
+fn work() -> (Folder, String) {
+    let folder = Folder::with("");
+    for part in ["work/mine", "work/examples"] {
+        fs::create_dir_all(folder.path().join(part)).unwrap();
+    }
+    folder.file("work/a.toml", SCENARIO);
+    folder.file("work/mine/own.csv", "wavenumber_cm1,emissivity\n500,0.5\n2000,0.6\n");
+    // A camera that is completed by figures that nobody states.
+    let completed = "preset = \"flir-boson-640-14mm\"\nf_number = 1.0\n";
+    folder.file("work/completed.toml", &SCENARIO.replace("preset = \"flir-a325sc\"\n", completed));
+    for example in ["street.toml", "stand_in.toml"] {
+        fs::copy(
+            repository().join("examples").join(example),
+            folder.path().join("work/examples").join(example),
+        )
+        .unwrap();
+    }
+    let home = folder.path().join("work").to_str().unwrap().to_owned();
+    (folder, home)
+}
+
+/// Makes a report from the folder `work`, where its files are named from.
+fn made(folder: &Folder, command: &[&str], out: &Path) {
+    let mut program = assert_cmd::Command::new(crate::PROGRAM);
+    let program = program.current_dir(folder.path().join("work")).args(command).arg("--out").arg(out);
+    let output = program.output().unwrap();
+    assert!(output.status.success(), "{command:?}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn the_report_of_every_command_is_made_again_byte_by_byte() {
+    let (folder, home) = work();
+    for (index, command) in COMMANDS.iter().enumerate() {
+        let out = folder.path().join(format!("work/report-{index}"));
+        made(&folder, command, &out);
+        // From another folder, above which the command was given.
+        let outcome = folder.run(&["verify", out.to_str().unwrap(), "--from", &home]);
+        assert!(outcome.code == 0, "{command:?}: {}{}", outcome.stdout, outcome.stderr);
+        assert!(outcome.stdout.starts_with("Verified: all "), "{}", outcome.stdout);
+    }
+    // Found without being told where.
+    let said = folder.json(&["verify", "work/report-0"]);
+    assert_eq!((&said["verified"], &said["inputs"]), (&true.into(), &5.into()), "{said}");
+    // Away from its inputs a report has its own scenario.
+    fs::rename(folder.path().join("work/report-0"), folder.path().join("alone")).unwrap();
+    fs::remove_dir_all(folder.path().join("work")).unwrap();
+    let said = folder.json(&["verify", "alone"]);
+    assert_eq!((&said["verified"], &said["inputs"]), (&true.into(), &4.into()), "{said}");
+}
+
+/// Whatever file of a report is changed, alone or with its hash in the list, and whatever it rests on.
+#[test]
+fn nothing_that_is_changed_goes_unseen() {
+    let (folder, home) = work();
+    let command = ["size", "a.toml", "--library", "mine", "--set", "alternatives.materials=[\"own\"]"];
+    let out = folder.path().join("work/report");
+    made(&folder, &command, &out);
+    let verified = || folder.run(&["verify", out.to_str().unwrap(), "--from", &home]);
+    assert_eq!(verified().code, 0);
+    let list = out.join("hadar.json");
+    let whole: serde_json::Value = serde_json::from_slice(&fs::read(&list).unwrap()).unwrap();
+    let is_seen = |what: &str, part: &str| {
+        let outcome = verified();
+        assert_eq!(outcome.code, 1, "{what}: {}", outcome.stdout);
+        let said = outcome.stdout + &outcome.stderr;
+        assert!(said.contains(part), "{what}: {said}");
+        assert!(!said.contains("Verified"), "{what}: {said}");
+    };
+    let put = |list_now: &serde_json::Value| {
+        fs::write(&list, serde_json::to_string_pretty(list_now).unwrap() + "\n").unwrap();
+    };
+    for (index, file) in whole["files"].as_array().unwrap().iter().enumerate() {
+        let name = file["name"].as_str().unwrap();
+        let path = out.join(name);
+        let before = fs::read(&path).unwrap();
+        // A comment, where it would be read.
+        let after = [&before[..], b"# 1\n"].concat();
+        fs::write(&path, &after).unwrap();
+        is_seen(name, &format!("{name}: it was changed since"));
+        let mut forged = whole.clone();
+        forged["files"][index]["sha256"] = hadar_report::manifest::sha256(&after).into();
+        put(&forged);
+        is_seen(name, &format!("{name}: made again it has another content"));
+        fs::write(&path, before).unwrap();
+        let mut forged = whole.clone();
+        forged["files"].as_array_mut().unwrap().remove(index);
+        put(&forged);
+        is_seen(name, "");
+        put(&whole);
+    }
+    assert_eq!(verified().code, 0);
+    // What the list says of the program, of the command and of what it rests on.
+    for (key, value, part) in [
+        ("seed", serde_json::json!(2), ""),
+        ("schema", serde_json::json!(1), "hadar.json: made again"),
+        ("more", serde_json::json!("PASSED"), "hadar.json: made again"),
+        ("command", serde_json::json!(["hadar", "size", "a.toml"]), ""),
+        (
+            "command",
+            serde_json::json!(["hadar", "size", "a.toml", "--out", "x"]),
+            "which a report never does",
+        ),
+        ("command", serde_json::json!(["hadar", "serve", "--port", "1"]), "cannot be given again"),
+        ("command", serde_json::json!(["hadar", "rule", "--verify", "x"]), "cannot be given again"),
+        ("command", serde_json::json!(["sh", "-c", "touch x"]), "is none of this program"),
+        ("command", serde_json::json!([]), "is none of this program"),
+        ("inputs", serde_json::json!([]), "input a.toml: its SHA-256 was none"),
+    ] {
+        let mut forged = whole.clone();
+        forged[key] = value;
+        put(&forged);
+        is_seen(key, part);
+    }
+    assert!(!folder.path().join("work/x").exists());
+    put(&whole);
+    fs::write(folder.path().join("work/mine/own.csv"), "wavenumber_cm1,emissivity\n500,0.5\n2000,0.7\n")
+        .unwrap();
+    is_seen("a spectrum", "input mine/own.csv: its SHA-256 was ");
+    let refusal = folder.refusal(&["verify", "work"]);
+    assert!(
+        refusal.contains("there is no report in this folder; name a folder that --out made"),
+        "{refusal}"
+    );
+}

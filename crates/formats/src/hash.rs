@@ -1,0 +1,136 @@
+//! Files by their content: SHA-256 (FIPS 180-4) of what was read, in hexadecimal digits, taken as it was read.
+//!
+//! A file that is read whole is hashed then. One that is read part by part is hashed afterwards, and only if nobody has touched it
+//! since it was opened ([`Stamp`]): a hash never is that of other bytes than those that an answer rests on.
+
+use hadar::error::{Error, Result};
+use hadar::inputs::{FileRead, Held, Inputs, Stamp};
+use sha2::{Digest as _, Sha256};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::PathBuf;
+
+/// That of bytes.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    digits(Sha256::new_with_prefix(bytes))
+}
+
+/// That of what is read to its end.
+///
+/// # Errors
+/// What cannot be read.
+pub fn sha256_of(mut from: impl Read) -> io::Result<String> {
+    let (mut hash, mut part) = (Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match from.read(&mut part)? {
+            0 => return Ok(digits(hash)),
+            read => hash.update(&part[..read]),
+        }
+    }
+}
+
+/// That of what a job read of a file.
+///
+/// # Errors
+/// A file that can no longer be read, or that was changed since it was opened.
+pub fn sha256_of_read(read: &FileRead) -> Result<String> {
+    let stamp = match &read.held {
+        Held::Sha256(hash) => return Ok(hash.clone()),
+        Held::Since(stamp) => *stamp,
+    };
+    let failed = |error: io::Error| Error::file("read for its hash", &read.path, error.kind());
+    let file = File::open(&read.path).map_err(failed)?;
+    let is_same = || file.metadata().map(|found| Stamp::of(&found) == stamp).map_err(failed);
+    if !is_same()? {
+        return Err(changed(&read.path));
+    }
+    let hash = sha256_of(&file).map_err(failed)?;
+    if is_same()? { Ok(hash) } else { Err(changed(&read.path)) }
+}
+
+/// The files that a job read, each with the hash of what was read.
+///
+/// # Errors
+/// As [`sha256_of_read`]; a file that held one thing and then another.
+pub fn of_all_read(inputs: &Inputs) -> Result<Vec<(PathBuf, String)>> {
+    let mut all: Vec<(PathBuf, String)> = Vec::with_capacity(inputs.files.len());
+    for read in &inputs.files {
+        let hash = sha256_of_read(read)?;
+        match all.iter().find(|(path, _)| *path == read.path) {
+            Some((_, known)) if *known != hash => return Err(changed(&read.path)),
+            Some(_) => {}
+            None => all.push((read.path.clone(), hash)),
+        }
+    }
+    Ok(all)
+}
+
+fn changed(path: &std::path::Path) -> Error {
+    Error::file("take as an input", path, "it was changed while it was read; run this again")
+}
+
+fn digits(hash: Sha256) -> String {
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file;
+    use hadar::inputs::inputs_of;
+
+    /// FIPS 180-4, example of one block.
+    const ABC: &str = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+
+    #[test]
+    fn the_hash_is_that_of_the_standard() {
+        assert_eq!(sha256(b"abc"), ABC);
+        assert_eq!(sha256_of(&b"abc"[..]).unwrap(), ABC);
+    }
+
+    /// Whatever is done to a file after it was read, its hash is that of what was read, or there is none.
+    #[test]
+    fn a_hash_is_that_of_the_bytes_that_were_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let changes: [&dyn Fn(); 4] = [
+            &|| {},
+            &|| std::fs::write(&path, "xyz").unwrap(),
+            &|| {
+                std::fs::write(folder.path().join("b"), "abc").unwrap();
+                std::fs::rename(folder.path().join("b"), &path).unwrap();
+            },
+            // Away and back again, with another content between.
+            &|| {
+                let kept = folder.path().join("kept");
+                std::fs::rename(&path, &kept).unwrap();
+                std::fs::write(&path, "xyz").unwrap();
+                std::fs::rename(&kept, &path).unwrap();
+            },
+        ];
+        for (at, change) in changes.iter().enumerate() {
+            std::fs::write(&path, "abc").unwrap();
+            let (whole, noted) = inputs_of(|| file::bytes(&path, "read", 9));
+            let (opened, in_parts) = inputs_of(|| file::open(&path, "read"));
+            // Clocks of files tick slower than this test runs.
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            change();
+            assert!(whole.is_ok() && opened.is_ok());
+            assert_eq!(of_all_read(&noted).unwrap(), [(path.clone(), ABC.to_owned())], "{at}");
+            let hash = of_all_read(&in_parts);
+            if at == 0 {
+                assert_eq!(hash.unwrap(), [(path.clone(), ABC.to_owned())]);
+            } else if cfg!(unix) {
+                let message = hash.unwrap_err().to_string();
+                assert!(message.contains("it was changed while it was read; run this again"), "{message}");
+            }
+        }
+        let (_, twice) = inputs_of(|| {
+            let first = file::bytes(&path, "read", 9);
+            std::fs::write(&path, "xyz").unwrap();
+            (first, file::bytes(&path, "read", 9))
+        });
+        assert!(of_all_read(&twice).is_err(), "one thing and then another");
+    }
+}

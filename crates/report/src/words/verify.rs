@@ -1,0 +1,55 @@
+//! What is said of a report that was made again.
+
+use super::Say;
+use crate::verify::{Difference, Verified};
+use std::fmt::Write as _;
+
+/// Differences of which the text tells.
+const TOLD: usize = 20;
+
+/// Whether a report is what its command makes, and where it is not.
+#[must_use]
+pub fn text(verified: &Verified) -> String {
+    let (files, inputs) = (verified.files, verified.inputs);
+    let mut text = if verified.verified {
+        format!(
+            "Verified: all {files} files were made again, byte by byte, of {inputs} inputs that are as they were.\n"
+        )
+    } else {
+        let wrong = verified.differences.iter().filter(|one| !matches!(one, Difference::Program { .. }));
+        format!(
+            "Not verified: of {files} files and {inputs} inputs {} are not as the report says.\n",
+            wrong.count()
+        )
+    };
+    for difference in verified.differences.iter().take(TOLD) {
+        let _ = writeln!(text, "  {}", difference.say());
+    }
+    if let Some(more) = verified.differences.len().checked_sub(TOLD).filter(|more| *more > 0) {
+        let _ = writeln!(text, "  and {more} more");
+    }
+    let _ = writeln!(text, "The command that was given again: {}", verified.command);
+    if !verified.strangers.is_empty() {
+        let _ = writeln!(text, "Not of the report, and not looked at: {}", verified.strangers.join(", "));
+    }
+    text
+}
+
+impl Say for Difference {
+    fn say(&self) -> String {
+        let hash = |hash: &Option<String>| hash.clone().unwrap_or_else(|| "none".into());
+        match self {
+            Self::Missing { file } => format!("{file}: it is not there"),
+            Self::Changed { file } => format!("{file}: it was changed since the report was written"),
+            Self::Differs { file } => format!("{file}: made again it has another content"),
+            Self::NotMade { file } => format!("{file}: the command makes no such file"),
+            Self::Unlisted { file } => {
+                format!("{file}: the command makes it, and the report does not list it")
+            }
+            Self::Input { path, was, is } => {
+                format!("input {path}: its SHA-256 was {} and is {}", hash(was), hash(is))
+            }
+            Self::Program { was, is } => format!("made by {was}; made again by {is}"),
+        }
+    }
+}
