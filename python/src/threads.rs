@@ -5,6 +5,7 @@
 
 use crate::error::raised;
 use hadar::Error;
+use hadar::parallel::STACK;
 use pyo3::{PyResult, Python};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::BTreeMap;
@@ -12,8 +13,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Most threads that can be asked for.
 const MOST: usize = 1024;
-/// Stack of a thread, bytes: that of a program's first thread, on which the command does the same work.
-const STACK: usize = 8 << 20;
 
 /// By process and number of threads.
 static POOLS: Mutex<BTreeMap<(u32, usize), Arc<ThreadPool>>> = Mutex::new(BTreeMap::new());

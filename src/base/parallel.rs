@@ -10,6 +10,9 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
+/// Stack of every thread that the program starts, bytes: what it needs does not depend on what the system gives the first one.
+pub const STACK: usize = 16 << 20;
+
 /// `of(0)`, `of(1)`, … `of(count - 1)`, computed in parallel, in this order.
 ///
 /// ```

@@ -9,11 +9,10 @@
 //!
 //! Source: paper S11–S16; Mandel and Wolf, 'Optical Coherence and Quantum Optics' (1995), section 14.9.
 
-use crate::error::{Error, Result, check};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+mod distributions;
 
-/// More degrees of freedom than this have a χ² that is normal in its cube root to seven digits.
-const MANY: f64 = 1e5;
+pub use self::distributions::{chi_square_quantile, chi_square_survival, erfc_inv, student_quantile};
+use crate::error::{Error, Result, check};
 
 /// A law of photon counting, with what it needs to know of every band.
 ///
@@ -123,22 +122,6 @@ impl Statistics {
             }
         }
     }
-}
-
-/// Quantile of χ²/ν, ν the degrees of freedom.
-///
-/// # Errors
-/// Degrees of freedom that are not above 0.
-pub fn chi_square_quantile(probability: f64, freedom: f64) -> Result<f64> {
-    if freedom > MANY {
-        // Wilson and Hilferty.
-        let z = statrs::function::erf::erfc_inv(2.0 * (1.0 - probability)) * std::f64::consts::SQRT_2;
-        let variance = 2.0 / (9.0 * freedom);
-        return Ok((1.0 - variance + z * variance.sqrt()).powi(3));
-    }
-    let no_law = |_| Error::out_of_range("degrees of freedom", freedom, "", "above 0: more estimates");
-    let law = ChiSquared::new(freedom).map_err(no_law)?;
-    Ok(law.inverse_cdf(probability) / freedom)
 }
 
 #[cfg(test)]

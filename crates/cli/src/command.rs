@@ -29,7 +29,7 @@ mod size;
 mod stderr;
 mod sweep;
 mod terminal;
-mod threads;
+pub(crate) mod threads;
 mod verify;
 
 use self::global::Global;
@@ -105,7 +105,7 @@ enum Command {
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    answered(parsed_by::<Cli>(&line()), |cli, global| run(&cli.command, global))
+    threads::on_own_stack(|| answered(parsed_by::<Cli>(&line()), |cli, global| run(&cli.command, global)))
 }
 
 /// What a process ends with: its answer's exit code, or 1 or 2 behind a message of what is wrong.

@@ -2,6 +2,7 @@
 
 use crate::command::evidence::{HANDED_OVER_BY, PROGRAM, Question, same_build};
 use crate::command::global::Global;
+use crate::command::threads::on_own_stack;
 use crate::command::{answered, flags, parsed_by, prepared};
 use clap::{CommandFactory as _, Parser};
 use hadar::error::Result;
@@ -16,11 +17,13 @@ struct Cli {
 
 /// Runs the command line of this process as `hadar-evidence`, which answers by `answer`.
 #[must_use]
-pub fn evidence_main(answer: impl FnOnce(&Question, &Global) -> Result<ExitCode>) -> ExitCode {
-    answered(parsed_by::<Cli>(&flags::added(Cli::command())), |cli, global| {
-        same_build(std::env::var_os(HANDED_OVER_BY))?;
-        // Figures of the paper have a folder each, which their command checks.
-        let _noting = prepared(global, matches!(cli.question, Question::Accuracy(_)))?;
-        answer(&cli.question, global)
+pub fn evidence_main(answer: impl Fn(&Question, &Global) -> Result<ExitCode> + Sync) -> ExitCode {
+    on_own_stack(|| {
+        answered(parsed_by::<Cli>(&flags::added(Cli::command())), |cli, global| {
+            same_build(std::env::var_os(HANDED_OVER_BY))?;
+            // Figures of the paper have a folder each, which their command checks.
+            let _noting = prepared(global, matches!(cli.question, Question::Accuracy(_)))?;
+            answer(&cli.question, global)
+        })
     })
 }

@@ -78,10 +78,15 @@ fn read(from: impl Read, path: &Path, action: &str, most: u64) -> Result<Vec<u8>
 /// # Errors
 /// As [`bytes`]; the message says what `action` could not be done.
 pub fn text_of_file(path: &Path, action: &str) -> Result<String> {
+    text_within(path, action, LONGEST_FILE)
+}
+
+/// The same of a file that is no table but parsed as a whole, which takes up to a hundred times its size: of at most `most` bytes.
+pub(crate) fn text_within(path: &Path, action: &str, most: u64) -> Result<String> {
     if action == READ_SPECTRUM && path.is_dir() {
         return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
     }
-    let bytes = self::bytes(path, action, LONGEST_FILE)?;
+    let bytes = self::bytes(path, action, most)?;
     if let Some(text) = utf_16(&bytes) {
         return Ok(text);
     }

@@ -1,6 +1,6 @@
 //! A user's own materials added to a library: those of a directory, a file or a manifest.
 
-use crate::file::text_of_file;
+use crate::file::{text_of_file, text_within};
 use crate::spectra::{self, Origin, qualified};
 use hadar::error::{Error, Result};
 use hadar::material::{Library, ManifestFiles, Material, OpticalConstants};
@@ -83,8 +83,11 @@ fn add_sources(library: &mut Library, sources: Vec<(PathBuf, Vec<Material>)>) {
     library.add_qualified(materials.into_iter().zip(qualified(&origins)));
 }
 
+/// The longest manifest, bytes: some ten thousand materials.
+const LONGEST_MANIFEST: u64 = 1 << 22;
+
 fn add_manifest(library: &mut Library, path: &Path, directory: &Path) -> Result<()> {
-    let text = text_of_file(path, "read the manifest")?;
+    let text = text_within(path, "read the manifest", LONGEST_MANIFEST)?;
     library.add_manifest(&text, path, directory, &Folder(directory))
 }
 

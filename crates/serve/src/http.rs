@@ -71,6 +71,7 @@ pub fn serve(engine: Engine, listener: TcpListener) -> Result<()> {
         .enable_io()
         .enable_time()
         .max_blocking_threads(cores)
+        .thread_stack_size(hadar::parallel::STACK)
         .build()
         .map_err(failed)?;
     // Taken over within the runtime, by which it is waited for.

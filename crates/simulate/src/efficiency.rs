@@ -29,8 +29,7 @@ pub use verdict::{Criteria, Verdict};
 use super::sequential::Interval;
 use hadar::error::{Error, Result, check};
 use hadar::fisher::precision::JointBound;
-use hadar::statistics::chi_square_quantile;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use hadar::statistics::{chi_square_quantile, student_quantile};
 
 /// Errors of repeated estimates of one quantity, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -224,9 +223,7 @@ impl Spread {
 
     fn bias_interval(&self, level: f64) -> Result<Interval> {
         let n = self.off.len() as f64;
-        let student = StudentsT::new(0.0, 1.0, n - 1.0)
-            .map_err(|_| Error::out_of_range("degrees of freedom", n - 1.0, "", "above 0: more estimates"))?;
-        let reach = student.inverse_cdf(0.5 * (1.0 + level)) * self.deviation / n.sqrt();
+        let reach = student_quantile(0.5 * (1.0 + level), n - 1.0)? * self.deviation / n.sqrt();
         Ok(Interval { low: self.bias - reach, high: self.bias + reach })
     }
 }

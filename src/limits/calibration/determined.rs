@@ -22,7 +22,7 @@
 //! Source: Backus and Gilbert, Phil. Trans. R. Soc. A 266, 123 (1970), doi:10.1098/rsta.1970.0005 (resolving kernels); Rodgers,
 //! 'Inverse Methods for Atmospheric Sounding' (2000), section 2.4 (degrees of freedom for signal).
 
-use crate::correlation::{matern, modes};
+use crate::correlation::{ROUNDS, covariance, matern, modes};
 use crate::error::{Error, Result, check};
 use crate::order;
 use nalgebra::{DMatrix, DVector};
@@ -64,11 +64,11 @@ impl CurvePrior {
             return Err(Error::Length { what, found: typical.len(), expected: count.max(1) });
         }
         let (scale, shape) = (known.scale * known.scale, known.shape * known.shape);
-        let covariance = DMatrix::from_fn(count, count, |i, j| {
+        let covariance = covariance(count, |i, j| {
             let apart = centres_cm1[i] - centres_cm1[j];
             scale * typical[i] * typical[j] + shape * matern(apart, known.correlation_cm1)
-        });
-        Ok(Self { mean: typical.to_vec(), factor: modes(covariance, count) })
+        })?;
+        Ok(Self { mean: typical.to_vec(), factor: modes(covariance, count)? })
     }
 
     /// m.
@@ -178,7 +178,7 @@ pub(crate) fn right_vectors(matrix: DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f
     let columns = matrix.ncols();
     // A triangle has as many rows as columns, whatever the readings; it has their singular values.
     let tall = if matrix.nrows() < columns { matrix.resize_vertically(columns, 0.0) } else { matrix };
-    let svd = tall.qr().r().try_svd(false, true, f64::EPSILON, 0)?;
+    let svd = tall.qr().r().try_svd(false, true, f64::EPSILON, ROUNDS * (columns + 1))?;
     let v = svd.v_t?.transpose();
     let mut order: Vec<usize> = (0..columns).collect();
     order::descending(&mut order, |b| svd.singular_values[*b]);

@@ -28,7 +28,7 @@
 //! Source: van Trees, 'Detection, Estimation, and Modulation Theory' I (1968), section 2.4; Rockah and Schultheiss, IEEE Trans.
 //! ASSP 35, 286 (1987), doi:10.1109/TASSP.1987.1165144, for unknowns of which some are random.
 
-use crate::correlation::{matern, modes};
+use crate::correlation::{check_places, covariance, matern, modes};
 use crate::error::{Error, Result, check};
 use nalgebra::{DMatrix, DVector};
 
@@ -75,9 +75,9 @@ impl EmissivityPrior {
         check::positive("correlation of the emissivity", known.correlation_cm1, "cm^-1")?;
         let (magnitude, shape) = (known.magnitude * known.magnitude, known.shape * known.shape);
         let count = centres_cm1.len();
-        let covariance = DMatrix::from_fn(count, count, |v, w| {
+        let covariance = covariance(count, |v, w| {
             magnitude + shape * matern(centres_cm1[v] - centres_cm1[w], known.correlation_cm1)
-        });
+        })?;
         Self::of_covariance(vec![known.mean; count], covariance)
     }
 
@@ -92,6 +92,7 @@ impl EmissivityPrior {
             return Err(Error::malformed(found, "give two spectra or more, and a component"));
         };
         let bands = first.len();
+        check_places(bands)?;
         if let Some(other) = spectra.iter().find(|one| one.len() != bands) {
             return Err(Error::Length {
                 what: "bands of a spectrum".into(),
@@ -105,7 +106,7 @@ impl EmissivityPrior {
         let apart = DMatrix::from_fn(spectra.len(), bands, |i, w| spectra[i][w] - mean[w]);
         let covariance = apart.tr_mul(&apart) / (count - 1.0);
         let left: Vec<f64> = covariance.diagonal().iter().copied().collect();
-        let modes = modes(covariance, components);
+        let modes = modes(covariance, components)?;
         let kept = modes.ncols();
         let mut factor = modes.resize_horizontally(kept + bands, 0.0);
         for (w, var) in left.iter().enumerate() {
@@ -120,7 +121,7 @@ impl EmissivityPrior {
             return Err(Error::malformed("an emissivity of no band", "give at least one"));
         }
         let most = mean.len();
-        Ok(Self { mean, factor: modes(covariance, most) })
+        Ok(Self { mean, factor: modes(covariance, most)? })
     }
 
     /// m.

@@ -11,6 +11,7 @@
 
 use crate::error::{Error, Result};
 use crate::fisher::Counting;
+use crate::statistics::erfc_inv;
 use libm::{erf, erfc};
 use std::f64::consts::{FRAC_1_SQRT_2, LN_2, SQRT_2};
 
@@ -72,7 +73,7 @@ pub fn distance_for_miss(probability: f64) -> Result<f64> {
     if !(probability > 0.0 && probability < 0.5) {
         return Err(Error::out_of_range("miss probability", probability, "", "above 0 and below 0.5"));
     }
-    Ok(SQRT_2 * statrs::function::erf::erfc_inv(2.0 * probability))
+    Ok(SQRT_2 * erfc_inv(2.0 * probability))
 }
 
 /// The statistical distance at which the best test can find what is there with the probability `detection` and take the other

@@ -107,6 +107,7 @@ pub(super) fn run(args: &InitArgs, global: &Global) -> Result<ExitCode> {
     for ((path, plain), text) in files.iter().zip(&texts) {
         let serves = *plain == SCENE
             && args.command.needs_a_cube()
+            && path.metadata().is_ok_and(|there| there.is_file() && there.len() == text.len() as u64)
             && std::fs::read_to_string(path).is_ok_and(|there| there == *text);
         match path.exists() {
             false => missing.push((path, text)),

@@ -6,10 +6,27 @@
 
 use super::stderr::say;
 use super::terminal::Stream;
+use hadar::parallel::STACK;
+use std::process::ExitCode;
 use std::sync::{Arc, Mutex, mpsc};
 
 /// Most threads that can be asked for.
 pub(super) const MOST: usize = 1024;
+
+/// Does the work of the program on a thread of a stack of its own, whatever the first one was given; where none can be had, on this one.
+pub(crate) fn on_own_stack(work: impl Fn() -> ExitCode + Sync) -> ExitCode {
+    with_stack(STACK, &work)
+}
+
+fn with_stack<T: Send>(bytes: usize, work: &(dyn Fn() -> T + Sync)) -> T {
+    std::thread::scope(|scope| {
+        match std::thread::Builder::new().name("main".to_owned()).stack_size(bytes).spawn_scoped(scope, work)
+        {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            Err(_) => work(),
+        }
+    })
+}
 
 /// Starts as many as were asked for, here or by `RAYON_NUM_THREADS`, else one per core. Where the system does not give so
 /// many, one does the work; where it gives none, the first thread of the program.
@@ -33,7 +50,7 @@ pub(super) fn start(asked: Option<usize>, quiet: bool) {
     let parts = Arc::new(Mutex::new(parts));
     let thread = || {
         let parts = Arc::clone(&parts);
-        std::thread::Builder::new().spawn(move || {
+        std::thread::Builder::new().stack_size(STACK).spawn(move || {
             let part = parts.lock().ok().and_then(|parts| parts.recv().ok());
             part.map(rayon::ThreadBuilder::run)
         })
@@ -55,5 +72,18 @@ pub(super) fn start(asked: Option<usize>, quiet: bool) {
     };
     if let Err(error) = started {
         warn(format!("{error}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_stack;
+    use std::thread::current;
+
+    #[test]
+    fn a_stack_that_no_machine_has_leaves_the_thread_that_is_there() {
+        let (here, of) = (current().id(), |bytes| with_stack(bytes, &|| current().id()));
+        assert_ne!(of(1 << 20), here);
+        assert_eq!(of(usize::MAX / 4), here);
     }
 }

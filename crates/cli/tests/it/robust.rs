@@ -51,23 +51,50 @@ fn a_stderr_that_takes_nothing_changes_no_answer() {
     }
 }
 
-/// A stack that no machine has is a thread that cannot be started.
+/// The program behind a limit of the shell's, such as that of its stack.
+#[cfg(target_os = "linux")]
+fn limited(limit: &str) -> Command {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("ulimit {limit}; exec \"$0\" \"$@\"")]);
+    shell.arg(assert_cmd::cargo::cargo_bin!("hadar"));
+    shell
+}
+
+/// In two gigabytes of addresses there is no room for the stacks of a thousand threads.
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_started_leave_one_that_does_the_work() {
     let folder = folder();
-    let run = |name: &str, value: &str, flags: &[&str]| {
-        let arguments = [&["size", "a.toml", "--threads", "3"], flags].concat();
-        let output = program().current_dir(folder.path()).args(arguments).env(name, value).output().unwrap();
-        assert_eq!(output.status.code(), Some(0));
-        (output.stdout, String::from_utf8(output.stderr).unwrap())
+    let run = |mut program: Command, threads: &str, flags: &[&str]| {
+        let arguments = [&["size", "a.toml", "--threads", threads], flags].concat();
+        let output = program.current_dir(folder.path()).args(arguments).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        (output.stdout, said)
     };
-    let (answer, silent) = run("UNUSED", "", &[]);
-    let (same, said) = run("RUST_MIN_STACK", "100000000000000", &[]);
+    let (answer, silent) = run(program(), "3", &[]);
+    let (same, said) = run(limited("-v 2000000"), "1024", &[]);
     assert_eq!((answer == same, silent.as_str()), (true, ""));
-    assert!(said.starts_with("warning: 3 threads cannot be started ("), "{said}");
+    assert!(said.starts_with("warning: 1024 threads cannot be started ("), "{said}");
     assert!(said.trim_end().ends_with("); one does the work"), "{said}");
-    assert_eq!(run("RUST_MIN_STACK", "100000000000000", &["--quiet"]), (answer, String::new()));
+    assert_eq!(run(limited("-v 2000000"), "1024", &["--quiet"]), (answer, String::new()));
+}
+
+/// Neither the shell's limit nor the environment says how deep the work may go.
+#[cfg(target_os = "linux")]
+#[test]
+fn the_stack_is_that_of_the_program() {
+    let folder = folder();
+    let run = |mut program: Command| {
+        let output = program.current_dir(folder.path()).args(["size", "a.toml"]).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        output.stdout
+    };
+    let answer = run(program());
+    assert!(answer == run(limited("-s 256")));
+    let mut small = program();
+    small.env("RUST_MIN_STACK", "16384");
+    assert!(answer == run(small));
 }
 
 #[test]

@@ -107,7 +107,8 @@ impl OfBand {
         let more = self.line.map_or(0.0, |line| line.variance(self.mean_of_all) - line.variance(self.mean));
         // Gains that differ make a variance that goes with the square of the mean; no noise of a camera grows faster.
         let most = (self.mean_of_all / self.mean).max(1.0).powi(2) * self.variance;
-        (self.variance + more).clamp(self.variance, most.max(self.variance)) + self.sigma_variance
+        // No `clamp`: the variance of readings whose squares overflow is no number.
+        (self.variance + more).min(most).max(self.variance) + self.sigma_variance
     }
 }
 

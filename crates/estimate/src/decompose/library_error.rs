@@ -21,10 +21,9 @@ use super::fit::{COMPARED, Fit, MOST_LOOKS};
 use super::kernel::{Sums, weighted};
 use super::model::{Hermite, Model};
 use super::step::State;
-use hadar::correlation::matern;
+use hadar::correlation::{covariance, eigen, matern};
 use hadar::error::{Result, check};
 use hadar::simd::{LANES, added, dispatched, fold};
-use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Modes smaller than this share of the largest go to the diagonal.
 const SMALL_MODE: f64 = 1e-3;
@@ -61,9 +60,8 @@ impl Modes {
         check::positive("correlation of the errors of the emissivities", error.correlation_cm1, "cm^-1")?;
         let nu = &model.centres_cm1;
         let s = error.relative;
-        let covariance =
-            DMatrix::from_fn(nu.len(), nu.len(), |i, j| s * s * matern(nu[i] - nu[j], error.correlation_cm1));
-        let eigen = SymmetricEigen::new(covariance);
+        let eigen =
+            eigen(covariance(nu.len(), |i, j| s * s * matern(nu[i] - nu[j], error.correlation_cm1))?)?;
         let largest = eigen.eigenvalues.max();
         let mut rest = vec![0.0; model.width];
         rest[..nu.len()].fill(s * s);

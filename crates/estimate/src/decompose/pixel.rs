@@ -15,7 +15,7 @@ use super::step::State;
 use hadar::cube::Sample;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::simd::Aligned;
-use statrs::function::gamma::gamma_ur;
+use hadar::statistics::chi_square_survival;
 
 /// Deviance beyond the best one at which a material no longer counts: its posterior is e⁻¹² of the best one's.
 pub(super) const CUT: f64 = 24.0;
@@ -357,7 +357,7 @@ impl Task {
         let free = (0..model.vertices).filter(|&j| state.free[j]).count();
         let unknowns = usize::from(!state.held) + free - usize::from(!model.gain).min(free);
         let freedom = model.used.len() as f64 - unknowns as f64;
-        if freedom > 0.0 { gamma_ur(0.5 * freedom, 0.5 * chi_square.clamp(0.0, 1e6)) } else { f64::NAN }
+        chi_square_survival(chi_square, freedom)
     }
 
     /// With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is scattered is

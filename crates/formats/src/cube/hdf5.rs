@@ -9,9 +9,11 @@ mod array;
 mod dimensions;
 mod packed;
 mod sound;
+mod source;
 
 use self::array::{Array, listed, wavelengths};
 use self::sound::{damaged, sound};
+use self::source::{Bounded, check_chunks};
 use super::arrange;
 use super::axes::Axes;
 use super::found::{Found, Opened};
@@ -28,12 +30,13 @@ const MAX_INFLATION: u64 = 1032;
 /// Opens a file whose first bytes have been seen.
 pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
     let len = file.metadata().map_err(damaged)?.len();
-    let source = sound(|| hdf5_pure::File::open_streaming(path).map_err(damaged))?;
+    let bytes = Bounded { file: file.try_clone().map_err(damaged)?, path: path.to_owned(), len };
+    let source = sound(|| hdf5_pure::File::from_source(bytes).map_err(damaged))?;
     let (name, array) = sound(|| chosen(&source, name))?;
     let axes = axes.or_else(|| sound(|| Ok(dimensions::axes(&source, &name, &array))).ok().flatten());
     let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
     let bands = opened.found.shape.bands();
-    let (centres_cm1, axis_without_unit) = sound(|| Ok(wavelengths(&source, &name, bands)))?;
+    let (centres_cm1, axis_without_unit) = sound(|| Ok(wavelengths(&source, &name, bands, len)))?;
     let found = Found { variable: Some(name), centres_cm1, axis_without_unit, ..opened.found };
     Ok(Opened { found, ..opened })
 }
@@ -104,6 +107,7 @@ fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>)
         }
         Layout::Contiguous { address: None, .. } => return Err(damaged("the array was never written")),
         Layout::Chunked { chunk_shape, .. } => {
+            sound(|| check_chunks(&array.dataset, len).map_err(damaged))?;
             if !fits(chunk_shape.iter().try_fold(1_u64, |n, side| n.checked_mul(*side)).unwrap_or(u64::MAX)) {
                 return Err(damaged("a chunk announces more than the file can stand for"));
             }

@@ -35,7 +35,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let entry = archive.by_index(place).map_err(damaged)?;
     let variable = array_name(entry.name());
     let of_variable = |error: Error| error.for_key(variable.clone());
-    let (bytes, packed) = (entry.size(), entry.compressed_size());
+    let (bytes, packed) = (entry.size(), entry.compressed_size().min(len));
     if bytes > packed.saturating_mul(MAX_INFLATION) {
         return Err(of_variable(damaged("an array announces more than its bytes can stand for")));
     }

@@ -5,6 +5,7 @@
 //! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are left out at the ends of a spectrum; between
 //! others they are no number: an error once a band needs them, as values below 0 or above 1 are.
 
+use super::MOST_SPECTRA;
 use super::content::{Content, of_all, stem, warnings};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use crate::envi_header::{EnviHeader, Layout, data_of, header_of};
@@ -20,7 +21,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The longest file of samples, bytes.
-const LONGEST: u64 = 1 << 28;
+const LONGEST: u64 = 1 << 26;
 /// Endings of spectral libraries, whose header must be there.
 const LIBRARIES: [&str; 2] = ["sli", "sc"];
 /// The keys that say what the samples are.
@@ -58,6 +59,10 @@ pub(super) fn read(header_path: &Path, data: &Path, columns: Option<&[String]>) 
         return Ok(Content::NoEmissivity(Error::malformed(found, instead).in_file(header_path)));
     }
     let layout = header.layout().map_err(|error| error.in_file(header_path))?;
+    if layout.lines > MOST_SPECTRA {
+        let expected = format!("at most {MOST_SPECTRA}: write them into several files");
+        return Err(Error::out_of_range("spectra", layout.lines as f64, "", expected).in_file(header_path));
+    }
     let bytes = file::bytes(data, READ_SPECTRUM, LONGEST)?;
     if layout.bands != 1 || layout.bytes() != Some(bytes.len() as u64) {
         let due = layout.bytes().map_or_else(|| "more".to_owned(), |due| due.to_string());

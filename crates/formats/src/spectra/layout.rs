@@ -5,7 +5,7 @@
 //! or `1,500` may be 1.5 or 1500, it is asked for. The header is the last line above the numbers that names an axis, in a
 //! comment too, as NumPy writes it; a line of units may follow it.
 
-use super::header;
+use super::{MOST_SPECTRA, header};
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use hadar::grid::{EXAMPLE, Grid, number};
@@ -76,6 +76,12 @@ impl Form {
     }
 }
 
+/// Whether a line has more columns than are read, in any form.
+fn too_wide(line: &str) -> bool {
+    let marks = |line: &str| line.matches(['\t', ';', '|', ',']).count();
+    line.len() > MOST_SPECTRA && marks(line).max(line.split_whitespace().count()) > MOST_SPECTRA
+}
+
 /// Cells of a line between delimiters that are not in quotes.
 fn split(line: &str, delimiter: char) -> Vec<&str> {
     let (mut cells, mut start, mut quoted) = (Vec::new(), 0, false);
@@ -119,6 +125,10 @@ pub(super) fn read(text: &str, columns: Option<&[String]>) -> Result<Sheet> {
     let Some(&(first_line, first)) = table.first() else {
         return Err(Error::malformed("the file has no rows", EXAMPLE));
     };
+    if let Some((line, _)) = table.iter().find(|(_, row)| too_wide(row)) {
+        let found = format!("more than {MOST_SPECTRA} columns");
+        return Err(Error::malformed(found, "write the spectra into several files").on_line(*line));
+    }
     let form = form(&table)?;
     let begin = table.iter().position(|(_, line)| form.numbers(line).is_some());
     let ranges = |from: usize| ranges(form, table.get(from..).unwrap_or_default());

@@ -295,6 +295,36 @@ fn hdf5_in_any_layout_and_type() {
     assert!(refusal("h5py.h5", Some("plane"), None).contains("there is no variable `plane`"));
 }
 
+/// A chunk that is said to be of four gigabytes, or to stand beyond the end: room is made for none of it.
+#[cfg(feature = "hdf5")]
+#[test]
+fn chunks_are_held_against_the_file_before_they_are_read() {
+    let whole = std::fs::read(path("h5py.h5")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let damaged = folder.path().join("damaged.h5");
+    // Behind the head of 24 bytes of the tree of an array: bytes of the first chunk, filters, four places; where it stands.
+    let trees: Vec<usize> = (0..whole.len()).filter(|at| whole[*at..].starts_with(b"TREE\x01")).collect();
+    assert_eq!(trees.len(), 3);
+    for tree in trees {
+        for (place, wrong) in [(24, &4_108_611_929_u32.to_le_bytes()[..]), (64, &(1_u64 << 40).to_le_bytes())]
+        {
+            let mut bytes = whole.clone();
+            bytes[tree + place..][..wrong.len()].copy_from_slice(wrong);
+            std::fs::write(&damaged, bytes).unwrap();
+            let refused =
+                ["packed", "half", "night/images", "night/lines", "plain"].into_iter().filter(|name| {
+                    let said = hadar_formats::cube::open_as(&damaged, Some(name), None)
+                        .err()
+                        .map(|error| error.to_string());
+                    said.is_some_and(|said| {
+                        said.contains("a chunk of ") && said.contains("and the file has 20104")
+                    })
+                });
+            assert_eq!(refused.count(), 1, "{tree} {place}");
+        }
+    }
+}
+
 #[cfg(feature = "hdf5")]
 #[test]
 fn matlab_7_3_has_its_dimensions_the_other_way_round() {

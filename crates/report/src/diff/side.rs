@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The longest file that is compared, bytes.
-const LONGEST: u64 = 1 << 28;
+const LONGEST: u64 = 1 << 26;
 const ACTION: &str = "read what is to be compared";
 /// A list of more unnamed items than this is a curve.
 const FEW: usize = 8;

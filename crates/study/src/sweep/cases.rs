@@ -7,7 +7,7 @@ use hadar_formats::file;
 use std::path::Path;
 
 /// The longest table of cases, bytes.
-const LONGEST_FILE: u64 = 1 << 28;
+const LONGEST_FILE: u64 = 1 << 26;
 
 /// Values of keys that change together, row by row. An empty one leaves the file's own.
 #[derive(Debug, Clone, PartialEq, Default)]

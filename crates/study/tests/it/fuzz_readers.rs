@@ -121,6 +121,24 @@ readers! {
     npz, envi, hdf5, noise, model,
 }
 
+/// Every four bytes of every binary seed as if they were a length that no file has.
+#[test]
+fn lengths_that_a_file_states_are_held_against_it() {
+    alone("lengths_that_a_file_states_are_held_against_it", || {
+        for name in ["npy", "mat", "npz", "hdf5"] {
+            let reader = READERS.iter().find(|reader| reader.name == name).unwrap();
+            for (seed, bytes) in seeds(name) {
+                for place in (0..bytes.len().saturating_sub(4)).step_by(4) {
+                    let wrong = [0xF4E4_E4E4_u32, 0x7FFF_FFFF, 0x0010_0000][place / 4 % 3];
+                    let mut changed = bytes.clone();
+                    changed[place..place + 4].copy_from_slice(&wrong.to_le_bytes());
+                    check(reader, &format!("{seed}-{place}-{wrong}"), &changed);
+                }
+            }
+        }
+    });
+}
+
 /// Files that are long, wide or deep, which no change of a seed makes.
 #[test]
 fn long_wide_and_deep_files_take_neither_long_nor_much() {

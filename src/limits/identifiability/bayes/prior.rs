@@ -15,9 +15,10 @@ use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::StateRange;
 use crate::identifiability::space::{set, value};
 use crate::scene::{Parameter, State};
+use crate::statistics::erfc_inv;
+use libm::erfc;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use statrs::function::erf::{erfc, erfc_inv};
 use std::f64::consts::SQRT_2;
 
 /// Deviations from the mean beyond which a prior is nothing (2.6e-12 of it, 1.3e-10 of its variance).

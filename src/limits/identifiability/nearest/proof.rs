@@ -111,7 +111,7 @@ pub(super) fn prove(
         let goal = Goal { limit: cost, enough: share * share * cost, rounding, boxes };
         match prover.run(comparison, target, Some(&best), goal) {
             Outcome::Bound(lower) => {
-                best.lower = (lower * (1.0 - MARGIN)).clamp(0.0, best.distance);
+                best.lower = (lower * (1.0 - MARGIN)).max(0.0).min(best.distance);
                 break;
             }
             Outcome::Nearer(state) => {

@@ -9,13 +9,12 @@
 //!
 //! Source: Rasmussen and Williams, 'Gaussian Processes for Machine Learning' (2006), section 4.2.
 
+use crate::correlation::{eigen, matern};
 use crate::error::{Error, Result, check};
 use crate::order;
 use crate::spectrum::Bands;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 
-/// x at which (1 + x + x²/3) e⁻ˣ is a quarter.
-const QUARTER: f64 = 3.55;
 /// Variance that modes may leave out, in variances of the noise of a band.
 const LEFT_OUT: f64 = 1e-4;
 /// Bands whose covariance is taken apart, at most: that takes their third power.
@@ -53,10 +52,9 @@ impl SmoothModes {
         check::positive("correlation of the errors of the emissivity", emissivity.correlation_cm1, "cm^-1")?;
         let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();
         let correlation = DMatrix::from_fn(centres.len(), centres.len(), |i, j| {
-            let x = QUARTER * (centres[i] - centres[j]).abs() / emissivity.correlation_cm1;
-            (1.0 + x + x * x / 3.0) * libm::exp(-x)
+            matern(centres[i] - centres[j], emissivity.correlation_cm1)
         });
-        let eigen = SymmetricEigen::new(correlation);
+        let eigen = eigen(correlation)?;
         let mut order: Vec<usize> = (0..centres.len()).collect();
         order::descending(&mut order, |b| eigen.eigenvalues[*b]);
         let mode = |&k: &usize| {

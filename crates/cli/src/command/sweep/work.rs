@@ -1,6 +1,7 @@
 //! Rows worked off by as many threads as there are, each row on one of them.
 
 use hadar::error::{Error, Result};
+use hadar::parallel::STACK;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -36,13 +37,14 @@ pub(super) fn each(
         }
     };
     // A pool of its own keeps a row on its worker, so that no thread takes up another row while it waits for parts of its own.
-    let worker = || match rayon::ThreadPoolBuilder::new().num_threads((threads / workers).max(1)).build() {
+    let pool = || rayon::ThreadPoolBuilder::new().num_threads((threads / workers).max(1)).stack_size(STACK);
+    let worker = || match pool().build() {
         Ok(pool) => pool.install(work),
         Err(_) => work(),
     };
     std::thread::scope(|scope| {
         let started: Vec<_> = (1..workers)
-            .filter_map(|_| std::thread::Builder::new().spawn_scoped(scope, worker).ok())
+            .filter_map(|_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, worker).ok())
             .collect();
         worker();
         drop(started);

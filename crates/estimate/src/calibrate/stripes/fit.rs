@@ -64,7 +64,8 @@ pub(super) fn fitted(levels: &[f64], off: &[f64], least: f64, prior: f64) -> Opt
         .map(|(low, high)| (high.1 - low.1) / (high.0 - low.0))
         .collect();
     // A slope without contrast is noise; the prior holds it at the beginning too.
-    let mut h = if slopes.is_empty() { 0.0 } else { median(&mut slopes) }.clamp(-3.0 * prior, 3.0 * prior);
+    let slope = if slopes.is_empty() { 0.0 } else { median(&mut slopes) };
+    let mut h = slope.max(-3.0 * prior).min(3.0 * prior);
     let mut x0 = points[points.len() / 2].0;
     let mut rest: Vec<f64> = points.iter().map(|(x, y)| y - h * (x - x0)).collect();
     let mut p = median(&mut rest);

@@ -59,7 +59,7 @@ pub(super) fn own_steps(steps: &[Vec<f64>], band: usize) -> Vec<usize> {
             let middle = median(&mut beside);
             let low = beside.iter().copied().fold(f64::INFINITY, f64::min) - 0.5 * middle.abs();
             let high = beside.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.5 * middle.abs();
-            [own - middle, own - own.clamp(low, high)]
+            [own - middle, own - own.max(low).min(high)]
         })
         .collect();
     let mut sizes: Vec<f64> = apart.iter().map(|apart| apart[0]).filter(|apart| apart.is_finite()).collect();

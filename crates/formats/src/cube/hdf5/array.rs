@@ -1,6 +1,7 @@
 //! Arrays of an HDF5 file: their type, their dimensions, what their attributes say.
 
 use super::sound::{damaged, sound};
+use super::source::{check_chunks, step};
 use crate::cube::stored::{Stored, decode};
 use crate::cube::values::{ALL_VALID, Values};
 use crate::spectral_unit::SpectralUnit;
@@ -11,7 +12,8 @@ use std::collections::HashMap;
 
 /// Groups within groups, and arrays, that are looked at.
 const MOST_DEPTH: usize = 8;
-const MOST_ARRAYS: usize = 1000;
+pub(super) const MOST_ARRAYS: usize = 1000;
+const MOST_GROUPS: usize = 1000;
 /// What NetCDF fills floating-point arrays with where nothing else is said.
 const NETCDF_FILL: f64 = 9.969_209_968_386_869e36;
 /// By how much the end of a range of whole numbers may be off.
@@ -39,6 +41,7 @@ pub(super) struct Array {
 impl Array {
     /// What the numbers of an array stand for is not looked at before [`Self::with_values`].
     pub(super) fn of(dataset: Dataset) -> Result<Self> {
+        step();
         let (stored, little_endian) = number(&dataset.datatype().map_err(damaged)?)?;
         let side = |side: u64| usize::try_from(side).unwrap_or(usize::MAX);
         let mut sides: Vec<usize> = dataset.shape().map_err(damaged)?.into_iter().map(side).collect();
@@ -209,12 +212,16 @@ fn attribute<'a>(attributes: &'a HashMap<String, AttrValue>, key: &str) -> Optio
 /// All arrays by their path, those that MATLAB keeps for itself left out.
 pub(super) fn listed(source: &File) -> Vec<(String, Dataset)> {
     let mut found = Vec::new();
-    within(&source.root(), "", MOST_DEPTH, &mut found);
+    within(&source.root(), "", MOST_DEPTH, &mut 0, &mut found);
     found
 }
 
-fn within(group: &Group, path: &str, depth: usize, found: &mut Vec<(String, Dataset)>) {
+/// `groups`: how many have been looked into, which a file may lead to again and again.
+fn within(group: &Group, path: &str, depth: usize, groups: &mut usize, found: &mut Vec<(String, Dataset)>) {
+    *groups += 1;
+    step();
     for name in group.datasets().unwrap_or_default() {
+        step();
         if found.len() < MOST_ARRAYS
             && let Ok(dataset) = group.dataset(&name)
         {
@@ -222,19 +229,21 @@ fn within(group: &Group, path: &str, depth: usize, found: &mut Vec<(String, Data
         }
     }
     for name in group.groups().unwrap_or_default() {
+        step();
         if depth > 0
+            && *groups < MOST_GROUPS
             && found.len() < MOST_ARRAYS
             && !name.starts_with('#')
             && let Ok(inner) = group.group(&name)
         {
-            within(&inner, &format!("{path}{name}/"), depth - 1, found);
+            within(&inner, &format!("{path}{name}/"), depth - 1, groups, found);
         }
     }
 }
 
 /// Centres of the bands, cm⁻¹, of an axis of so many numbers beside the array that says its unit; and whether there is only one that
 /// does not.
-pub(super) fn wavelengths(source: &File, array: &str, bands: usize) -> (Option<Vec<f64>>, bool) {
+pub(super) fn wavelengths(source: &File, array: &str, bands: usize, len: u64) -> (Option<Vec<f64>>, bool) {
     let folder = array.rsplit_once('/').map_or("", |(folder, _)| folder);
     let of_bands = |name: &&str| {
         let path = if folder.is_empty() { (*name).to_owned() } else { format!("{folder}/{name}") };
@@ -242,6 +251,7 @@ pub(super) fn wavelengths(source: &File, array: &str, bands: usize) -> (Option<V
     };
     let centres = |axis: &Dataset| {
         let unit = SpectralUnit::spelt(axis.attrs().ok()?.get("units")?.as_str()?)?;
+        check_chunks(axis, len).ok()?;
         let centres: Vec<f64> =
             axis.read_f64().ok()?.into_iter().map(|value| unit.wavenumber_cm1(value)).collect();
         centres.iter().all(|centre| *centre > 0.0 && centre.is_finite()).then_some(centres)

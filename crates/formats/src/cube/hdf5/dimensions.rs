@@ -6,7 +6,8 @@
 //!
 //! Source: NetCDF-4 File Format, 'Dimensions'; HDF5 Dimension Scale Specification.
 
-use super::array::Array;
+use super::array::{Array, MOST_ARRAYS};
+use super::source::step;
 use crate::cube::axes::Axes;
 use hdf5_pure::{AttrValue, File};
 
@@ -37,7 +38,8 @@ fn scales(source: &File, array: &str) -> Vec<(String, u64)> {
         }
     }
     for group in &groups {
-        for name in group.datasets().unwrap_or_default() {
+        for name in group.datasets().unwrap_or_default().into_iter().take(MOST_ARRAYS) {
+            step();
             let Ok(dataset) = group.dataset(&name) else { continue };
             let class = dataset
                 .attrs()

@@ -1,11 +1,13 @@
 //! The reader of the format held in: neither its errors nor its panics are those of the program.
 
+use super::source::step;
 use hadar::error::{Error, Result};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What the reader of the format does, without its panics: there are files that it was not made for, and a user's is only
 /// refused.
 pub(super) fn sound<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
+    step();
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(damaged("its parts do not fit together")))
 }
 

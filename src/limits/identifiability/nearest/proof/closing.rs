@@ -382,7 +382,7 @@ impl Columns<'_> {
         let mut temperature_k: Vec<f64> = self.minimum.spectra.iter().map(|own| own.temperature_k).collect();
         for ((s, reach), y) in self.axes.iter().zip(&z[self.lit.len()..]) {
             let t = y / self.minimum.amplitudes[*s];
-            temperature_k[*s] += if t.is_finite() { t.clamp(-reach.down_k, reach.up_k) } else { 0.0 };
+            temperature_k[*s] += if t.is_finite() { t.max(-reach.down_k).min(reach.up_k) } else { 0.0 };
         }
         Closed { lower, amplitudes, temperature_k }
     }
