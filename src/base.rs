@@ -1,5 +1,5 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, best-first search, least squares in a box,
-//! statistics.
+//! statistics, stopping.
 
 pub mod allowed;
 pub(crate) mod best_first;
@@ -19,6 +19,7 @@ pub mod random;
 pub mod root;
 pub mod simd;
 pub mod statistics;
+pub mod stop;
 pub mod sum;
 pub mod units;
 pub(crate) mod wide;

@@ -41,6 +41,7 @@ impl<T> BestFirst<T> {
 
     /// Counts one box more as looked at; how many that makes.
     pub(crate) fn look(&mut self) -> u64 {
+        crate::stop::check();
         self.looked_at += 1;
         self.looked_at
     }
@@ -52,6 +53,7 @@ impl<T> BestFirst<T> {
 
     /// The box of least bound, unless that is `enough` or the search is over.
     pub(crate) fn take(&mut self, enough: impl FnOnce(f64) -> bool) -> Option<(f64, T)> {
+        crate::stop::check();
         let over = self.lowest().is_none_or(|(bound, _)| enough(bound));
         if over { None } else { self.waiting.pop().map(|Waiting { bound, item, .. }| (bound, item)) }
     }

@@ -85,6 +85,7 @@ impl BoxLeastSquares<'_> {
 
     /// The minimiser in the box alone.
     fn in_box(&self, gradient: &DVector<f64>) -> Option<DVector<f64>> {
+        crate::stop::check();
         let n = gradient.len();
         let mut step = DVector::zeros(n);
         // A variable that stands at a bound it is pushed against starts fixed.

@@ -6,6 +6,7 @@
 
 use crate::demand;
 use crate::error::Result as Checked;
+use crate::stop;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -110,7 +111,10 @@ pub fn fill<V: Send, W: Send, E: Send>(
 }
 
 fn each(count: usize, job: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().for_each(job);
+    (0..count).into_par_iter().for_each(|i| {
+        stop::check();
+        job(i);
+    });
 }
 
 #[cfg(test)]

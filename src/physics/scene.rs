@@ -199,6 +199,7 @@ impl Surroundings {
     /// Signal S at the nodes of a surface of emissivity `emissivity` (values at the nodes) in `state`.
     #[must_use]
     pub fn signal(&self, emissivity: &[f64], state: &State) -> Vec<f64> {
+        crate::stop::check();
         let mut signal = vec![0.0; self.nodes_cm1.len()];
         planck::photon_radiance_into(&self.nodes_cm1, state.temperature_k, &mut signal);
         for (signal, e) in signal.iter_mut().zip(emissivity) {

@@ -108,6 +108,7 @@ impl KnownStates {
 
     /// C, μ′ and μ″ of all bands.
     pub(super) fn at(&self, s: f64) -> Moments {
+        crate::stop::check();
         let [exponent, slope, variance] = self.summed(|band| {
             let Moments { exponent, slope, variance } = band.at(s);
             [exponent, slope, variance]

@@ -213,6 +213,7 @@ impl<'a> MaximumLikelihood<'a> {
 
     /// What is minimised, at a state.
     fn loss(&mut self, task: &Task<'_>, state: &State) -> f64 {
+        crate::stop::check();
         let total_known = self.space.unknowns.known_lighting_total().is_some();
         let (e, parameters) = (task.emissivity, &self.space.parameters);
         self.surface.evaluate(e, e, state, parameters, total_known);
@@ -223,6 +224,7 @@ impl<'a> MaximumLikelihood<'a> {
 
     /// It to second order, at the state of the last [`Self::loss`].
     fn quadratic(&mut self, task: &Task<'_>, state: &State) -> Quadratic {
+        crate::stop::check();
         let mut at = quadratic(&self.surface, task.emissivity, state, &self.terms, &mut self.scratch);
         for (i, off, sigma) in self.priors(task, state) {
             at.gradient[i] += off / (sigma * sigma);

@@ -135,6 +135,7 @@ impl Mixtures<'_> {
         }
         if scene.lightings.len() > 1 {
             for lighting in lightings {
+                crate::stop::check();
                 let [cold, hot] = range_k;
                 let own_k = self.scene.state.temperature_k.clamp(cold, hot);
                 for kelvin in [temperature_k, own_k] {
@@ -220,6 +221,7 @@ impl Mixtures<'_> {
         best: &Mixed,
         temperature_k: f64,
     ) -> Result<MixtureDistance> {
+        crate::stop::check();
         let lit = scene.lightings.len();
         let mut own: Vec<f64> = best.shares[0].iter().zip(&scene.own.photons).map(|(s, d)| s / d).collect();
         let mut other: Vec<f64> = best.shares[1].chunks(lit).map(|parts| parts.iter().sum()).collect();

@@ -207,6 +207,7 @@ impl<'a> Jacobian<'a> {
         parameters: &[Parameter],
         lighting_total_known: bool,
     ) {
+        crate::stop::check();
         self.begin(parameters);
         self.update_radiances(state);
         let mut parameters = parameters;

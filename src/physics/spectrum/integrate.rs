@@ -153,6 +153,7 @@ struct Work<'w, F> {
 impl<F: Fn(&[f64]) -> Result<Vec<Vec<f64>>>> Work<'_, F> {
     /// Pieces of whole bands, each with the rule that suffices, and the largest relative error of a band.
     fn integrate(&self, mut pending: Vec<Piece>, accepted: &mut Vec<Piece>) -> Result<f64> {
+        crate::stop::check();
         let Some((from, to)) = pending.first().zip(pending.last()).map(|(a, b)| (a.band, b.band + 1)) else {
             return Ok(0.0);
         };
@@ -204,6 +205,7 @@ impl<F: Fn(&[f64]) -> Result<Vec<Vec<f64>>>> Work<'_, F> {
     fn integrals(&self, pieces: &[Piece], next: usize) -> Result<Vec<Vec<f64>>> {
         let mut found: Vec<Vec<f64>> = Vec::new();
         for pieces in pieces.chunks(AT_A_TIME) {
+            crate::stop::check();
             let (mut nodes, mut weights) = (Vec::new(), Vec::new());
             for piece in pieces {
                 let rule = &self.rules[piece.rule + next];

@@ -122,6 +122,7 @@ impl<'a> Reading<'a> {
 
     /// x of class `class` in `state`, and the square roots of its photons.
     fn of(&mut self, class: usize, state: &State, parameters: bool) -> (Vec<f64>, Vec<f64>) {
+        crate::stop::check();
         let Pair { emissivity, alternative, .. } = self.scene.pair;
         let (own, other) = if class == 0 { (emissivity, alternative) } else { (alternative, emissivity) };
         let parameters: &[Parameter] = if parameters { &self.parameters } else { &[] };
@@ -221,6 +222,7 @@ impl Mixtures {
         let mut readings = 0;
         for (kind, drawn) in own.drawn.iter().enumerate() {
             for &i in drawn {
+                crate::stop::check();
                 let Some(z) = noise.next() else { continue };
                 y.iter_mut().zip(z).enumerate().for_each(|(d, (y, z))| *y = told[kind].coordinate(d, i) + z);
                 let logs = told.each_ref().map(|cloud| {
@@ -270,6 +272,7 @@ impl<'a> Free<'a> {
     }
 
     fn nearest(&mut self, own: Option<&State>, other: State, counting: &Counting) -> Result<State> {
+        crate::stop::check();
         // Where the ranges differ the two have not the same state, and what has no prior stays where it is.
         let Some((solver, own)) = self.solver.as_mut().zip(own.filter(|own| **own == other)) else {
             return Ok(other);

@@ -95,6 +95,7 @@ impl PriorSpace {
     /// (ΣV above its most). Shares that are uniform in [0, 1) make states that are distributed as the priors.
     #[must_use]
     pub fn state(&self, shares: &[f64]) -> Option<State> {
+        crate::stop::check();
         let mut state = self.nominal.clone();
         for (prior, &share) in self.priors.iter().zip(shares) {
             set(&mut state, prior.parameter, prior.mean + prior.sigma * quantile(share, prior.sides));
@@ -242,6 +243,7 @@ pub(super) struct Node {
 
 /// Gauss–Legendre on either side of the mean, weighted by the Gaussian and normalised.
 fn rule(prior: Prior, order: usize) -> Result<Vec<(f64, f64)>> {
+    crate::stop::check();
     let Prior { mean, sigma, sides, .. } = prior;
     let legendre = bilby::GaussLegendre::new(order.max(1))
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;

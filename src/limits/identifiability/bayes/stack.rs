@@ -73,6 +73,7 @@ impl Stack {
         let (mut square, mut error) = (0.0, 0.0);
         let total_known = unknowns.known_lighting_total().is_some();
         for Node { state, weight } in nodes {
+            crate::stop::check();
             jacobian.evaluate(pair.emissivity, pair.alternative, state, &parameters, total_known);
             for (i, column) in columns.iter_mut().enumerate() {
                 column.extend_from_slice(jacobian.column(i));

@@ -49,6 +49,7 @@ impl Axis {
 
     /// From the ratio P(n+1)/P(n), which falls with n.
     fn discrete(mean: f64, sigma: f64, cells: usize, side: f64, ratio: impl Fn(f64) -> f64) -> Result<Self> {
+        crate::stop::check();
         let too_many = || {
             Error::out_of_range("counts of a band", mean, "", "fewer for a lattice; or Gaussian statistics")
         };
@@ -97,6 +98,7 @@ impl Axis {
     }
 
     fn gaussian(sigma: f64, cells: usize, side: f64) -> Result<Self> {
+        crate::stop::check();
         let reach = detection::distance_for_probability(1.0 - side)?;
         let edge = |i: usize| reach * (2.0 * i as f64 / cells as f64 - 1.0);
         let outside = detection::miss_probability(reach);

@@ -95,6 +95,7 @@ impl Division<'_> {
     }
 
     fn divide(&self, cells: Box3, candidates: &[Likelihood], tally: &mut Tally) {
+        crate::stop::check();
         let mass: f64 = self.axes.iter().zip(&cells).map(|(axis, &[from, to])| axis.mass(from, to)).product();
         let mut extent = [[0.0; 2]; MAX_BANDS];
         for ((axis, &[from, to]), extent) in self.axes.iter().zip(&cells).zip(&mut extent) {

@@ -60,6 +60,7 @@ impl Likelihood {
     }
 
     fn new(statistics: &Statistics, surface: u32, means: &[f64], own: &[f64], penalty: f64) -> Self {
+        crate::stop::check();
         let mut found = Self { constant: -penalty, surface, ..Self::default() };
         for (w, (&mean, &own)) in means.iter().zip(own).enumerate() {
             let (mean, own) = (mean.max(DARK), own.max(DARK));

@@ -57,6 +57,7 @@ fn second_derivative(
     scratch: &mut Scratch,
     (i, j): (usize, usize),
 ) -> f64 {
+    crate::stop::check();
     let parameters = surface.parameters();
     match (parameters[i], parameters[j]) {
         // ∂²S/∂g∂θⱼ = ∂S/∂θⱼ.

@@ -70,6 +70,7 @@ fn curvature(nu_cm1: f64, temperature_k: f64, slope: f64) -> f64 {
 impl Scene<'_> {
     /// What the square of the distance is at least on an interval, by a plane.
     pub(super) fn bound(&self, interval: &Interval, plane: &Plane) -> f64 {
+        crate::stop::check();
         let weights = self.library.bands.weights_cm1();
         let spread = self.library.bands.spread(&plane.h);
         let coefficients: Vec<f64> =

@@ -171,6 +171,7 @@ impl Hulls<'_> {
 
     /// Shares after a whole step and after shorter ones, the longest first; whether a member ran out before the end of it.
     fn step(&self, at: &Mixed, counts: &[Vec<f64>; 2]) -> (Vec<Trial>, bool) {
+        crate::stop::check();
         let heaviest = |shares: &[f64]| argmin(shares.iter().map(|share| -share)).0;
         let reference = [heaviest(&at.shares[0]), heaviest(&at.shares[1])];
         let roots: [Vec<f64>; 2] = [0, 1].map(|side| {

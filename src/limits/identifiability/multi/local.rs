@@ -273,6 +273,7 @@ impl<'a> LocalMatrix<'a> {
         weights: Weights<'_>,
         out: Out<'_>,
     ) -> Result<Passes> {
+        crate::stop::check();
         let own = emissivities[target];
         let others = out.distances.len() - 1;
         let shared = self.share(own, state, weights);
@@ -312,6 +313,7 @@ impl<'a> LocalMatrix<'a> {
         state: &State,
         weights: Weights<'_>,
     ) -> Result<(f64, f64)> {
+        crate::stop::check();
         match weights {
             Weights::PerPhoton => self.pair.distance(own, other, state),
             Weights::Counting(counting) => {
@@ -421,6 +423,7 @@ impl Row<'_> {
     /// Distances to up to [`TOGETHER`] alternatives, NaN where the pair must be judged on its own; how many took a
     /// second pass.
     fn distances(&self, group: &[&[f64]], out: &mut [f64], lost: &mut [f64]) -> usize {
+        crate::stop::check();
         let mut others = [self.own; TOGETHER];
         for (other, given) in others.iter_mut().zip(group) {
             *other = given;

@@ -12,6 +12,7 @@
 /// ```
 #[must_use]
 pub fn expected_minimum(distances: &[f64]) -> Vec<f64> {
+    crate::stop::check();
     let mut sorted = distances.to_vec();
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len();

@@ -155,6 +155,7 @@ impl<'a> Comparison<'a> {
 
     /// Cost, gradient and second derivatives at a state of the alternative.
     pub(super) fn linearise(&mut self, target: &Target<'_>, state: &State) -> Linearised {
+        crate::stop::check();
         self.separate(target, state, true);
         let along = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Temperature);
         let (surface, work) = (&self.surface, &mut self.work);
@@ -196,6 +197,7 @@ impl<'a> Comparison<'a> {
 
     /// The cost alone.
     pub(super) fn cost(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        crate::stop::check();
         self.separate(target, state, false);
         let bands = sums::cost(self.lines(target));
         bands + self.prior_rows(target, state).map(|(_, _, row)| row * row).sum::<f64>()
@@ -203,6 +205,7 @@ impl<'a> Comparison<'a> {
 
     /// r and √(N′ + σ²) of every band at a state.
     pub(super) fn residual(&mut self, target: &Target<'_>, state: &State) -> (Vec<f64>, Vec<f64>) {
+        crate::stop::check();
         self.separate(target, state, false);
         let mut other = vec![0.0; self.work.root.len()];
         roots_into(target.counts, self.surface.signal(), &self.work.noise, &mut other);

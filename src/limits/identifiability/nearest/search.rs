@@ -122,6 +122,7 @@ impl Comparison<'_> {
         own: &State,
         grid: &[&Emission],
     ) -> Vec<Start> {
+        crate::stop::check();
         let lit: Vec<usize> = self
             .space
             .parameters
@@ -167,6 +168,7 @@ impl Comparison<'_> {
 
     /// Minima by full linearisation: a few steps in the other unknowns with T′ held.
     fn linearised_grid(&mut self, target: &Target<'_>, own: &State, temperatures: &[f64]) -> Vec<Start> {
+        crate::stop::check();
         let along = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Temperature);
         let (states, fitted): (Vec<State>, Vec<Fitted>) = temperatures
             .iter()

@@ -123,6 +123,7 @@ impl RatioDistribution {
 
 /// φ(τ_j)e^{−iτ_j(low − μ)} until it is nothing, with a look beyond.
 fn series(line: &Line, tau: f64, start: f64) -> Option<Vec<(f64, f64)>> {
+    crate::stop::check();
     let term = |j: usize| {
         let tau = tau * j as f64;
         let (ln_modulus, late) = line.ln_phi(tau);

@@ -43,6 +43,7 @@ pub(super) fn enumerate(line: &Line, effort: Effort) -> Option<Integrals> {
     let tie = 1e-13 * (size(&last) + size(&combined));
     let (mut first, mut second) = (0.0, 0.0);
     for &(x, weight) in &combined {
+        crate::stop::check();
         let low = last.partition_point(|&(y, _)| y + x < -tie);
         let high = low + last[low..].partition_point(|&(y, _)| y + x <= tie);
         let ln_weight = weight.ln();
@@ -98,6 +99,7 @@ fn width(mode: &Mode) -> f64 {
 
 /// Probabilities of a band's counts by their ratios, outwards from the likeliest.
 fn law(band: &Mode) -> Law {
+    crate::stop::check();
     let (step, mean, likeliest, ratio): (f64, f64, f64, Box<dyn Fn(f64) -> f64>) = match *band {
         Mode::Poisson { mean, step } => (step, mean, mean.floor(), Box::new(move |n| mean / (n + 1.0))),
         Mode::Bunched { modes, occupancy: x, step } => {

@@ -28,6 +28,7 @@ const TURNED: usize = 16;
 
 /// One point of the rule on the straight line: the two integrands and the modulus of their sum's.
 fn straight(line: &Line, radius: f64, u: f64) -> [f64; 3] {
+    crate::stop::check();
     let tau = radius * u.sinh();
     let (ln_modulus, late) = line.ln_phi(tau);
     let modulus = ln_modulus.exp() * radius * u.cosh() / PI;
@@ -43,6 +44,7 @@ fn straight(line: &Line, radius: f64, u: f64) -> [f64; 3] {
 /// The same on z = s + r[lean(cosh u − 1)/2 + i(√3/2) sinh u], for normal counts: their φ falls like a power of τ with
 /// a phase of e^{iτΛ} at the end of Λ, which a line that leans the right way turns into an exponential.
 fn leaning(line: &Line, radius: f64, lean: f64, u: f64) -> [f64; 3] {
+    crate::stop::check();
     let (width, height) = (0.5 * lean * radius, 0.75_f64.sqrt() * radius);
     let zeta = (2.0 * width * (0.5 * u).sinh().powi(2), height * u.sinh());
     let along = (width * u.sinh(), height * u.cosh());
@@ -136,6 +138,7 @@ fn rule(line: &Line, radius: f64, effort: Effort, at: impl Fn(f64) -> [f64; 3]) 
 
 /// What revivals beyond `start` may add to the sum and to either integral.
 fn beyond(line: &Line, radius: f64, start: f64) -> (f64, f64) {
+    crate::stop::check();
     let (largest_step, mean) = line.graininess();
     if largest_step == 0.0 {
         return (0.0, 0.0);

@@ -36,6 +36,7 @@ struct Grid {
 
 /// Both sums, the finer lattice of `points`, a power of two; nothing for a law without counts, or with too many.
 pub(super) fn transform(line: &Line, points: usize) -> Option<Integrals> {
+    crate::stop::check();
     let events = events(line)?;
     let steps = events.iter().map(|event| event.step.abs());
     let largest = steps.fold(0.0, f64::max);
@@ -93,6 +94,7 @@ fn split(line: &Line, events: &[Events], grid: Grid) -> [f64; 2] {
     let (s, t, eta) = (line.s, line.t, grid.step());
     let (mut means, mut gained) = (vec![(0.0, 0.0); grid.points], 0.0);
     for event in events {
+        crate::stop::check();
         let below = (event.step / eta).floor();
         // Parts of the events under the tilted law with N = a + b, N′ = ae^{ηk} + be^{η(k+1)}: the share
         // (e^{L−ηk} − 1)/(e^η − 1) of N takes the upper step.
@@ -175,6 +177,7 @@ impl Grid {
 
 /// Σ x_j e^{±2πijk/n} in place (Cooley and Tukey), n a power of two.
 fn fourier(x: &mut [(f64, f64)], sign: f64) {
+    crate::stop::check();
     let n = x.len();
     if n < 2 {
         return;
@@ -190,6 +193,7 @@ fn fourier(x: &mut [(f64, f64)], sign: f64) {
     let roots: Vec<(f64, f64)> = (0..n / 2).map(root).collect();
     let mut half = 1;
     while half < n {
+        crate::stop::check();
         let stride = n / (2 * half);
         for block in x.chunks_mut(2 * half) {
             let (low, high) = block.split_at_mut(half);

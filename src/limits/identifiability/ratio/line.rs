@@ -65,6 +65,7 @@ impl Mode {
     /// Real and imaginary part of ln φ without iτμ′.
     #[inline]
     fn ln_phi(&self, tau: f64) -> (f64, f64) {
+        crate::stop::check();
         match *self {
             Self::Poisson { mean, step } => {
                 let theta = tau * step;
@@ -111,6 +112,7 @@ impl Mode {
 
     /// ln E[e^{θ(Λ − μ′)}] for real θ; infinite beyond what the law allows.
     fn cumulant(&self, theta: f64) -> f64 {
+        crate::stop::check();
         let beyond = |x: f64| if x.abs() < 1e-4 { 0.5 * x * x * (1.0 + x / 3.0) } else { x.exp_m1() - x };
         match *self {
             Self::Poisson { mean, step } => mean * beyond(theta * step),

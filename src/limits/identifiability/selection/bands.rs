@@ -43,6 +43,7 @@ impl TopBands {
 
     /// g_w of every band.
     fn weigh(&mut self, pairs: &[Pair], certificate: &Certificate) {
+        crate::stop::check();
         self.values.clear();
         self.values.resize(pairs.first().map_or(0, Pair::bands), 0.0);
         for ((pair, share), c) in pairs.iter().zip(&certificate.shares).zip(&certificate.coefficients) {
@@ -205,6 +206,7 @@ impl<'a> Fits<'a> {
     }
 
     fn solve(&mut self, bands: impl Iterator<Item = usize> + Clone) {
+        crate::stop::check();
         for (fit, pair) in self.fits.iter_mut().zip(self.pairs) {
             fit.solve(&pair.gram_of_bands(bands.clone()), pair.width());
         }
@@ -218,6 +220,7 @@ impl<'a> Fits<'a> {
     /// Least (d/required)² with one more band; not worked out to the end where it is not above `goal`.
     #[inline]
     fn least_with(&mut self, band: usize, goal: f64) -> f64 {
+        crate::stop::check();
         let mut least = f64::INFINITY;
         for i in 0..self.order.len() {
             let p = self.order[i];
@@ -279,6 +282,7 @@ impl<'a> Enumeration<'a> {
 
     /// All selections that begin with the chosen bands and go on from `position` of the order.
     fn extend(&mut self, position: usize, value: f64) {
+        crate::stop::check();
         let missing = self.k - self.chosen.len();
         if missing == 1 {
             return self.last(position, value);
@@ -299,6 +303,7 @@ impl<'a> Enumeration<'a> {
 
     /// The last band of a selection.
     fn last(&mut self, position: usize, value: f64) {
+        crate::stop::check();
         self.fits.solve(self.chosen.iter().copied());
         for at in position..self.order.len() {
             let w = self.order[at];
@@ -317,6 +322,7 @@ impl<'a> Enumeration<'a> {
 
     /// Whether a certificate made for the chosen bands leaves room for something better.
     fn may_beat(&mut self, position: usize, missing: usize) -> bool {
+        crate::stop::check();
         let mut grams: Vec<Vec<f64>> =
             self.pairs.iter().map(|pair| pair.gram_of_bands(self.chosen.iter().copied())).collect();
         let start = grams.clone();

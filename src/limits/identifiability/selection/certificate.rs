@@ -50,6 +50,7 @@ impl Certificate {
 
     /// Shares that lean to the pairs of least value, and the fits of the normal equations.
     pub(super) fn fitted(pairs: &[Pair], grams: &[Vec<f64>], hardness: f64) -> Self {
+        crate::stop::check();
         let mut fit = Fit::default();
         let (mut squares, mut coefficients) = (Vec::new(), Vec::new());
         for (pair, gram) in pairs.iter().zip(grams) {
@@ -100,6 +101,7 @@ pub(super) fn bound(pairs: &[Pair], opponent: &mut impl Opponent, rounds: usize)
     let mut mixture: Option<Vec<Vec<f64>>> = None;
     let mut average = Average::new(pairs);
     for round in 0..rounds.max(1) {
+        crate::stop::check();
         let (selection, square) = opponent.best(pairs, &certificate);
         found.learn(square, &certificate);
         let grams: Vec<Vec<f64>> = pairs.iter().map(|pair| pair.gram(&selection)).collect();

@@ -67,6 +67,7 @@ impl Opponent for BestRuns {
         self.totals.iter_mut().for_each(|totals| totals.fill(0.0));
         self.starts.iter_mut().for_each(|starts| starts.fill(None));
         for start in 0..bands {
+            crate::stop::check();
             // V(start) is complete: all filters that end there began before.
             self.weigh(pairs, &certificate.shares, &sums, start);
             for used in 1..=self.k {
@@ -177,6 +178,7 @@ impl<'a> Edges<'a> {
 
     /// Least (d/required)²; not worked out to the end where it is not above `goal`.
     fn value(&mut self, filters: &[Range<usize>], goal: f64) -> f64 {
+        crate::stop::check();
         let mut least = f64::INFINITY;
         for pair in self.pairs {
             self.left = self.left.saturating_sub(1);
@@ -196,6 +198,7 @@ impl<'a> Edges<'a> {
         now: &mut f64,
         candidate: Vec<Range<usize>>,
     ) -> bool {
+        crate::stop::check();
         let ordered = candidate.windows(2).all(|two| two[0].end <= two[1].start);
         if !ordered || candidate.iter().any(|filter| filter.is_empty()) {
             return false;

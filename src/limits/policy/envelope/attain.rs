@@ -230,6 +230,7 @@ fn descend(trial: &mut Trial<'_, '_>, start: Tried, free: &[bool], first_step: f
 
 /// One step along each free range, if it pays; whether any did.
 fn explore(trial: &mut Trial<'_, '_>, best: &mut Tried, free: &[bool], step: f64) -> Result<bool> {
+    crate::stop::check();
     let mut moved = false;
     for dimension in (0..free.len()).filter(|&i| free[i]) {
         for step in [step, -step] {

@@ -102,6 +102,7 @@ impl Cell {
 
     /// Sets bound and split of a cube; the bound never falls below what it was.
     pub(super) fn bound(&self, model: &Model<'_>, cube: &mut Cube) {
+        crate::stop::check();
         cube.split = self.widest(cube);
         if cube.split.is_some() {
             return;

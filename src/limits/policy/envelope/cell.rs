@@ -79,6 +79,7 @@ pub(super) struct Cell {
 impl Cell {
     /// Prepares a part of an envelope of which `best` is the nearest point known, at the distance `attained`, priors and all.
     pub(super) fn new(model: &Model<'_>, part: &Part, best: &Residual, attained: f64) -> Self {
+        crate::stop::check();
         let (region, variance) = (part.region.clone(), &part.variance);
         let usable = |c: &f64| *c > 0.0;
         let per_variance: Vec<f64> = variance.iter().map(|c| if usable(c) { 1.0 / c } else { 0.0 }).collect();
@@ -146,6 +147,7 @@ impl Cell {
     /// What the basis has to span: whitened spectra at Chebyshev points of every temperature of the scene, at
     /// steps of those of the alternative, and what they become if the variances change.
     fn samples(&self, model: &Model<'_>, skew: &[f64]) -> Vec<Vec<f64>> {
+        crate::stop::check();
         let mut samples = Vec::new();
         for (s, (source, span)) in model.sources.iter().zip(&self.region).enumerate() {
             let [low, high] = span.t;

@@ -69,6 +69,7 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
 
 /// The best point of the linear model in a box of `size` times the first.
 fn step(model: &Model<'_>, ranges: &[[f64; 2]], point: &Point, at: &Residual, size: f64) -> Point {
+    crate::stop::check();
     let gain = model.gain.map_or(1.0, |column| point.values.as_flattened()[column]);
     let mut linear = Linear::new(ranges, point, at, size, gain);
     let next = linear.best(ranges, point);
@@ -151,6 +152,7 @@ impl Linear {
 
 /// Counts, residual and derivatives at a point.
 pub(super) fn residual(model: &Model<'_>, point: &Point) -> Residual {
+    crate::stop::check();
     let bands = model.var.len();
     let (mut target, mut alternative, mut apart) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
     // Derivatives of N and of N′.

@@ -253,6 +253,7 @@ pub(super) fn run<J: Send, W: Default>(
     (0..threads).into_par_iter().with_max_len(1).for_each(|_| {
         let mut room = W::default();
         loop {
+            crate::stop::check();
             // Jobs are begun in their order: those before one that failed are all begun.
             let Some((index, job)) = locked(&jobs).next() else { break };
             if locked(&failed).is_some() {

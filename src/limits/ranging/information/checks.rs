@@ -67,6 +67,7 @@ impl<'a> Checked<'a> {
     }
 
     fn closely(&self, rows: Range<usize>, columns: Range<usize>) -> Result<()> {
+        crate::stop::check();
         for row in rows {
             let samples = self.at(row, columns.start)..self.at(row, columns.end);
             if self.may_miss && !self.zero_matters && self.counts.all_counts_or_missing(samples) {

@@ -67,6 +67,7 @@ pub(super) fn pixels_of_row(
     room: &mut Room,
     to: &mut [f64],
 ) -> Result<()> {
+    crate::stop::check();
     let counts = room.counts.read(cube, y..y + 1)?;
     let variances = match plan.request.noise {
         NoiseVariance::PerSample(cube) => Some(room.variances.read(cube.into(), y..y + 1)?),
@@ -97,6 +98,7 @@ pub(super) fn bounds_of_row(
     room: &mut Room,
     to: &mut [f64],
 ) -> Result<()> {
+    crate::stop::check();
     let (counts, bands) = (room.counts.read(cube, y..y + 1)?, plan.shape.bands());
     // Variances of single samples are not read: 0 is below all of them.
     let least = plan.var_band.iter().copied().reduce(f64::min).unwrap_or(0.0);
@@ -135,6 +137,7 @@ impl Results<'_> {
         read: Range<usize>,
         room: &mut Room,
     ) -> Result<()> {
+        crate::stop::check();
         let counts = room.counts.read(cube, read.clone())?;
         let variances = match plan.request.noise {
             NoiseVariance::PerSample(cube) => Some(room.variances.read(cube.into(), read.clone())?),
@@ -147,6 +150,7 @@ impl Results<'_> {
                 room.strip.start(plan, strip, read.start, variances.is_some());
             }
             for y in read.clone() {
+                crate::stop::check();
                 for strip in strips {
                     self.take_in(StripRow { y, plan, strip, checked: &checked }, &mut room.strip)?;
                 }

@@ -48,6 +48,7 @@ impl Jacobian<'_> {
         lighting_total_known: bool,
         difference: &mut [f64],
     ) {
+        crate::stop::check();
         self.begin(parameters);
         let nu = &self.surroundings.nodes_cm1;
         let nodes = nu.len();

@@ -31,6 +31,7 @@ impl Prover<'_, '_> {
         best: &NearestDistance,
         goal: Goal,
     ) -> Closed {
+        crate::stop::check();
         let (state, enough) = (&best.state, goal.enough);
         let (residual, other) = comparison.residual(target, state);
         let count = self.all.sources.list.len();

@@ -108,6 +108,7 @@ impl Bounder {
         start: Option<&[f64]>,
         quadratics: usize,
     ) -> Bound {
+        crate::stop::check();
         view.look();
         let view = &*view;
         self.lay(view, ends);
@@ -118,6 +119,7 @@ impl Bounder {
         let mut both = vec![0.0; self.places.len()];
         let mut found = Bound { lower: 0.0, axis: 0, coarse: false };
         for attempt in 0..quadratics {
+            crate::stop::check();
             let Written { cost, shift, grain, missed, axis } = self.write(view, attempt >= PLAIN);
             found.axis = axis;
             // What is subtracted from each other here, and how much of it rounding may be.

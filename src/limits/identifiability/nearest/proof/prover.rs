@@ -112,6 +112,7 @@ impl<'a, 'm> Prover<'a, 'm> {
         target: &Target<'_>,
         mixture: &Mixture,
     ) -> (State, f64) {
+        crate::stop::check();
         let mut state = target.state.clone();
         let space = &comparison.space;
         let surface = mixture.amplitudes[0];
@@ -148,6 +149,7 @@ impl<'a, 'm> Prover<'a, 'm> {
         narrower: Option<&Amplitudes>,
         enough: f64,
     ) -> (f64, usize, bool) {
+        crate::stop::check();
         let known = &self.temperature_k;
         let know = |view: &mut View<'_>| {
             for (axis, ends) in ends.iter().enumerate() {
@@ -174,6 +176,7 @@ impl<'a, 'm> Prover<'a, 'm> {
 
     /// The range of an unknown temperature, cut off where a known amplitude is too bright in some band.
     pub(super) fn range(&mut self, axis: usize, warm: &State) -> [f64; 2] {
+        crate::stop::check();
         let s = self.all.axes[axis];
         let [low, high] = self.all.sources.list[s].temperature_k;
         let low = low.max(self.all.coldest_k(axis)).min(high);

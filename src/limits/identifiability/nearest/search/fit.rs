@@ -42,6 +42,7 @@ impl Fit {
         own: &State,
         emission: &Emission,
     ) -> (State, Fitted) {
+        crate::stop::check();
         let (mut base, slope) = whitened.emission(thinned, emission);
         add(&mut base, 1.0, &self.known);
         let signal = &whitened.signal;
@@ -66,6 +67,7 @@ impl Fit {
         own: &State,
         grid: &[&Emission],
     ) -> Option<Vec<(f64, Fitted)>> {
+        crate::stop::check();
         let strength = whitened.strength.as_deref()?;
         if self.gain || self.free.len() > 1 {
             return None;

@@ -121,6 +121,7 @@ impl EmissionTable {
     }
 
     fn even(&mut self, step: usize) -> &Emission {
+        crate::stop::check();
         if self.even.len() <= step {
             self.even.resize(step + 1, None);
         }
