@@ -26,6 +26,7 @@ fn server() -> SocketAddr {
             cameras: Default::default(),
             begin: SCENARIO.to_owned(),
             commit: "test".to_owned(),
+            limits: Default::default(),
         };
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
@@ -308,6 +309,7 @@ fn only_this_machine_is_listened_to() {
         cameras: Default::default(),
         begin: String::new(),
         commit: String::new(),
+        limits: Default::default(),
     };
     let Ok(listener) = TcpListener::bind("0.0.0.0:0") else {
         return println!("skipped: no address but this machine's own");

@@ -10,6 +10,7 @@ use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
 use hadar::inputs::{self, inputs_of};
+use hadar::stop::unless_it_panics;
 use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Input, VERSION, sha256, sha256_of_file};
@@ -19,7 +20,6 @@ use hadar_scenario::Written;
 use hadar_study::Remembered;
 use hadar_study::sweep::{Asking, Axis, Cases, Plan, Question};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -122,17 +122,16 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
             return Ok(());
         };
         let written = file.with(plan.settings(row));
-        let (answer, read) =
-            inputs_of(|| catch_unwind(AssertUnwindSafe(|| question.answer(&written, &asking))));
+        let (answer, read) = inputs_of(|| unless_it_panics(|| question.answer(&written, &asking)));
         let outcome = match answer {
-            Ok(Ok(answer)) => {
+            Some(Ok(answer)) => {
                 if let Ok(mut stats) = stats.lock() {
                     stats.add(&answer.work);
                 }
                 Ok(answer.record)
             }
-            Ok(Err(error)) => Err(error.to_string()),
-            Err(_) => Err("the program failed in this row; report this as a bug".to_owned()),
+            Some(Err(error)) => Err(error.to_string()),
+            None => Err("the program failed in this row; report this as a bug".to_owned()),
         };
         journal.write(&Entry::new(key.clone(), &read, outcome, &hashes))
     };
