@@ -85,3 +85,40 @@ impl Drop for Place {
 fn locked(taken: &Mutex<Taken>) -> MutexGuard<'_, Taken> {
     taken.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Clients that keep their connections keep nobody out, and nobody is cut off who waits for an answer.
+    #[test]
+    fn the_oldest_that_asks_nothing_makes_room() {
+        let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+        runtime.block_on(async {
+            let room = Room::default();
+            let enter = || {
+                let place = room.place()?;
+                let (number, asking) = (place.number, Arc::clone(&place.asking));
+                let task = tokio::spawn(async move {
+                    let _place = place;
+                    std::future::pending::<()>().await;
+                });
+                room.taken_by(number, task.abort_handle());
+                Some((task, asking))
+            };
+            let mut first: Vec<_> = (0..CONNECTIONS).map(|_| enter().unwrap()).collect();
+            let asking: Vec<Asking> =
+                first.iter().step_by(2).map(|(_, asking)| Asking::begin(asking)).collect();
+            let (oldest_idle, _) = first.remove(1);
+            let new = enter().unwrap();
+            assert!(oldest_idle.await.unwrap_err().is_cancelled());
+            assert_eq!(locked(&room.0).by.len(), CONNECTIONS);
+            // Where everybody waits for an answer there is no place.
+            let more: Vec<Asking> =
+                first.iter().skip(1).chain([&new]).map(|(_, asking)| Asking::begin(asking)).collect();
+            assert!(enter().is_none());
+            drop((asking, more));
+            assert!(enter().is_some());
+        });
+    }
+}
