@@ -22,6 +22,8 @@ def _common(
     seed: int = 1,
     skipping: bool = True,
     threads: int | None = None,
+    time_limit: str | None = None,
+    memory_limit: str | None = None,
 ) -> dict[str, Any]:
     one = isinstance(library, (str, os.PathLike))
     return {
@@ -31,6 +33,8 @@ def _common(
         "seed": seed,
         "skipping": skipping,
         "threads": threads,
+        "time_limit": time_limit,
+        "memory_limit": memory_limit,
     }
 
 
@@ -47,8 +51,9 @@ def size(scenario: Any, *, by: str | None = None, **common: Any) -> Sizing:
     ``by``: the distance that decides, ``"nearest"``, ``"local"`` or ``"local-unknown-gain"``, instead of the scenario's.
 
     Every command takes ``library`` (folders or files of spectra of your own), ``only_library``, ``skip_uncovered``, ``seed``,
-    ``skipping`` (False computes what proofs would spare; the answer is the same) and ``threads`` (default: all cores; the
-    answer does not depend on it).
+    ``skipping`` (False computes what proofs would spare; the answer is the same), ``threads`` (default: all cores; the
+    answer does not depend on it), ``time_limit`` (``"90 s"``) and ``memory_limit`` (``"2 GB"``, of the whole process; watched on
+    Linux): what exceeds one is stopped with a :class:`hadar.HadarError`. So is what Ctrl-C interrupts, with ``KeyboardInterrupt``.
 
     As ``hadar size --json``: the same keys, the same bits. Raises :class:`hadar.HadarError` with the command's message.
     """

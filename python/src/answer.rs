@@ -2,7 +2,7 @@
 
 use crate::error::{named, raised};
 use crate::question::Question;
-use crate::threads::with_threads;
+use crate::threads::{with_limits, with_threads};
 use hadar::demand::{Reason, Skipping, Thing, Work, ledger_of};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
@@ -17,6 +17,7 @@ use hadar_report::{
 };
 use hadar_scenario::{DistanceKind, RangingScenario, Rule, Scenario, day};
 use hadar_study::air_ranging::{AirPlan, AirRangingStudy};
+use hadar_study::budget::{self, Limits};
 use hadar_study::range::{RangePlan, RangeStudy};
 use hadar_study::{
     Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Warning, Watch,
@@ -64,6 +65,10 @@ pub(crate) struct Common {
     skipping: bool,
     #[pyo3(item)]
     threads: Option<usize>,
+    #[pyo3(item)]
+    time_limit: Option<String>,
+    #[pyo3(item)]
+    memory_limit: Option<String>,
 }
 
 /// Found by a command: text, JSON, pictures to be drawn.
@@ -76,6 +81,15 @@ struct Found {
 impl Common {
     fn skipping(&self) -> Skipping {
         if self.skipping { Skipping::On } else { Skipping::Off }
+    }
+
+    fn limits(&self) -> Result<Limits> {
+        let time = self.time_limit.as_deref().map(budget::time).transpose();
+        let memory = self.memory_limit.as_deref().map(budget::size).transpose();
+        Ok(Limits {
+            time: time.map_err(|error| error.for_key("time_limit"))?,
+            memory_bytes: memory.map_err(|error| error.for_key("memory_limit"))?,
+        })
     }
 
     fn library(&self) -> Result<Library> {
@@ -99,7 +113,8 @@ impl Common {
         question: &Question,
         find: impl FnOnce(&Noting, &mut Reading<'_>) -> Result<Found> + Send,
     ) -> PyResult<Answer> {
-        with_threads(py, self.threads, || {
+        let limits = self.limits().map_err(raised)?;
+        with_limits(py, self.threads, limits, || {
             let noting = Noting::open();
             let mut reading = Reading { common: self, said: Vec::new() };
             let found = find(&noting, &mut reading).map_err(|error| question.told(error))?;
@@ -120,7 +135,9 @@ impl Common {
             scenario.requirement.by = by;
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
-        Study::new_skipping(&scenario, &reading.library()?, self.skipping())
+        let study = Study::new_skipping(&scenario, &reading.library()?, self.skipping())?;
+        self.limits()?.admit(study.takes(), rayon::current_num_threads())?;
+        Ok(study)
     }
 }
 

@@ -4,7 +4,9 @@ import datetime
 import os
 import pickle
 import shutil
+import signal
 import subprocess
+import threading
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -156,3 +158,32 @@ def test_a_rule_is_asked_about_a_day(monkeypatch):
         hadar.rule(path, on="tomorrow")
     with pytest.raises(TypeError):
         hadar.rule(path, on=datetime.timedelta(1))
+
+
+HEAVY = {
+    "target": {"material": "skin", "temperature": "37 degC"},
+    "environment": [
+        {"temperature": f"{5 + 7 * k} degC", "lighting": 0.1125, "material": material}
+        for k, material in enumerate(["concrete", "asphalt", "grass-dry", "brick-red", "pmma", "steel-rough"])
+    ],
+    "alternatives": {"materials": ["aluminium"]},
+    "bands": {"start": "715 cm^-1", "stop": "1250 cm^-1", "step": "0.1 cm^-1"},
+    "unknown": {"priors": {"temperature": "2 K", "lighting": 0.1}, "nuisances": ["temperature", "lighting"]},
+}
+
+
+def test_a_limit_of_time_ends_a_question_and_the_next_is_answered():
+    with pytest.raises(hadar.HadarError, match="stopped after 1 s, the limit of time"):
+        hadar.size(HEAVY, time_limit="1 s")
+    assert hadar.size(SMALL).pairs
+    with pytest.raises(hadar.HadarError, match="time_limit: .*write it as 90 s|time_limit: .*unit"):
+        hadar.size(SMALL, time_limit="5")
+
+
+def test_an_interrupt_ends_a_question_as_python_is_used_to():
+    timer = threading.Timer(1, lambda: os.kill(os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        hadar.size(HEAVY)
+    timer.join()
+    assert hadar.size(SMALL).pairs

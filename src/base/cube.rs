@@ -205,6 +205,7 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
     }
 
     fn read<'a>(&'a self, rows: Range<usize>, _buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        crate::stop::check();
         let len = self.shape.row_len();
         self.samples
             .get(rows.start.saturating_mul(len)..rows.end.saturating_mul(len))

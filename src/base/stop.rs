@@ -13,6 +13,7 @@
 //! What is shared between questions must not be left half done: initialisers of statics do not check, and locks are taken over
 //! from a thread that unwound.
 
+use crate::parallel::STACK;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::cell::RefCell;
 use std::fmt;
@@ -38,9 +39,6 @@ pub enum Reason {
 
 const REASONS: [Reason; 5] =
     [Reason::Interrupted, Reason::Terminated, Reason::TimeLimit, Reason::MemoryLimit, Reason::NobodyListens];
-
-/// Stack of a thread of a question, bytes.
-const STACK: usize = 16 << 20;
 
 /// How many tokens have something to say: as long as there is none, nobody looks for his own.
 static SPEAKING: AtomicUsize = AtomicUsize::new(0);
@@ -152,6 +150,12 @@ impl Stop {
             .build()
     }
 
+    /// Makes the threads of a pool work for this until the result is dropped. Nobody else may use the pool meanwhile.
+    pub fn lend<'p>(&self, pool: &'p ThreadPool) -> Lent<'p> {
+        pool.broadcast(|_| OF_THIS_THREAD.set(Some(self.clone())));
+        Lent(pool)
+    }
+
     /// Unwinds where it has said something.
     fn look(&self) {
         if self.0.counts && self.0.checks.fetch_add(1, Relaxed) + 1 == self.0.at_check {
@@ -160,6 +164,17 @@ impl Stop {
         if let Some(reason) = self.said() {
             resume_unwind(Box::new(Stopped { reason, by: self.clone() }));
         }
+    }
+}
+
+/// A pool whose threads work for a [`Stop`] until this is dropped.
+#[derive(Debug)]
+#[must_use]
+pub struct Lent<'p>(&'p ThreadPool);
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        self.0.broadcast(|_| OF_THIS_THREAD.set(None));
     }
 }
 

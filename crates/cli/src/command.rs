@@ -1,7 +1,7 @@
 //! The command line: parse, run, print.
 //!
-//! Exit codes: 0 done; 1 the input is wrong (one message on stderr); 2 usage; 3 requirement not met with
-//! `--check`. With `--json` stdout is one object and nothing else.
+//! Exit codes: 0 done; 1 the input is wrong, or a limit of time or memory is exceeded (one message on stderr); 2 usage; 3 requirement not
+//! met with `--check`; 130 and 143 stopped by Ctrl-C and SIGTERM. With `--json` stdout is one object and nothing else.
 
 mod calibrate;
 mod cameras;
@@ -27,6 +27,7 @@ mod shell;
 mod simulate;
 mod size;
 mod stderr;
+mod stopping;
 mod sweep;
 mod terminal;
 pub(crate) mod threads;
@@ -38,6 +39,7 @@ use self::terminal::Stream;
 use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
+use hadar_study::budget::Watch;
 use std::ffi::{OsStr, OsString};
 use std::io::ErrorKind;
 use std::path::Path;
@@ -118,7 +120,9 @@ pub(crate) fn answered<C>(
         ExitCode::from(1)
     };
     match parsed {
-        Ok((cli, global)) => run(&cli, &global).unwrap_or_else(failed),
+        Ok((cli, global)) => {
+            stopping::or_stopped(|| run(&cli, &global).unwrap_or_else(failed)).unwrap_or_else(|code| code)
+        }
         // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
         Err(usage) => match usage.print() {
             Err(error) if !usage.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
@@ -154,25 +158,35 @@ fn parsed_from<C: FromArgMatches>(
     Ok((C::from_arg_matches(&found)?, global))
 }
 
-/// Starts the threads and the list of what is read; with `checks_out` refuses a folder that a report may not be written to.
-pub(crate) fn prepared(global: &Global, checks_out: bool) -> Result<Noting> {
+/// What lasts as long as a command: the list of what it reads, and who watches over its limits.
+pub(crate) struct Prepared {
+    _noting: Noting,
+    _watch: Option<Watch>,
+}
+
+/// Starts the threads, the list of what is read, and unless its questions have limits of their own the watch over the limits; with
+/// `checks_out` refuses a folder that a report may not be written to.
+pub(crate) fn prepared(global: &Global, checks_out: bool, watched: bool) -> Result<Prepared> {
     if let Some(threads) = global.threads.filter(|threads| *threads > threads::MOST) {
         let expected = format!("at most {}, or 0 for all cores", threads::MOST);
         return Err(Error::out_of_range("--threads", threads as f64, "", expected));
     }
     threads::start(global.threads, global.quiet);
+    let watch = watched.then(|| stopping::begin(global.limits)).transpose()?;
     let noting = Noting::open();
     if let Some(out) = global.out.as_ref().filter(|_| checks_out) {
         global.folder(out).check()?;
     }
-    Ok(noting)
+    Ok(Prepared { _noting: noting, _watch: watch })
 }
 
 fn run(command: &Command, global: &Global) -> Result<ExitCode> {
-    let _noting = match command {
+    let _prepared = match command {
         // The program that answers does so itself.
         Command::Evidence(_) => None,
-        _ => Some(prepared(global, true)?),
+        // A signal ends the page, and limits are those of each of its questions.
+        Command::Serve(_) => Some(prepared(global, true, false)?),
+        _ => Some(prepared(global, true, true)?),
     };
     dispatch(command, global)
 }

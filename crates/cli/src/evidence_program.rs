@@ -22,7 +22,7 @@ pub fn evidence_main(answer: impl Fn(&Question, &Global) -> Result<ExitCode> + S
         answered(parsed_by::<Cli>(&flags::added(Cli::command())), |cli, global| {
             same_build(std::env::var_os(HANDED_OVER_BY))?;
             // Figures of the paper have a folder each, which their command checks.
-            let _noting = prepared(global, matches!(cli.question, Question::Accuracy(_)))?;
+            let _prepared = prepared(global, matches!(cli.question, Question::Accuracy(_)), true)?;
             answer(&cli.question, global)
         })
     })

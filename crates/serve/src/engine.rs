@@ -4,7 +4,7 @@ use crate::edit::{self, Edit};
 use crate::form::{self, Form};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::inputs::inputs_of;
+use hadar::inputs::{self, Inputs, inputs_of};
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
 use hadar::policy::trade_off::POINTS;
@@ -17,8 +17,9 @@ use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
 use hadar_report::words::warnings::of_code;
 use hadar_scenario::{Scenario, Written};
+use hadar_study::budget::Limits;
 use hadar_study::warning::Warning;
-use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Sizing, Study, YesNo};
+use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Study, YesNo};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -28,6 +29,10 @@ const MOST_SPECTRAL_VALUES: usize = 100_000;
 const MOVING_POINTS: usize = 11;
 /// Objects of the surroundings: the search over their lighting grows steeply with them.
 const MOST_SURROUNDINGS: usize = 8;
+/// Nodes of bands times alternatives, and objects of the surroundings, up to which a question without priors takes a part of a second.
+/// With priors the search for the closest state takes seconds whatever their number.
+const QUICK_SPECTRAL_VALUES: usize = 20_000;
+const QUICK_SURROUNDINGS: usize = 3;
 /// What a scenario of the page is called in its report.
 const NAME: &str = "scenario.toml";
 
@@ -42,6 +47,8 @@ pub struct Engine {
     pub begin: String,
     /// Commit of the program's source, for reports.
     pub commit: String,
+    /// How long an answer may take, and how much memory the program.
+    pub limits: Limits,
 }
 
 /// A question of the page.
@@ -59,6 +66,28 @@ pub(crate) struct Ask {
     /// Whether what does not follow a slider is asked for too: what the verdict hangs on, and the answer as text.
     #[serde(default)]
     pub(crate) full: bool,
+}
+
+/// A question with what its scenario names looked up.
+#[derive(Debug)]
+pub(crate) struct Prepared {
+    ask: Ask,
+    /// The scenario after the changes.
+    text: String,
+    study: Result<Study>,
+    read: Inputs,
+}
+
+impl Prepared {
+    /// Whether it takes a part of a second, as far as its scenario tells.
+    pub(crate) fn is_quick(&self) -> bool {
+        self.study.as_ref().map_or(true, |study| {
+            let values = study.bands().nodes_cm1().len().saturating_mul(study.alternatives().len());
+            values <= QUICK_SPECTRAL_VALUES
+                && study.surroundings().objects().len() <= QUICK_SURROUNDINGS
+                && !study.unknowns().has_priors()
+        })
+    }
 }
 
 /// What the page gets.
@@ -158,14 +187,22 @@ impl Engine {
         })
     }
 
+    /// Reads the scenario of a question and looks up what it names.
+    pub(crate) fn prepare(&self, ask: Ask) -> Prepared {
+        let (prepared, read) = inputs_of(|| {
+            let (text, changed) = match self.edited(&ask) {
+                Ok(text) => (text, Ok(())),
+                Err(error) => (ask.scenario.clone(), Err(error)),
+            };
+            let study = changed.and_then(|()| self.study(&text));
+            (text, study)
+        });
+        Prepared { ask, text: prepared.0, study: prepared.1, read }
+    }
+
     /// A scenario with its changes as text, fields and answer.
-    pub(crate) fn answer(&self, ask: &Ask) -> Result<String> {
-        let (scenario, changed) = match self.edited(ask) {
-            Ok(text) => (text, Ok(())),
-            Err(error) => (ask.scenario.clone(), Err(error)),
-        };
-        let answered = changed.and_then(|()| self.shown(&scenario, ask));
-        let (answer, error) = match answered {
+    pub(crate) fn answer(&self, Prepared { ask, text: scenario, study, .. }: Prepared) -> Result<String> {
+        let (answer, error) = match study.and_then(|study| shown(&study, &ask)) {
             Ok(answer) => (Some(answer), None),
             Err(error) => (None, Some(told(&error))),
         };
@@ -173,35 +210,9 @@ impl Engine {
         json::line(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
     }
 
-    fn shown(&self, text: &str, ask: &Ask) -> Result<Answer> {
-        let study = self.study(text)?;
-        let result = study.size_with(SizeAsked { solutions: true, sensitivity: ask.full })?;
-        let pairs = study.traded_off();
-        let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
-        let pair = pairs.iter().find(wanted).or(pairs.first());
-        let points = if ask.full { POINTS } else { MOVING_POINTS };
-        let curve = pair.map(|pair| study.trade_off(&result, *pair, points)).transpose()?.flatten();
-        let met = result.verdict.met;
-        Ok(Answer {
-            met,
-            conditional: result.verdict.open().next().is_some(),
-            sentence: result.verdict.sentence.say(),
-            numbers: rows::of_camera(&result, &study),
-            solved: rows::solved(&result, study.units()),
-            pairs: result.pairs.iter().map(pair_shown).collect(),
-            conditions: result.verdict.conditions.iter().map(rests_on).collect(),
-            warnings: result.warnings.iter().map(said).collect(),
-            pictures: size::followed(&study, &result, curve.as_ref())?.drawings()?,
-            trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
-            trade_off: pair.map(|pair| pair.1.key().to_owned()),
-            text: ask.full.then(|| size::text(&result, &study)),
-        })
-    }
-
     /// The answer as `hadar size --json` prints it.
-    pub(crate) fn json(&self, ask: &Ask) -> Result<String> {
-        let study = self.study(&self.edited(ask)?)?;
-        let mut result = study.size_with_curves()?;
+    pub(crate) fn json(&self, prepared: Prepared) -> Result<String> {
+        let mut result = prepared.study?.size_with_curves()?;
         let mut no_report = Work::default();
         no_report.spare(Thing::Reports, Reason::NotAsked, 1);
         result.stats.add(&no_report);
@@ -209,14 +220,13 @@ impl Engine {
     }
 
     /// The report of `hadar size --out`, on its one page.
-    pub(crate) fn report(&self, ask: &Ask) -> Result<String> {
-        let text = self.edited(ask)?;
-        let (sized, mut read) = inputs_of(|| -> Result<(Study, Sizing)> {
-            let study = self.study(&text)?;
-            let result = study.size_with_curves()?;
-            Ok((study, result))
+    pub(crate) fn report(&self, Prepared { text, study, read, .. }: Prepared) -> Result<String> {
+        let study = study?;
+        let (result, mut read) = inputs_of(|| {
+            inputs::add(&read);
+            study.size_with_curves()
         });
-        let (study, result) = sized?;
+        let result = result?;
         read.streams.insert(0, (NAME.to_owned(), text.into_bytes()));
         let command = ["hadar", "size", NAME].map(str::to_owned).to_vec();
         let provenance = Provenance::of(&self.commit, command, 1, &read)?;
@@ -260,6 +270,30 @@ impl Engine {
     fn library_warnings(&self) -> Vec<Warning> {
         self.library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
     }
+}
+
+fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
+    let result = study.size_with(SizeAsked { solutions: true, sensitivity: ask.full })?;
+    let pairs = study.traded_off();
+    let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
+    let pair = pairs.iter().find(wanted).or(pairs.first());
+    let points = if ask.full { POINTS } else { MOVING_POINTS };
+    let curve = pair.map(|pair| study.trade_off(&result, *pair, points)).transpose()?.flatten();
+    let met = result.verdict.met;
+    Ok(Answer {
+        met,
+        conditional: result.verdict.open().next().is_some(),
+        sentence: result.verdict.sentence.say(),
+        numbers: rows::of_camera(&result, study),
+        solved: rows::solved(&result, study.units()),
+        pairs: result.pairs.iter().map(pair_shown).collect(),
+        conditions: result.verdict.conditions.iter().map(rests_on).collect(),
+        warnings: result.warnings.iter().map(said).collect(),
+        pictures: size::followed(study, &result, curve.as_ref())?.drawings()?,
+        trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
+        trade_off: pair.map(|pair| pair.1.key().to_owned()),
+        text: ask.full.then(|| size::text(&result, study)),
+    })
 }
 
 fn pair_shown(pair: &PairResult) -> Pair {

@@ -1,10 +1,13 @@
-//! Connections: how many, how long, how large; each question on a thread of its own, as many at once as there are cores.
+//! Connections: how many, how long, how large. Their questions are computed in turns ([`turns`]).
 //!
-//! Whoever is too slow, too long or too many is refused, and nobody else waits for him but for the work itself.
+//! Whoever is too slow, too long or too many is refused. Where all places are taken the oldest connection that waits for no answer
+//! makes room for a new one, so that clients who keep theirs keep nobody out.
 
 use crate::engine::Engine;
 use crate::guard::{self, Refusal};
-use crate::route::{self, Reply};
+use crate::room::{Asking, Room};
+use crate::route::{self, Begun, Reply};
+use crate::turns::{self, Turns};
 use hadar::error::{Error, Result};
 use http_body_util::{BodyExt as _, Full, Limited};
 use hyper::body::{Bytes, Incoming};
@@ -20,13 +23,11 @@ use std::time::Duration;
 use tokio::sync::Semaphore;
 use tokio::time::timeout;
 
-/// Connections at once; a browser opens six.
-const CONNECTIONS: usize = 512;
 /// Questions that wait for their turn; further ones are told to come again.
 const WAITING: usize = 256;
 /// Time for the head of a request, and for its body.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Time for an answer.
+/// Time for an answer, where no other limit is given.
 const LONGEST_ANSWER: Duration = Duration::from_secs(60);
 /// Longest connection.
 const LONGEST: Duration = Duration::from_secs(600);
@@ -35,12 +36,14 @@ const LONGEST_HEAD: usize = 16 << 10;
 /// Longest body of a request, bytes: a scenario and what is changed in it.
 const LONGEST_BODY: usize = 256 << 10;
 
+/// What a connection is told for which there is no place.
+const FULL: &[u8] = b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+
 /// What all connections share.
 struct Shared {
-    engine: Engine,
+    engine: Arc<Engine>,
     port: u16,
-    /// Questions that are computed.
-    working: Arc<Semaphore>,
+    turns: Arc<Turns>,
     /// Questions that are computed or wait.
     taken: Semaphore,
 }
@@ -62,15 +65,15 @@ pub fn serve(engine: Engine, listener: TcpListener) -> Result<()> {
     listener.set_nonblocking(true).map_err(failed)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let shared = Arc::new(Shared {
-        engine,
+        engine: Arc::new(engine),
         port: address.port(),
-        working: Arc::new(Semaphore::new(cores)),
+        turns: Arc::new(Turns::new(cores)),
         taken: Semaphore::new(WAITING),
     });
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_io()
         .enable_time()
-        .max_blocking_threads(cores)
+        .max_blocking_threads(turns::AT_ONCE)
         .thread_stack_size(hadar::parallel::STACK)
         .build()
         .map_err(failed)?;
@@ -82,9 +85,8 @@ pub fn serve(engine: Engine, listener: TcpListener) -> Result<()> {
 }
 
 async fn accept(shared: Arc<Shared>, listener: tokio::net::TcpListener) -> Result<()> {
-    let room = Arc::new(Semaphore::new(CONNECTIONS));
+    let room = Room::default();
     loop {
-        let Ok(permit) = Arc::clone(&room).acquire_owned().await else { return Ok(()) };
         let stream = match listener.accept().await {
             Ok((stream, _)) => stream,
             // Too many open files, or a client that is gone: later.
@@ -93,19 +95,31 @@ async fn accept(shared: Arc<Shared>, listener: tokio::net::TcpListener) -> Resul
                 continue;
             }
         };
-        let shared = Arc::clone(&shared);
-        tokio::spawn(async move {
-            let _permit = permit;
-            let service = service_fn(move |request| answer(Arc::clone(&shared), request));
+        let Some(place) = room.place() else {
+            let _ = stream.try_write(FULL);
+            continue;
+        };
+        let (shared, number, asking) = (Arc::clone(&shared), place.number, Arc::clone(&place.asking));
+        let task = tokio::spawn(async move {
+            let _place = place;
+            let service = service_fn(move |request| {
+                let (shared, asking) = (Arc::clone(&shared), Arc::clone(&asking));
+                async move {
+                    let _asking = Asking::begin(&asking);
+                    answer(shared, request).await
+                }
+            });
+            // A client that closes its connection while it waits is gone, and its question with it.
             let connection = http1::Builder::new()
                 .timer(TokioTimer::new())
                 .header_read_timeout(PATIENCE)
-                .half_close(true)
+                .half_close(false)
                 .max_buf_size(LONGEST_HEAD)
                 .serve_connection(TokioIo::new(stream), service);
             // What goes wrong on a connection is that client's own affair.
             let _ = timeout(LONGEST, connection).await;
         });
+        room.taken_by(number, task.abort_handle());
     }
 }
 
@@ -144,38 +158,25 @@ async fn read(body: Incoming) -> std::result::Result<Bytes, Refusal> {
     }
 }
 
-/// Computes an answer in its turn; a client that goes away before has asked nothing.
+/// Computes an answer in its turn; a client that goes away before has asked nothing, and its work is stopped.
 async fn compute(shared: Arc<Shared>, path: String, body: Bytes) -> Reply {
     let Ok(_taken) = shared.taken.try_acquire() else {
         return Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "too many questions at once"));
     };
-    let busy = || {
-        Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "it is still computing a larger question"))
-    };
-    let Ok(Ok(working)) = timeout(LONGEST_ANSWER, Arc::clone(&shared.working).acquire_owned()).await else {
-        return busy();
-    };
     // Where the system gives no other thread, this one has the parallel work to do, and nobody may wait for it here.
     if rayon::current_thread_index().is_some() {
-        return route::post(&path, &body, &shared.engine);
+        return match route::begun(&path, &body, &shared.engine) {
+            Begun::Replied(reply) => reply,
+            Begun::Prepared(question) => question.reply(&shared.engine),
+        };
     }
-    let own = Arc::clone(&shared);
-    let computed = tokio::task::spawn_blocking(move || {
-        // Kept until the work is done, whether or not anybody still waits for it.
-        let _working = working;
-        route::post(&path, &body, &own.engine)
-    });
-    match timeout(LONGEST_ANSWER, computed).await {
-        Ok(Ok(reply)) => reply,
-        Ok(Err(_)) => Reply::refused(Refusal(
-            StatusCode::INTERNAL_SERVER_ERROR,
-            "this is a bug; report it with the scenario",
-        )),
-        Err(_) => Reply::refused(Refusal(
+    let longest = shared.engine.limits.time.unwrap_or(LONGEST_ANSWER);
+    timeout(longest, turns::taken(Arc::clone(&shared.turns), Arc::clone(&shared.engine), path, body)).await.unwrap_or_else(|_| {
+        Reply::refused(Refusal(
             StatusCode::SERVICE_UNAVAILABLE,
             "this question takes longer than a page waits; ask `hadar size` with the scenario of this page",
-        )),
-    }
+        ))
+    })
 }
 
 /// A reply with what keeps browsers from doing more with it than showing it here.

@@ -7,6 +7,8 @@
 //! | file | what is there |
 //! |---|---|
 //! | `http` | connections: how many, how long, how large |
+//! | `room` | places of connections |
+//! | `turns` | whose turn it is to compute |
 //! | `guard` | who may ask |
 //! | `route` | which question is asked where |
 //! | `engine` | the answer to a scenario |
@@ -24,8 +26,10 @@ mod guard;
 mod http;
 mod meaning;
 mod place;
+mod room;
 mod route;
 mod slider;
+mod turns;
 
 pub use engine::Engine;
 pub use http::serve;

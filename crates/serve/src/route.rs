@@ -1,6 +1,6 @@
 //! Which question is asked where.
 
-use crate::engine::{Ask, Engine};
+use crate::engine::{Ask, Engine, Prepared};
 use crate::guard::Refusal;
 use crate::meaning;
 use hadar::error::Error;
@@ -32,10 +32,12 @@ impl Reply {
     fn answered(kind: &'static str, answer: Result<String, Error>) -> Self {
         match answer {
             Ok(text) => Self::of(kind, text),
-            Err(error) => {
-                Self { status: StatusCode::UNPROCESSABLE_ENTITY, kind: TEXT, body: error.to_string().into() }
-            }
+            Err(error) => Self::text(StatusCode::UNPROCESSABLE_ENTITY, error.to_string()),
         }
+    }
+
+    pub(crate) fn text(status: StatusCode, text: String) -> Self {
+        Self { status, kind: TEXT, body: text.into() }
     }
 }
 
@@ -55,16 +57,59 @@ pub(crate) fn get(path: &str, engine: &Engine) -> Reply {
     }
 }
 
-/// What is computed.
-pub(crate) fn post(path: &str, body: &[u8], engine: &Engine) -> Reply {
-    let ask: Ask = match serde_json::from_slice(body) {
-        Ok(ask) => ask,
-        Err(_) => return Reply::refused(Refusal(StatusCode::BAD_REQUEST, "this is no question of the page")),
+/// What is asked to be computed.
+#[derive(Debug, Clone, Copy)]
+enum Wanted {
+    Ask,
+    Json,
+    Report,
+}
+
+/// A question with its scenario looked up.
+#[derive(Debug)]
+pub(crate) struct Question {
+    wanted: Wanted,
+    prepared: Prepared,
+}
+
+/// What comes of the beginning of a question.
+#[derive(Debug)]
+pub(crate) enum Begun {
+    /// There is nothing to compute.
+    Replied(Reply),
+    /// There is.
+    Prepared(Box<Question>),
+}
+
+/// Reads a question and looks up what its scenario names.
+pub(crate) fn begun(path: &str, body: &[u8], engine: &Engine) -> Begun {
+    let wanted = match path {
+        "/ask" => Wanted::Ask,
+        "/json" => Wanted::Json,
+        "/report" => Wanted::Report,
+        _ => return Begun::Replied(Reply::refused(NOT_HERE)),
     };
-    match path {
-        "/ask" => Reply::answered(JSON, engine.answer(&ask)),
-        "/json" => Reply::answered(JSON, engine.json(&ask)),
-        "/report" => Reply::answered(HTML, engine.report(&ask)),
-        _ => Reply::refused(NOT_HERE),
+    match serde_json::from_slice::<Ask>(body) {
+        Ok(ask) => Begun::Prepared(Box::new(Question { wanted, prepared: engine.prepare(ask) })),
+        Err(_) => {
+            let refusal = Refusal(StatusCode::BAD_REQUEST, "this is no question of the page");
+            Begun::Replied(Reply::refused(refusal))
+        }
+    }
+}
+
+impl Question {
+    /// Whether it takes a part of a second.
+    pub(crate) fn is_quick(&self) -> bool {
+        self.prepared.is_quick()
+    }
+
+    /// Computes the answer.
+    pub(crate) fn reply(self, engine: &Engine) -> Reply {
+        match self.wanted {
+            Wanted::Ask => Reply::answered(JSON, engine.answer(self.prepared)),
+            Wanted::Json => Reply::answered(JSON, engine.json(self.prepared)),
+            Wanted::Report => Reply::answered(HTML, engine.report(self.prepared)),
+        }
     }
 }

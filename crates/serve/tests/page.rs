@@ -26,6 +26,7 @@ fn server() -> SocketAddr {
             cameras: Default::default(),
             begin: SCENARIO.to_owned(),
             commit: "test".to_owned(),
+            limits: Default::default(),
         };
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
@@ -301,6 +302,54 @@ fn a_hundred_at_once_are_answered_beside_clients_that_never_finish() {
     drop(idle);
 }
 
+/// A question of hours: eight surroundings with priors.
+fn heavy() -> String {
+    let object = |i: usize| {
+        let material =
+            ["concrete", "asphalt", "grass-dry", "brick-red", "pmma", "steel-rough", "skin", "fabric"][i];
+        format!(
+            "[[environment]]\ntemperature = \"{} degC\"\nlighting = 0.1125\nmaterial = \"{material}\"\n",
+            5 + 7 * i
+        )
+    };
+    let surroundings: String = (0..8).map(object).collect();
+    SCENARIO
+        .replace("[[environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n", &surroundings)
+        .replace("20 cm^-1", "0.1 cm^-1")
+        + "[unknown]\npriors = { temperature = \"2 K\", lighting = 0.1 }\nnuisances = [\"temperature\", \"lighting\"]\n"
+}
+
+/// Ten of the heaviest take no more than their own places, and give those back when nobody waits for them any more.
+#[test]
+fn the_heaviest_keep_nobody_waiting() {
+    let body = json!({ "scenario": heavy() }).to_string();
+    let waiting: Vec<TcpStream> = (0..10)
+        .map(|_| {
+            let mut stream = TcpStream::connect(server()).unwrap();
+            let head =
+                format!("POST /ask HTTP/1.1\r\nHost: {}\r\nContent-Type: application/json\r\n", server());
+            write!(stream, "{head}Content-Length: {}\r\n\r\n{body}", body.len()).unwrap();
+            stream
+        })
+        .collect();
+    let beside = asked(&json!({ "scenario": SCENARIO }));
+    assert!(beside["answer"]["sentence"].is_string(), "{beside}");
+    for mut stream in &waiting {
+        stream.set_nonblocking(true).unwrap();
+        assert!(
+            stream.read(&mut [0; 1]).is_err(),
+            "a question of hours was answered: the test shows nothing"
+        );
+    }
+    drop(waiting);
+    // One that is no quick one, with four surroundings, gets the place that they had.
+    let object = "[[environment]]\ntemperature = \"10 degC\"\nlighting = 0.1\n";
+    let other = asked(
+        &json!({ "scenario": SCENARIO.replace("[alternatives]", &(object.repeat(3) + "[alternatives]")) }),
+    );
+    assert!(other["answer"]["sentence"].is_string(), "{other}");
+}
+
 #[test]
 fn only_this_machine_is_listened_to() {
     let engine = Engine {
@@ -308,6 +357,7 @@ fn only_this_machine_is_listened_to() {
         cameras: Default::default(),
         begin: String::new(),
         commit: String::new(),
+        limits: Default::default(),
     };
     let Ok(listener) = TcpListener::bind("0.0.0.0:0") else {
         return println!("skipped: no address but this machine's own");

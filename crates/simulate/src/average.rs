@@ -164,6 +164,7 @@ impl AverageScene<'_> {
     }
 
     fn evaluate(&self, jacobian: &mut Jacobian<'_>, class: usize, state: &State, of: &[Parameter]) {
+        hadar::stop::check();
         let Pair { emissivity, alternative, .. } = self.pair;
         let (own, other) = if class == 0 { (emissivity, alternative) } else { (alternative, emissivity) };
         jacobian.evaluate(own, other, state, of, self.lighting_total_known);
@@ -209,6 +210,7 @@ impl AverageScene<'_> {
     }
 
     fn node(&self, jacobian: &Jacobian<'_>, widths: &[f64], middle: &[f64]) -> Node {
+        hadar::stop::check();
         let kappa = self.counts_per_radiance;
         let means: Vec<f64> = jacobian.signal().iter().map(|signal| (signal * kappa).max(DARK)).collect();
         let mut node = Node {

@@ -118,6 +118,7 @@ impl RatioDraws {
     pub fn values(&self, seed: u64, stream: u64, trials: usize) -> Vec<f64> {
         let mut values = vec![0.0; trials];
         values.par_chunks_mut(VALUES).enumerate().for_each(|(block, values)| {
+            hadar::stop::check();
             let mut rng = generator(seed, stream.wrapping_add(block as u64));
             let mut counts = Vec::new();
             values.iter_mut().for_each(|value| *value = self.draw(&mut rng, &mut counts));

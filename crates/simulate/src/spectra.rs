@@ -65,6 +65,7 @@ impl LabelledSpectra {
         }
         let mut counts = vec![0.0; bands * classes * spectra as usize];
         counts.par_chunks_mut(bands * classes).enumerate().for_each(|(i, chunk)| {
+            hadar::stop::check();
             for (class, spectrum) in chunk.chunks_mut(bands).enumerate() {
                 draw_one(draws, class, range.start + i as u64, seed, spectrum);
             }

@@ -320,6 +320,7 @@ impl ThermometryScene<'_> {
             .map_init(
                 || (workspace.clone(), vec![0.0; draws.bands()]),
                 |(workspace, counts), trial| {
+                    hadar::stop::check();
                     let mut rng = generator(run.seed, first.wrapping_add(trial as u64));
                     draws.draw_into(&mut rng, counts);
                     outcome(workspace, &mut rng, counts)

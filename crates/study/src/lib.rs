@@ -19,6 +19,7 @@
 mod air;
 pub mod air_ranging;
 mod bands;
+pub mod budget;
 pub mod calibrate;
 mod camera;
 mod camera_bands;

@@ -1,8 +1,16 @@
 //! Work that keeps something of every pixel, refused where the machine has no memory for it.
 
 use hadar::error::{Error, Result};
+use hadar::stop;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::Duration;
 
+/// Who waits for memory looks so often whether his work is still wanted.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Most bytes that this process may take.
+static MOST: AtomicU64 = AtomicU64::new(u64::MAX);
 /// The memory of this process.
 static MEMORY: Memory = Memory { promised: Mutex::new(0), returned: Condvar::new() };
 
@@ -50,7 +58,9 @@ impl Memory {
                 *promised += bytes;
                 return Ok(Promised { bytes, memory: self });
             }
-            promised = self.returned.wait(promised).unwrap_or_else(PoisonError::into_inner);
+            stop::check();
+            let waited = self.returned.wait_timeout(promised, LOOK);
+            promised = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
     }
 }
@@ -74,10 +84,29 @@ fn within(bytes: u64, free: u64, what: &str, instead: &str) -> Result<()> {
     Err(Error::malformed(found, instead))
 }
 
-/// Bytes that the system can give without swapping.
+/// Limits what this process may take in all; none: as much as there is.
+pub(super) fn limit(bytes: Option<u64>) {
+    MOST.store(bytes.unwrap_or(u64::MAX), Relaxed);
+}
+
+/// Bytes that the system can give without swapping, and that this process may still take.
 fn free() -> Option<u64> {
-    let told = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = told.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let available = told("/proc/meminfo", "MemAvailable:");
+    let allowed = match MOST.load(Relaxed) {
+        u64::MAX => None,
+        most => Some(most.saturating_sub(resident().unwrap_or(0))),
+    };
+    available.into_iter().chain(allowed).min()
+}
+
+/// Bytes of this process that are in memory, where the system says so (Linux does).
+pub(super) fn resident() -> Option<u64> {
+    told("/proc/self/status", "VmRSS:")
+}
+
+fn told(file: &str, name: &str) -> Option<u64> {
+    let told = std::fs::read_to_string(file).ok()?;
+    let line = told.lines().find_map(|line| line.strip_prefix(name))?;
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 

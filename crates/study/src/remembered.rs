@@ -9,7 +9,7 @@ use hadar::identifiability::nearest::{NearestDistance, StateRange};
 use hadar::scene::{State, Surroundings};
 use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Pairs that are kept at most; looking through more would take longer than computing one.
 const MOST: usize = 1000;
@@ -67,7 +67,8 @@ impl Remembered {
         compute: impl FnOnce() -> Result<PerPhoton>,
     ) -> Result<PerPhoton> {
         let Some(known) = self.of(scene) else { return compute() };
-        let Ok(mut found) = known.found.lock() else { return compute() };
+        // Who was stopped while he computed has left nothing.
+        let mut found = known.found.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = found.as_ref() {
             return Ok(found.clone());
         }
@@ -78,7 +79,7 @@ impl Remembered {
 
     /// What is known of a scene, or a place for it; none where there are too many.
     fn of(&self, scene: Scene) -> Option<Arc<Known>> {
-        let mut known = self.0.lock().ok()?;
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known.iter().rev().find(|known| known.scene == scene) {
             return Some(Arc::clone(found));
         }

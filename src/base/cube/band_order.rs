@@ -47,6 +47,7 @@ impl<S: Sample> Rows<S> for Ordered<S> {
     }
 
     fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        crate::stop::check();
         let mut own = Vec::new();
         let samples = self.cube.read(rows, &mut own)?;
         buffer.clear();

@@ -38,6 +38,7 @@ fn of_rows<S: Sample>(cube: &dyn Rows<S>) -> Result<MemoryCube<f64>> {
         .map_init(
             || (Vec::new(), vec![0.0; shape.bands()]),
             |(buffer, spectrum), (block, image)| {
+                crate::stop::check();
                 let first = block * height;
                 let samples = cube.read(first..first + image.len() / shape.columns(), buffer)?;
                 if let Some(error) = first_invalid(samples, first, shape) {

@@ -64,6 +64,18 @@ fn threads_of_its_own_are_stopped_with_it() {
 }
 
 #[test]
+fn a_pool_works_for_whom_it_is_lent_to() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+    let stop = Stop::new();
+    stop.now(Reason::Interrupted);
+    for lent in [true, false, true] {
+        let _lent = lent.then(|| stop.lend(&pool));
+        let sums = within(&stop, || pool.install(|| parallel::map(9, |i| sum(i as u64))));
+        assert_eq!(sums.is_err(), lent);
+    }
+}
+
+#[test]
 fn other_panics_are_other_peoples() {
     let stop = Stop::new();
     let panics = || resume_unwind(Box::new("on purpose"));

@@ -12,6 +12,8 @@ type Flags = &'static [&'static str];
 
 /// Of whatever answers.
 pub(super) const PRINTED: Flags = &["json", "stats", "threads", "quiet"];
+/// Of whatever may last.
+const LIMITS: Flags = &["time_limit", "memory_limit"];
 const REPORT: Flags = &["out", "format", "force"];
 const FOLDER: Flags = &["out", "force"];
 const MATERIALS: Flags = &["library", "only_library", "strict"];
@@ -23,31 +25,31 @@ const SET: Flags = &["set"];
 
 /// Every command that does something, by the words that name it, with the flags that it takes beside its own.
 const TAKEN: &[(&str, &[Flags])] = &[
-    ("size", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SKIP]),
-    ("identify", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
-    ("rule", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
-    ("range", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SEED, SKIP]),
-    ("decompose", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SKIP]),
-    ("library", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SEED]),
-    ("calibrate blackbody", &[PRINTED, REPORT, SET]),
-    ("calibrate response", &[PRINTED, REPORT, SET]),
-    ("calibrate noise", &[PRINTED, REPORT, SET]),
-    ("calibrate stripes", &[PRINTED, REPORT, SET]),
-    ("render", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SEED]),
-    ("simulate", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
-    ("sweep", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
-    ("reproduce", &[PRINTED, REPORT, &["library", "strict"], SEED]),
-    ("accuracy", &[PRINTED, REPORT, SEED]),
+    ("size", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SKIP]),
+    ("identify", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("rule", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("range", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, SEED, SKIP]),
+    ("decompose", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, SKIP]),
+    ("library", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, SEED]),
+    ("calibrate blackbody", &[PRINTED, LIMITS, REPORT, SET]),
+    ("calibrate response", &[PRINTED, LIMITS, REPORT, SET]),
+    ("calibrate noise", &[PRINTED, LIMITS, REPORT, SET]),
+    ("calibrate stripes", &[PRINTED, LIMITS, REPORT, SET]),
+    ("render", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, SEED]),
+    ("simulate", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("sweep", &[PRINTED, LIMITS, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("reproduce", &[PRINTED, LIMITS, REPORT, &["library", "strict"], SEED]),
+    ("accuracy", &[PRINTED, LIMITS, REPORT, SEED]),
     ("materials list", &[PRINTED, MATERIALS]),
     ("materials show", &[PRINTED, MATERIALS]),
-    ("materials plot", &[PRINTED, REPORT, MATERIALS]),
-    ("materials import", &[PRINTED, FOLDER, &["strict"]]),
+    ("materials plot", &[PRINTED, LIMITS, REPORT, MATERIALS]),
+    ("materials import", &[PRINTED, LIMITS, FOLDER, &["strict"]]),
     ("cameras list", &[PRINTED, CAMERAS]),
     ("cameras show", &[PRINTED, CAMERAS]),
     ("cameras compare", &[PRINTED, CAMERAS]),
-    ("serve", &[MATERIALS, CAMERAS, &["threads", "quiet"]]),
+    ("serve", &[LIMITS, MATERIALS, CAMERAS, &["threads", "quiet"]]),
     ("diff", &[&["json", "quiet"]]),
-    ("verify", &[&["json", "threads", "quiet"]]),
+    ("verify", &[&["json", "threads", "quiet"], LIMITS]),
     ("completions", &[]),
     ("man", &[FOLDER, &["quiet"]]),
     ("explain", &[&["json"]]),

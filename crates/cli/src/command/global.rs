@@ -17,6 +17,7 @@ use hadar_report::json;
 use hadar_report::manifest::{Input, Provenance, answer_json, sha256};
 use hadar_report::text::{self, with_settings};
 use hadar_scenario::{Scenario, Setting, Written};
+use hadar_study::budget::{self, Limits};
 use hadar_study::warning::Warning;
 use hadar_study::{Condition, OwnCameras, Study};
 use serde_json::Value;
@@ -25,6 +26,7 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
 /// Flags that several commands have; which of them a command takes is said in one table.
 #[derive(Debug, Clone, Args)]
@@ -67,6 +69,16 @@ pub struct Global {
     /// Number of threads (default: all cores); the result does not depend on it
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
+    /// Stop after this time, as 90 s or 5 min, with nothing written and exit code 1. What is known to take longer is refused at once
+    #[arg(long, value_name = "DURATION", value_parser = time)]
+    time_limit: Option<Duration>,
+    /// Stop where the program has taken more memory than this, as 500 MB or 2 GB (watched on Linux); what is known to take more is
+    /// refused at once
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
+    memory_limit: Option<u64>,
+    /// Both of them.
+    #[arg(skip)]
+    pub(super) limits: Limits,
     /// Say on stderr what was computed, what was not, and why (with --json always under `stats`)
     #[arg(long)]
     pub(super) stats: bool,
@@ -120,6 +132,7 @@ impl Remade {
 impl Global {
     /// What was given, in the first of the places in which it is; else its default.
     pub(super) fn of(places: [&ArgMatches; 2]) -> Self {
+        let (time_limit, memory_limit) = (one(places, "time_limit"), one(places, "memory_limit"));
         Self {
             json: yes(places, "json"),
             out: one(places, "out"),
@@ -133,6 +146,9 @@ impl Global {
             skip_uncovered: yes(places, "skip_uncovered"),
             seed: one(places, "seed").unwrap_or(1),
             threads: one(places, "threads"),
+            time_limit,
+            memory_limit,
+            limits: Limits { time: time_limit, memory_bytes: memory_limit },
             stats: yes(places, "stats"),
             no_skip: yes(places, "no_skip"),
             quiet: yes(places, "quiet"),
@@ -319,6 +335,7 @@ impl Global {
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
         let study = Study::new_skipping(&scenario, &self.library()?, self.skipping())?;
+        self.limits.admit(study.takes(), rayon::current_num_threads())?;
         self.inputs_are_safe()?;
         Ok(study)
     }
@@ -395,6 +412,16 @@ fn yes(places: Places<'_>, id: &str) -> bool {
 /// A value given to --set.
 fn setting(text: &str) -> std::result::Result<Setting, String> {
     Setting::parse(text, "--set").map_err(|error| error.to_string())
+}
+
+/// A time given to --time-limit.
+fn time(text: &str) -> std::result::Result<Duration, String> {
+    budget::time(text).map_err(|error| error.to_string())
+}
+
+/// A size given to --memory-limit.
+fn memory(text: &str) -> std::result::Result<u64, String> {
+    budget::size(text).map_err(|error| error.to_string())
 }
 
 /// The code of a condition given to a flag.

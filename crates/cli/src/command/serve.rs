@@ -29,6 +29,7 @@ pub(super) fn run(args: &ServeArgs, global: &Global) -> Result<ExitCode> {
         cameras: OwnCameras::from_files(&global.cameras)?,
         begin,
         commit: provenance::COMMIT.to_owned(),
+        limits: global.limits,
     };
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).map_err(|error| {
         let found = format!("port {} of 127.0.0.1 cannot be taken ({})", args.port, error.kind());

@@ -10,6 +10,7 @@ use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
 use hadar::inputs::{self, Held, inputs_of};
+use hadar::stop::unless_it_panics;
 use hadar_formats::hash;
 use hadar_report::bundle::About;
 use hadar_report::json;
@@ -21,7 +22,6 @@ use hadar_study::Remembered;
 use hadar_study::sweep::{Asking, Axis, Cases, Cell, Plan, Question, Record};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{BuildHasher as _, RandomState};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -141,15 +141,14 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
     let stats = Mutex::new(Work::default());
     let answered_anew = |row: usize| -> Result<Entry> {
         let written = file.with(plan.settings(row));
-        let (answer, read) =
-            inputs_of(|| catch_unwind(AssertUnwindSafe(|| question.answer(&written, &asking))));
+        let (answer, read) = inputs_of(|| unless_it_panics(|| question.answer(&written, &asking)));
         let outcome = match answer {
-            Ok(Ok(answer)) => {
+            Some(Ok(answer)) => {
                 stats.lock().unwrap_or_else(PoisonError::into_inner).add(&answer.work);
                 Ok(answer.record)
             }
-            Ok(Err(error)) => Err(error.to_string()),
-            Err(_) => Err("the program failed in this row; report this as a bug".to_owned()),
+            Some(Err(error)) => Err(error.to_string()),
+            None => Err("the program failed in this row; report this as a bug".to_owned()),
         };
         Entry::new(keys.get(row).cloned().unwrap_or_default(), &read, outcome)
     };

@@ -49,6 +49,7 @@ mod shell;
 mod simulate;
 mod spectra;
 mod stand_in;
+mod stopped;
 mod sweep;
 mod vectors;
 mod verify;

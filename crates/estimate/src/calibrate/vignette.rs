@@ -131,6 +131,7 @@ pub fn subtracted(cube: &[f64], reference: &[f64], eta: &[f64], filters: usize) 
         .zip(cube.par_chunks(filters).zip(reference.par_chunks(filters)))
         .zip(eta)
         .for_each(|((out, (scene, reference)), eta)| {
+            hadar::stop::check();
             for ((out, scene), reference) in out.iter_mut().zip(scene).zip(reference) {
                 *out = (scene - reference) / eta;
             }

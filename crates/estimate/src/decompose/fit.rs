@@ -57,6 +57,7 @@ pub(super) fn fit(
     let mut last: Option<Step> = None;
     let mut looks = 0;
     loop {
+        hadar::stop::check();
         let mixture = &state.mixture[..model.vertices];
         sums(model, Asked { m, shifted, temperature_k: state.temperature_k, mixture }, at);
         looks += 1;

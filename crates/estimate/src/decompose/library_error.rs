@@ -286,6 +286,7 @@ impl Workplace {
         let mut best: Option<Fit> = None;
         let mut looks = 0;
         loop {
+            hadar::stop::check();
             look(self, model, modes, m, shifted, &state, to);
             looks += 1;
             let mut next = state;

@@ -229,6 +229,7 @@ impl Task {
 
     /// Fits what no bound excludes; deviances with the handicap of the prior.
     fn fit_all(&self, room: &mut Room, spared: &mut Spared) {
+        hadar::stop::check();
         let Room { sums, workplace, screened, counts, shifted, bounds, fits, .. } = room;
         fits.clear();
         bounds.clear();
@@ -329,6 +330,7 @@ impl Task {
 
     /// A start where no space of few dimensions holds the material: the best of some temperatures, each with its best mixture.
     fn scan(&self, kind: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
+        hadar::stop::check();
         let model = &self.model;
         let [low, high] = model.range_k;
         let mut best = (f64::INFINITY, State::at(low));

@@ -36,6 +36,7 @@ pub fn widen(setting: &Setting<'_>, maps: &mut Maps, together: &[f64]) -> Result
     let row = tangents.of_temperature();
     let Maps { material, temperature_k, temperature_sigma_k, lighting, .. } = maps;
     let one = |(tangent, lit): &mut (Tangent, Vec<f64>), (i, sigma_k): (usize, &mut f32)| {
+        hadar::stop::check();
         if material[i] == NO_MATERIAL || !sigma_k.is_finite() {
             return;
         }

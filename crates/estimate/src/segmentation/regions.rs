@@ -45,7 +45,9 @@ pub(super) fn segment(material: &[u16], columns: usize, categories: &Categories)
     let mut decided: Vec<Option<u8>> = vec![None; count];
     for wait in [true, false] {
         for _ in 0..ROUNDS {
+            hadar::stop::check();
             let say = |one: usize| {
+                hadar::stop::check();
                 let border = Border::of(&border[starts[one]..starts[one + 1]], &decided);
                 decided[one].or_else(|| decision(of_region[one], &border, wait))
             };

@@ -31,6 +31,7 @@ pub fn smoothed(category: &[u8], columns: usize) -> Result<Vec<u8>> {
     let reach = REACH as isize;
     let mut out = vec![0; category.len()];
     out.par_chunks_mut(columns).enumerate().for_each(|(row, out)| {
+        hadar::stop::check();
         // The rows of the window, each with its mirrored ends.
         let padded: Vec<Vec<u8>> = (-reach..=reach)
             .map(|down| {

@@ -226,6 +226,7 @@ impl Information {
             .map(|(pixels, chi)| {
                 let mut sum = Self::none(radiometry.used.len());
                 for (pixel, chi) in pixels.iter().zip(chi) {
+                    hadar::stop::check();
                     sum.add(&look(pixel), if *chi > far { far / chi } else { 1.0 });
                 }
                 sum

@@ -67,11 +67,13 @@ fn square(a: &[f64], b: &[f64]) -> f64 {
 
 /// k-means++.
 fn seeds(points: &[f64], coordinates: usize, count: usize, random: &mut ChaCha8Rng) -> Vec<f64> {
+    hadar::stop::check();
     let all = points.len() / coordinates;
     let point = |i: usize| &points[i * coordinates..][..coordinates];
     let mut centres = point(random.random_range(0..all)).to_vec();
     let mut near: Vec<f64> = (0..all).map(|i| square(point(i), &centres)).collect();
     while centres.len() < count * coordinates {
+        hadar::stop::check();
         let total: f64 = near.iter().sum();
         let mut left = random.random_range(0.0..1.0) * total;
         // Where all points lie on centres any will do.
@@ -101,8 +103,10 @@ fn lloyd(points: &[f64], coordinates: usize, mut centres: Vec<f64>) -> Means {
     let mut group: Vec<usize> = Vec::new();
     let mut inertia = f64::INFINITY;
     for _ in 0..STEPS {
+        hadar::stop::check();
         let found: Vec<(usize, f64)> = points
             .par_chunks(coordinates * CHUNK)
+            .inspect(|_| hadar::stop::check())
             .flat_map_iter(|chunk| chunk.chunks(coordinates).map(|point| nearest(point, &centres)))
             .collect();
         let mut now: Vec<usize> = found.iter().map(|one| one.0).collect();

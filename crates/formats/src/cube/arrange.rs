@@ -93,6 +93,7 @@ pub(super) fn whole<S: Sample>(
             Axis::Bands => part.bands = first..first + count,
         }
         samples.par_chunks_mut(TILE * shape.row_len()).enumerate().for_each(|(tile, rows)| {
+            hadar::stop::check();
             part.put(tile * TILE, rows, shape);
         });
     }

@@ -39,6 +39,7 @@ impl<S: Sample> Blocks<S> {
         samples: &mut [S],
         gather: impl Fn(&Range<usize>, &mut [S]) -> Result<()>,
     ) -> Result<()> {
+        hadar::stop::check();
         let len = self.shape.row_len();
         for (row, out) in rows.zip(samples.chunks_exact_mut(len)) {
             let block = self.block(row / self.height, &gather)?;

@@ -79,6 +79,7 @@ impl<V: Value> NpyRows<V> {
     /// # Errors
     /// Rows that are none; a file that cannot be read.
     pub fn read(&self, rows: Range<usize>) -> Result<Vec<V>> {
+        hadar::stop::check();
         if rows.start > rows.end || rows.end > self.rows {
             let found = format!("rows {} to {} of a map", rows.start, rows.end);
             return Err(Error::malformed(found, format!("the map has {} rows", self.rows)));

@@ -134,6 +134,7 @@ impl<S: Sample> Rows<S> for RawCube<S> {
     }
 
     fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        hadar::stop::check();
         let shape = self.raw.shape;
         let samples = room(&rows, shape, buffer)?;
         let gather = |rows: &Range<usize>, samples: &mut [S]| {

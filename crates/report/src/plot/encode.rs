@@ -148,6 +148,7 @@ impl<W: Write> Data<W> {
 
     /// The next row. White ground and flat colours: whole rows repeat, which a filter would hide from the compressor.
     fn row(&mut self, bytes: &[u8]) -> Result<()> {
+        hadar::stop::check();
         if self.rows_left == 0 || bytes.len() != self.row_bytes {
             return Err(failure(&"more or fewer pixels than the image has"));
         }
@@ -157,6 +158,7 @@ impl<W: Write> Data<W> {
     }
 
     fn compress(&mut self, mut bytes: &[u8], flush: TDEFLFlush) -> Result<()> {
+        hadar::stop::check();
         loop {
             let held = &mut self.held;
             let (status, used) = compress_to_output(&mut self.compressor, bytes, flush, |out| {

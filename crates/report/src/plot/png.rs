@@ -94,6 +94,7 @@ fn bar(from: Point, to: Point, width: f64) -> Rect {
 }
 
 fn fill(canvas: &mut Canvas, area: &Rect, colour: Colour) {
+    hadar::stop::check();
     let whole = |x: f64, y: f64| ((x * SCALE).round() as i32, (y * SCALE).round() as i32);
     canvas.fill(whole(area.left, area.top), whole(area.right, area.bottom), colour);
 }
@@ -116,5 +117,6 @@ fn image(canvas: &mut Canvas, area: &Rect, columns: usize, pixels: &[(u8, u8, u8
 }
 
 fn blend(canvas: &mut Canvas, mask: &mut Mask, colour: Colour) {
+    hadar::stop::check();
     mask.drain(|pixel, part| canvas.dot(pixel, colour, part));
 }

@@ -39,6 +39,7 @@ impl Confusion {
             .map_init(
                 || classifier.judge(),
                 |judge, (counts, labels)| {
+                    hadar::stop::check();
                     let (mut part, mut scores) = (Self::empty(classes), vec![0.0; classes]);
                     for (counts, &label) in counts.chunks_exact(bands).zip(labels) {
                         part.judge(judge.as_mut(), counts, label, &mut scores);

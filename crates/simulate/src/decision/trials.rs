@@ -58,6 +58,7 @@ impl Test<'_> {
         let mut outcome = Trials::default();
         let (mut counts, mut scores) = (vec![0.0; self.draws.bands()], vec![0.0; self.rule.classes()]);
         for _ in 0..trials {
+            hadar::stop::check();
             self.draws.draw_into(&mut rng, &mut counts);
             outcome.unconverged += u64::from(!judge.score(&counts, &mut scores));
             outcome.decide(&scores);

@@ -249,6 +249,7 @@ impl Place<'_> {
 
     /// Gauss–Newton.
     fn refine(&self, weights: &[Chunk], start: f64) -> Match {
+        hadar::stop::check();
         let (mut shift, mut sums) = (start, self.sums(weights, start));
         for _ in 0..STEPS {
             if sums.information.is_nan() || sums.information <= 0.0 {

@@ -200,6 +200,7 @@ impl MatchingTrials {
             .map_init(
                 || self.workspace(),
                 |workspace, trial| {
+                    hadar::stop::check();
                     let mut readings = std::mem::take(&mut workspace.readings);
                     let noisy = if self.noisy == Noisy::Both { 2 } else { 1 };
                     for (view, (draws, readings)) in

@@ -116,6 +116,7 @@ impl LightMap {
 
     /// What a node of the ground sees.
     fn exact(&self, scene: &Scene, row: usize, column: usize, room: &mut Room, node: &mut [Vector]) {
+        hadar::stop::check();
         let [row, column] = [row, column].map(|i| i as f64 * self.step);
         let direction = self.camera.direction(self.first[0] + column, self.first[1] + row);
         if direction[1] >= 0.0 {

@@ -258,6 +258,7 @@ impl Tracer<'_> {
         let mut roads: Vec<_> = (0..samples).map(|i| self.road(y + offset(i))).collect();
         let (mut mixture, mut across, mut places) = (Mixture::default(), Vec::new(), Vec::new());
         for column in 0..columns {
+            hadar::stop::check();
             let x = column as f64;
             let solids = candidates(&self.outlines, x, y);
             across.clear();
@@ -347,6 +348,7 @@ impl Tracer<'_> {
     /// Adds the rays of a pixel, side by side on each face: how it is lit is taken at the middle of what they meet there, since form
     /// factors vary over decimetres; how it is turned, at each ray.
     fn shade(&self, rays: &mut [Met], weight: f64, mixture: &mut Mixture, room: &mut Room) {
+        hadar::stop::check();
         let mut left = rays;
         while let Some(&first) = left.first() {
             let flat =

@@ -131,6 +131,7 @@ impl View {
     }
 
     fn fill(&self, part: Part, factor: f64, row: &MixedRow, out: &mut [f64]) {
+        hadar::stop::check();
         let bands = self.basis.bands;
         // Written before it is read: fresh memory that is read first is the system's page of zeros, copied at the first write.
         out.fill(0.0);

@@ -170,6 +170,7 @@ pub(super) fn beside(
     let rows = a.par_chunks_mut(per_row).zip(b.par_chunks_mut(per_row)).zip(c.par_chunks_mut(per_row));
     let start = || (Vec::new(), vec![Vec::new(); others.len()], vec![0.0; others.len()]);
     rows.enumerate().try_for_each_init(start, |(own, beside, values), (row, ((a, b), c))| {
+        hadar::stop::check();
         row_of(scene, row, true, own).map_err(|error| place(0, error))?;
         for (k, (cube, samples)) in others.iter().zip(beside.iter_mut()).enumerate() {
             row_of(cube, row, false, samples).map_err(|error| place(k + 1, error))?;

@@ -294,6 +294,7 @@ fn largest(sighted: &Sighted) -> Result<Found> {
     let wide: Vec<bool> = all(&sighted.ranges).iter().map(|[low, high]| low < high).collect();
     let mut step = FIRST_STEP;
     while step >= LAST_STEP && best.sigma_k.is_finite() {
+        hadar::stop::check();
         let mut higher = false;
         for (dimension, _) in wide.iter().enumerate().filter(|(_, wide)| **wide) {
             for way in [-step, step] {

@@ -16,6 +16,7 @@ mod search_inputs;
 mod sight;
 mod sizing;
 mod solved;
+mod stopped;
 mod trade_offs;
 mod units;
 

@@ -117,6 +117,7 @@ impl EmissionImage<'_> {
             .map_init(
                 || Work::new(differentiator.clone(), columns * bands),
                 |work, ((counts, (emission, scattered)), temperature_k)| {
+                    crate::stop::check();
                     work.differentiator.apply(counts, bands, &mut work.slopes)?;
                     work.differentiator.apply(scattered, bands, &mut work.scattered)?;
                     let pixel = |x: usize| {

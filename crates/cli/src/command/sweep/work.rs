@@ -2,13 +2,15 @@
 
 use hadar::error::{Error, Result};
 use hadar::parallel::STACK;
+use hadar::stop;
+use std::panic::resume_unwind;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Does `count` jobs, each on a thread of its own; fewer jobs than threads share these out among themselves. `done` is told how many.
 ///
 /// # Errors
-/// The first that a job gives, which ends the work.
+/// The first that a job gives, which ends the work. A job that unwinds ends it too, with its own payload.
 pub(super) fn each(
     count: usize,
     job: &(dyn Fn(usize) -> Result<()> + Sync),
@@ -30,6 +32,7 @@ pub(super) fn each(
             if index >= count {
                 return;
             }
+            stop::check();
             match job(index) {
                 Ok(()) => done(finished.fetch_add(1, Ordering::Relaxed) + 1, count),
                 Err(error) => fail(error),
@@ -47,7 +50,10 @@ pub(super) fn each(
             .filter_map(|_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, worker).ok())
             .collect();
         worker();
-        drop(started);
+        // A row that was stopped stops the sweep.
+        for other in started {
+            other.join().unwrap_or_else(|payload| resume_unwind(payload));
+        }
     });
     match failure.into_inner() {
         Ok(Some(error)) => Err(error),

@@ -28,6 +28,7 @@ impl Destriped {
         };
         let mut all = vec![S::zeroed(); shape.len()];
         all.par_chunks_mut(length).enumerate().try_for_each_init(Vec::new, |buffer, (row, own)| {
+            hadar::stop::check();
             own.copy_from_slice(cube.read(row..row + 1, buffer)?);
             match self.axis {
                 Axis::Rows => put(own, of_line.get(row).copied().unwrap_or_default()),

@@ -2,7 +2,7 @@ use super::super::model::{Light, Setting};
 use super::*;
 use hadar::planck::photon_radiance;
 use hadar::spectrum::Bands;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// Cost, slope and information against matrices that are written out and factored whole.
 #[test]

@@ -39,6 +39,7 @@ const LARGEST_K: f64 = 1e3;
 /// Temperature and deviation of every pixel with its neighbours, K.
 pub(super) fn levelled(pixels: &[Pixel], columns: usize, step_k: f64) -> Vec<(f64, f64)> {
     let together = |i: usize| {
+        hadar::stop::check();
         let Some(own) = pixels.get(i) else { return (f64::NAN, f64::NAN) };
         let (mut precision, mut sum) = (0.0, 0.0);
         for (place, j) in beside(i, columns, pixels.len(), &EIGHT) {

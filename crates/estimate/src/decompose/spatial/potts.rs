@@ -43,6 +43,7 @@ impl Beliefs {
         let mut heard: Vec<Heard> = vec![[1.0; 4]; kept.len()];
         let (mut sweeps, mut settled) = (0, false);
         while !settled && sweeps < MOST_SWEEPS {
+            hadar::stop::check();
             let rows: Vec<(Vec<Heard>, f32)> = parallel::map(pixels.div_ceil(columns.max(1)), |row| {
                 let (mut next, mut change) = (Vec::new(), 0.0f32);
                 for i in row * columns..((row + 1) * columns).min(pixels) {

@@ -54,6 +54,7 @@ pub(super) fn minimised(kept: &Kept, columns: usize, penalty: f64) -> Found {
 
 /// The candidate and temperature of least cost of pixel `i`.
 fn least(kept: &Kept, map: &[f64], i: usize, columns: usize, penalty: f64) -> (usize, f64) {
+    hadar::stop::check();
     let mut window: Vec<f64> = beside(i, columns, map.len(), &EIGHT)
         .map(|(_, j)| j)
         .chain([i])

@@ -34,6 +34,7 @@ impl<S: Sample> Rows<S> for Packed<S> {
     }
 
     fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        hadar::stop::check();
         let samples = room(&rows, self.shape, buffer)?;
         self.blocks.read(rows, samples, |rows: &Range<usize>, block: &mut [S]| {
             if self.order == Axes::default() {

@@ -2,13 +2,13 @@
 
 use super::source::step;
 use hadar::error::{Error, Result};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use hadar::stop::unless_it_panics;
 
 /// What the reader of the format does, without its panics: there are files that it was not made for, and a user's is only
 /// refused.
 pub(super) fn sound<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
     step();
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(damaged("its parts do not fit together")))
+    unless_it_panics(work).unwrap_or_else(|| Err(damaged("its parts do not fit together")))
 }
 
 /// A file that cannot be read.

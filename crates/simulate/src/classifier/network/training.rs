@@ -144,6 +144,7 @@ pub(super) fn train<T: Real>(
     while epochs < settings.epochs && epochs - best.2 < settings.patience {
         order.shuffle(&mut rng);
         for batch in order.chunks(settings.batch) {
+            hadar::stop::check();
             each(parallel, &mut workspaces, batch, |workspace, chosen| {
                 training.load(chosen, &mut workspace.x[0]);
                 workspace.backward(layers, &weights, training.labels(chosen, &mut [0; LANES]));
@@ -198,6 +199,7 @@ fn loss<T: Real>(
 ) -> f64 {
     let mut sum = 0.0;
     for batch in all.chunks(workspaces.len() * LANES) {
+        hadar::stop::check();
         each(parallel, workspaces, batch, |workspace, chosen| {
             set.load(chosen, &mut workspace.x[0]);
             workspace.forward(layers, weights);
