@@ -6,6 +6,10 @@ import shutil
 from . import inputs, mutate, oracle
 
 
+TIME_LIMIT = ["--time-limit", "20 s"]
+MEMORY_LIMIT = ["--memory-limit", "2 GB"]
+
+
 def sentinel(folder):
     """A tree that no run may touch, and that stands for the rest of the disk."""
     (folder / "sub").mkdir(parents=True)
@@ -14,6 +18,15 @@ def sentinel(folder):
         path.write_text(content)
         path.chmod(mode)
         os.utime(path, (1_500_000_000, 1_500_000_000))
+
+
+def prepare(context):
+    """Which commands can be held to a time and a memory, as everybody holds them who asks for files of others."""
+    context.limited = {}
+    for command, _ in inputs.COMMANDS:
+        depth = 2 if command[0] in ("materials", "cameras", "calibrate") else 1
+        said = oracle.run([context.hadar, *command[:depth], "--help"], context.pool).stdout
+        context.limited[command[0]] = [*TIME_LIMIT, *MEMORY_LIMIT] if TIME_LIMIT[0] in said else []
 
 
 def case(rng, context, folder):
@@ -34,6 +47,7 @@ def case(rng, context, folder):
         words += ["--out", "out"]
     if command[0] not in ("materials", "cameras"):
         words += ["--threads", "1"]
+    words += context.limited[command[0]]
     before, own = oracle.snapshot(outside), oracle.snapshot(work)
     environment = {"HOME": str(outside), "TMPDIR": str(temporary)}
     if as_json:

@@ -4,6 +4,7 @@ import dataclasses
 import hashlib
 import json
 import math
+import multiprocessing
 import os
 import re
 import resource
@@ -12,8 +13,8 @@ import stat
 import subprocess
 import tempfile
 
-# Processor time of a run, s: a run of what is small takes some tenths of one.
-LONGEST_S = 20
+# Processor time of a run, s: a run of what is small takes some tenths of one, and none more than it is allowed by --time-limit.
+LONGEST_S = 30
 # A run that waits, as on a pipe or a lock, takes no processor time at all; one on a busy machine takes little.
 LONGEST_WAIT_S = 30
 MOST_BYTES = 2 << 30
@@ -66,10 +67,17 @@ def run(words, cwd, env=None, limits=(), tracer=()):
                 os.killpg(process.pid, signal.SIGKILL)
             worked.append(now)
 
+        def stop(*_):
+            os.killpg(process.pid, signal.SIGKILL)
+            os._exit(1)
+
+        # Whoever ends the campaign ends what it has started.
+        usual = signal.signal(signal.SIGTERM, stop) if multiprocessing.parent_process() else signal.getsignal(signal.SIGTERM)
         signal.signal(signal.SIGALRM, look)
         signal.setitimer(signal.ITIMER_REAL, LONGEST_WAIT_S, LONGEST_WAIT_S)
         _, status, used = os.wait4(process.pid, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGTERM, usual)
         process.returncode = os.waitstatus_to_exitcode(status)
         read = lambda file: (file.seek(0), file.read())[1].decode("utf-8", "replace")  # noqa: E731
         return Outcome(process.returncode, read(out), read(err), used.ru_utime + used.ru_stime, used.ru_maxrss * 1024, bool(waited))

@@ -5,7 +5,7 @@ mod gathered;
 mod over;
 mod swept;
 
-pub use crate::words::sweep::text;
+pub use crate::words::sweep::{kept, text};
 pub use gathered::Gathered;
 pub use swept::Swept;
 

@@ -369,8 +369,7 @@ fn a_forged_row_is_not_believed() {
         }
     }
     let kept = folder.run(&[&arguments[..], &["--recompute", "2"]].concat());
-    let said =
-        "Of these 3 are of earlier runs or other shards; 2 of them were computed again, and are the same.";
+    let said = "3 rows are of earlier runs or other shards; 2 of them were computed again, and are the same.";
     assert!(kept.stdout.contains(said), "{}", kept.stdout);
     let usage = folder.run(&[&arguments[..], &["--recompute", "some"]].concat());
     assert_eq!(usage.code, 2);

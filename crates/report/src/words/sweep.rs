@@ -25,14 +25,6 @@ pub fn text(swept: &Swept) -> String {
         let _ = write!(text, ", {missing} are not there");
     }
     text.push_str(".\n");
-    if swept.kept > 0 {
-        let again = match (swept.recomputed, swept.kept) {
-            (0, _) => "none of them was computed again".to_owned(),
-            (again, all) if again == all => "all of them were computed again, and are the same".to_owned(),
-            (again, _) => format!("{again} of them were computed again, and are the same"),
-        };
-        let _ = writeln!(text, "Of these {} are of earlier runs or other shards; {again}.", swept.kept);
-    }
     let mut lines: Vec<(&str, String)> = Vec::new();
     for name in swept.drawn().into_iter().take(TOLD) {
         if let Some(said) = gathered.values(name).and_then(told) {
@@ -59,6 +51,18 @@ pub fn text(swept: &Swept) -> String {
         }
     }
     text
+}
+
+/// Which rows this run has taken over; nothing where it took none.
+#[must_use]
+pub fn kept(swept: &Swept) -> String {
+    let again = match (swept.recomputed, swept.kept) {
+        (_, 0) => return String::new(),
+        (0, _) => "none of them was computed again".to_owned(),
+        (again, all) if again == all => "all of them were computed again, and are the same".to_owned(),
+        (again, _) => format!("{again} of them were computed again, and are the same"),
+    };
+    format!("\n{} rows are of earlier runs or other shards; {again}.\n", swept.kept)
 }
 
 /// The extremes of numbers, the counts of yes and no.
