@@ -140,7 +140,8 @@ def failure(rng, context, folder, number):
     if context.tracer and rng.random() < 0.7:
         name, call, count, _ = context.points[number % len(context.points)]
         error = "ENOMEM" if call in MEMORY else rng.choice(ERRORS.get(call, OTHER_ERRORS))
-        when = f"{count}+" if rng.random() < 0.4 else f"{count}"
+        # A call that is interrupted is made again, for ever if it is interrupted for ever.
+        when = f"{count}+" if rng.random() < 0.4 and error != "EINTR" else f"{count}"
         how, tracer = f"{call} fails with {error}, number {when}", injected(context, call, f"error={error}:when={when}")
     else:
         how, env, limits = limit(rng)

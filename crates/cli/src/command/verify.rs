@@ -28,11 +28,13 @@ pub(super) fn run(args: &VerifyArgs, global: &Global) -> Result<ExitCode> {
     let stored = Stored::read(&folder)?;
     let (command, given) = read_again(stored.provenance()).map_err(|error| error.in_file(&folder))?;
     let scenario = scenario_of(stored.provenance());
-    let base = base(args, &folder, stored.provenance(), scenario.as_deref())?;
+    let base = base(args, &folder, &stored, scenario.as_deref())?;
     std::env::set_current_dir(&base)
         .map_err(|error| Error::file("give the command from", &base, error.kind()))?;
     // As it is, not as the report says.
+    let was = stored.provenance().inputs.first().and_then(|input| input.sha256.clone());
     let asked = scenario.as_deref().and_then(|path| sha256_of_file(path).ok().flatten());
+    let asked = asked.filter(|is| args.from.is_some() || Some(is) == was.as_ref());
     let scratch = Scratch::temporary()?;
     let made = scratch.place().join("report");
     let remade = Arc::new(Remade::new(
@@ -92,23 +94,20 @@ fn scenario_of(provenance: &Provenance) -> Option<PathBuf> {
     Some(if word == "-" { first.to_owned() } else { word.into() })
 }
 
-/// The folder in which the command was given: one in which the file of the question is as it was, else in which it is.
-fn base(
-    args: &VerifyArgs,
-    folder: &Path,
-    provenance: &Provenance,
-    scenario: Option<&Path>,
-) -> Result<PathBuf> {
+/// The folder in which the command was given: one in which the file of the question is as it was; of a report without a copy of it, else one
+/// in which it is.
+fn base(args: &VerifyArgs, folder: &Path, stored: &Stored, scenario: Option<&Path>) -> Result<PathBuf> {
     if let Some(from) = &args.from {
         return Ok(from.clone());
     }
     let here = std::env::current_dir()
         .map_err(|error| Error::file("find the current folder", Path::new("."), error.kind()))?;
     let Some(scenario) = scenario else { return Ok(here) };
-    let was = provenance.inputs.first().and_then(|input| input.sha256.clone());
+    let was = stored.provenance().inputs.first().and_then(|input| input.sha256.clone());
     let bases = || std::iter::once(here.as_path()).chain(folder.ancestors().skip(1));
     let of = |base: &Path| sha256_of_file(&base.join(scenario)).ok().flatten();
     let is_as_it_was = |base: &&Path| of(base).is_some_and(|hash| Some(hash) == was);
-    let found = bases().find(is_as_it_was).or_else(|| bases().find(|base| of(base).is_some()));
+    let any = || bases().find(|base| of(base).is_some() && stored.asked.is_none());
+    let found = bases().find(is_as_it_was).or_else(any);
     Ok(found.unwrap_or(&here).to_owned())
 }

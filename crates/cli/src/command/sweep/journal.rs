@@ -150,7 +150,6 @@ impl Journal {
             |error: std::io::Error| Error::file("write the rows of the sweep", &folder, told(&error));
         fs::create_dir_all(out).map_err(failed)?;
         let inside = Inside::open(out).and_then(|out| out.folder(FOLDER)).map_err(failed)?;
-        let report = inside.appended("report.lock").map_err(failed)?;
         let mut file = inside.appended(&format!("{shard}-of-{shards}.{ENDING}")).map_err(failed)?;
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => {
@@ -161,6 +160,7 @@ impl Journal {
             // Some file systems have no locks; two processes on one shard then do the same work twice.
             Ok(()) | Err(TryLockError::Error(_)) => {}
         }
+        let report = inside.appended("report.lock").map_err(failed)?;
         // After what a process that was killed left of a line, the next one begins on a line of its own.
         let mut last = [b'\n'];
         if file.seek(SeekFrom::End(-1)).is_ok() {
