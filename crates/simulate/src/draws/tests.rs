@@ -1,3 +1,5 @@
+#![allow(clippy::disallowed_methods, reason = "the arguments of a test are within the domain")]
+
 use super::*;
 use statrs::function::gamma::ln_gamma;
 
