@@ -42,6 +42,7 @@ impl ReadLibrary for Library {
         }
         let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
         for file in spectra::spectra_in(directory)? {
+            hadar::stop::check();
             match spectra::from_file(&file) {
                 Ok(materials) => sources.push((file, materials)),
                 Err(error) if self.is_strict() => return Err(error),

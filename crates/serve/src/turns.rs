@@ -19,7 +19,7 @@ use tokio::time::timeout;
 /// Quick questions that are computed at once.
 const QUICK: usize = 8;
 /// Time for one of them.
-const QUICK_TIME: Duration = Duration::from_secs(2);
+const QUICK_TIME: Duration = Duration::from_secs(10);
 /// Questions that are computed at once, and those of them that are just being stopped.
 pub(crate) const AT_ONCE: usize = 4 * QUICK;
 

@@ -73,6 +73,7 @@ impl Spectra<'_> {
 
     /// Whether all spectra are known over all of a band.
     fn cover(&self, band: &Band) -> bool {
+        hadar::stop::check();
         let air = self.air.map_or((0.0, f64::INFINITY), |air| air.table.range_cm1());
         air.0 <= band.low_cm1
             && band.high_cm1 <= air.1
@@ -81,6 +82,7 @@ impl Spectra<'_> {
 
     /// The signals that are integrated, at some nodes.
     fn signals(&self, scenario: &Scenario, nodes: &[f64]) -> Result<Vec<Vec<f64>>> {
+        hadar::stop::check();
         let emission = |temperature_k: f64| {
             let mut radiance = vec![0.0; nodes.len()];
             planck::photon_radiance_into(nodes, temperature_k, &mut radiance);

@@ -66,6 +66,7 @@ impl Study {
     /// # Errors
     /// A distance of which the air's table says nothing.
     pub(super) fn at_distance(&self, distance_m: f64) -> Result<Self> {
+        hadar::stop::check();
         let mut study = self.clone();
         study.scenario.target.distance_m = Some(distance_m);
         (study.bands, study.air) = study.received(study.camera.as_ref(), Some(distance_m))?;
@@ -90,6 +91,7 @@ impl Study {
         distance_m: Option<f64>,
         air: &[f64],
     ) -> View {
+        hadar::stop::check();
         self.view(camera, [Seen { bands, distance_m, air }; 2])
     }
 
@@ -125,6 +127,7 @@ impl Study {
         camera: Option<&Camera>,
         distance_m: Option<f64>,
     ) -> Result<(Bands, Vec<f64>)> {
+        hadar::stop::check();
         let bands =
             camera.map_or_else(|| self.open_bands.clone(), |camera| camera.received(&self.open_bands));
         let (Some(air), Some(distance_m)) = (&self.atmosphere, distance_m) else {

@@ -20,6 +20,7 @@ impl Surface {
     /// # Errors
     /// As [`Material::emissivity`].
     pub fn of(material: &Material, nodes_cm1: &[f64]) -> Result<Self> {
+        hadar::stop::check();
         let emissivity = material.emissivity(nodes_cm1)?;
         let flat = emissivity.windows(2).all(|pair| pair[0] == pair[1])
             && (emissivity.len() > 1 || material.provenance().basis == Basis::Constant);

@@ -99,6 +99,11 @@ fn nothing_that_is_changed_goes_unseen() {
         let after = [&before[..], b"# 1\n"].concat();
         fs::write(&path, &after).unwrap();
         is_seen(name, &format!("{name}: it was changed since"));
+        // Every kind of file there is, not every one.
+        if index % 4 != 0 && !["answer.txt", "scenario.toml", "report.html"].contains(&name) {
+            fs::write(&path, before).unwrap();
+            continue;
+        }
         let forged = hadar_report::manifest::sha256(&after);
         fs::write(&list, written.replace(file["sha256"].as_str().unwrap(), &forged)).unwrap();
         is_seen(name, &format!("{name}: made again it has another content"));

@@ -71,6 +71,7 @@ impl Discriminant {
         let means = DMatrix::from_iterator(bands, classes, scale.classes.iter().flatten().copied());
         let mut best: Option<(f64, Self)> = None;
         for &shrinkage in shrinkages {
+            hadar::stop::check();
             check::unit_interval("shrinkage", shrinkage)?;
             let Some(rule) = solve(&covariance, &means, shrinkage, freedom) else { continue };
             let constants = (0..classes).map(|c| -0.5 * rule.column(c).dot(&means.column(c))).collect();

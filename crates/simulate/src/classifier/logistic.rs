@@ -69,6 +69,7 @@ impl Logistic {
         let (mut ahead, mut best) = (weights.clone(), weights.clone());
         let (mut best_loss, mut best_step, mut momentum) = (f64::INFINITY, 0, 1.0_f64);
         for done in 0..STEPS {
+            hadar::stop::check();
             let (loss, _) = loss(&x_validation, validation.labels(), &weights);
             if loss < best_loss {
                 (best_loss, best_step) = (loss, done);
@@ -114,6 +115,7 @@ fn largest_eigenvalue(x: &DMatrix<f64>) -> f64 {
     let mut direction = DVector::from_fn(x.nrows(), |i, _| 1.0 + 0.1 * (i as f64).sin());
     let mut value = 1.0;
     for _ in 0..POWER {
+        hadar::stop::check();
         direction.unscale_mut(direction.norm().max(f64::MIN_POSITIVE));
         direction = x * x.tr_mul(&direction) / n;
         value = direction.norm();

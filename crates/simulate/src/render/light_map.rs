@@ -81,6 +81,7 @@ impl LightMap {
         let (map, surfaces) = (&*self, self.surfaces);
         let mut nodes = vec![[0.0; 3]; rows * columns * surfaces];
         nodes.par_chunks_mut(surfaces).enumerate().for_each_init(Room::default, |room, (i, node)| {
+            hadar::stop::check();
             if is_corner(i / columns, i % columns) {
                 map.exact(scene, i / columns, i % columns, room, node);
             }
@@ -101,6 +102,7 @@ impl LightMap {
             cells(row, down).iter().any(|y| cells(column, across).iter().any(|x| rough[y * across + x]))
         };
         nodes.par_chunks_mut(surfaces).enumerate().for_each_init(Room::default, |room, (i, node)| {
+            hadar::stop::check();
             let (row, column) = (i / columns, i % columns);
             if is_corner(row, column) {
                 return;

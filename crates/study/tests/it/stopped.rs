@@ -6,9 +6,11 @@ use hadar::demand::Skipping;
 use hadar::material::Library;
 use hadar::random::generator;
 use hadar::stop::{self, Stop};
-use hadar_scenario::Written;
-use hadar_study::Remembered;
+use hadar_scenario::{Scenario, Written};
+use hadar_simulate::classifier::Method;
+use hadar_simulate::experiment::Design;
 use hadar_study::sweep::{Asking, Question};
+use hadar_study::{PhotonLaw, Remembered, SimulationPlan, Study};
 use rand::RngExt as _;
 
 const SCENE: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"33 degC\"\n\
@@ -24,6 +26,20 @@ const RANGE: &str = "[scene]\nperson_temperature = \"33 degC\"\nperson_distance 
     sky_temperature = \"-15 degC\"\nsize = [24, 32]\n[bands]\nstart = \"720 cm^-1\"\nstop = \"1250 cm^-1\"\nstep = \"200 cm^-1\"\n\
     [camera]\nexposure = \"5 ms\"\npixel = \"180 um\"\nf_number = 1.0\nfocal_length = \"14 mm\"\nnoise_electrons = 3000\n\
     noise_exposure = \"5 ms\"\n[stereo]\nbaseline = \"0.2 m\"\nwindow = [5, 5]\n";
+
+/// Fewer spectra than a row of a sweep has, and no network.
+fn few() -> SimulationPlan {
+    let methods = vec![Method::LikelihoodRatio, Method::BestFits, Method::Discriminant, Method::Logistic];
+    SimulationPlan {
+        photons: vec![100.0],
+        law: PhotonLaw::Poisson,
+        camera_noise: false,
+        against: Vec::new(),
+        design: Design { per_class: 200, methods, seed: 1, level: 0.95, skip_spectra: false },
+        models: Vec::new(),
+        save_spectra: false,
+    }
+}
 
 #[test]
 fn whoever_is_stopped_leaves_nothing_half_done() {
@@ -52,7 +68,19 @@ fn whoever_is_stopped_leaves_nothing_half_done() {
                 voice: |_| String::new(),
             };
             let threads = stop.own_threads(1).unwrap();
-            let answer = || format!("{:?}", question.answer(&written, &asking).map(|answer| answer.record));
+            let answer = || match question {
+                Question::Simulate => {
+                    let study =
+                        Scenario::from_written(&written).and_then(|scenario| Study::new(&scenario, &library));
+                    format!(
+                        "{:?}",
+                        study
+                            .and_then(|study| study.simulate(&few(), &|_, _| ()))
+                            .map(|found| found.0.points)
+                    )
+                }
+                _ => format!("{:?}", question.answer(&written, &asking).map(|answer| answer.record)),
+            };
             stop::within(stop, || threads.install(answer))
         };
         let counting = Stop::at_check(0);

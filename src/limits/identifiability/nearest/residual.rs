@@ -217,6 +217,7 @@ impl<'a> Comparison<'a> {
 
     /// Bands of the target in which a state counts as good as nothing; `is_there`: it was the last one that was compared.
     pub(super) fn dark(&mut self, target: &Target<'_>, state: &State, is_there: bool) -> Vec<usize> {
+        crate::stop::check();
         if !is_there {
             self.separate(target, state, false);
         }
@@ -236,6 +237,7 @@ impl<'a> Comparison<'a> {
         place: usize,
         dark: &[usize],
     ) -> Option<f64> {
+        crate::stop::check();
         self.separate(target, state, true);
         let (column, own) = (self.surface.column(place), self.target.signal());
         let sum = |spectrum: &[f64]| dark.iter().map(|&w| spectrum[w]).sum::<f64>();

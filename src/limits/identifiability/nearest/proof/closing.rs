@@ -53,6 +53,7 @@ pub(super) struct Minimum<'m> {
 impl Minimum<'_> {
     /// √(y/s)/(s + y + reach) of every band.
     fn weight(&self) -> Vec<f64> {
+        crate::stop::check();
         let mut weight = vec![0.0; self.root.len()];
         weights_into(Weights {
             root: self.root,
@@ -66,6 +67,7 @@ impl Minimum<'_> {
 
     /// The least y.
     fn least_root(&self) -> f64 {
+        crate::stop::check();
         self.root.iter().copied().filter(|y| *y > 0.0).fold(f64::INFINITY, f64::min)
     }
 }
@@ -196,6 +198,7 @@ impl Columns<'_> {
 
     /// η, and K_j of every source of unknown temperature.
     fn loss(&self, pulled: &[[f64; 2]], shifted: &[f64]) -> Option<(f64, Vec<f64>)> {
+        crate::stop::check();
         let n = self.axes.len() as f64;
         let turn = (0..self.axes.len()).map(|j| self.turned(j) / self.own(j)).fold(0.0, f64::max);
         let share = (n.sqrt() * turn).clamp(1e-12, SHARE);
@@ -214,6 +217,7 @@ impl Columns<'_> {
     /// Better weights: a state nearer than the reach has ‖WΔN‖ ≤ D = (d + reach)·max√(y/s), and as ΔN is of few columns, no single
     /// band can have more of that than its share in these.
     fn weighed(&self, weight: &[f64], basis: &[Vec<f64>], turns: &[[Vec<f64>; 2]]) -> Option<Vec<f64>> {
+        crate::stop::check();
         let Minimum { root, other, reach, cost, .. } = *self.minimum;
         let bands = root.iter().zip(other).filter(|(_, s)| **s > 0.0);
         let largest = bands.map(|(y, s)| y / s).fold(0.0, f64::max).sqrt();
@@ -255,6 +259,7 @@ impl Columns<'_> {
     /// F of (1 − η)RᵀR − K, column by column, if that is positive semidefinite: K stands at the slopes alone, so that of R only
     /// the triangle that is left of them once all amplitudes are fitted changes.
     fn factor(&self, (share, loss): &(f64, Vec<f64>)) -> Option<Vec<Vec<f64>>> {
+        crate::stop::check();
         let amplitudes = self.lit.len();
         let root = (1.0 - share).sqrt();
         let mut factor: Vec<Vec<f64>> =
@@ -389,6 +394,7 @@ impl Columns<'_> {
 
     /// The least over all amplitudes, by search: where no temperature is unknown and columns may depend on each other.
     fn searched(&self, allowed: &Amplitudes, enough: f64) -> Closed {
+        crate::stop::check();
         let Minimum { amplitudes, spectra, cost, .. } = *self.minimum;
         let mut pieces = Pieces::default();
         let (n, lit) = (spectra.len(), self.lit.len());

@@ -152,6 +152,7 @@ impl Hull {
 
     /// The cheapest vertex joins, without a share, unless it is there already.
     fn join(&mut self, quadratic: &Quadratic) -> bool {
+        crate::stop::check();
         let n = self.vertex.len();
         let start = self.vertices.len();
         self.vertices.extend(self.vertex.iter().zip(&quadratic.origin).map(|(v, o)| v - o));
@@ -211,6 +212,7 @@ impl Hull {
     /// Shares of the vertices at the least of φ over their affine hull: with sides s = QR in F from the last of them, b,
     /// R w = −Qᵀ(Fb) − ½R⁻ᵀ(g·s).
     fn affine(&mut self, linear: &[f64]) {
+        crate::stop::check();
         let n = linear.len();
         let m = self.shares.len() - 1;
         let vertex = |i: usize| &self.vertices[i * n..(i + 1) * n];

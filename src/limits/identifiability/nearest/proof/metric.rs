@@ -35,6 +35,7 @@ impl Metric {
 
     /// About other counts.
     pub(super) fn put_about(&mut self, counts: &[f64], [root, own, noise]: [&[f64]; 3], reach: f64) {
+        crate::stop::check();
         self.weight.resize(root.len(), 0.0);
         self.shift.resize(root.len(), 0.0);
         let out = [&mut self.weight[..], &mut self.shift[..]];

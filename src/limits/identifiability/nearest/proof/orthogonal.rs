@@ -62,6 +62,7 @@ pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> (Vec<Vec<f6
 
 /// Takes what lies along orthonormal columns out of another one of length `before`; what is left of its length.
 fn take_out(columns: &[Vec<f64>], other: &mut [f64], before: f64, along: &mut [f64]) -> f64 {
+    crate::stop::check();
     let mut left = before;
     if columns.is_empty() {
         return left;

@@ -127,6 +127,7 @@ impl<'a> Sources<'a> {
     /// Rounding of the target's counts: that of its own emission, and of what it scatters of surroundings so much colder that these
     /// are less exact, in the band where they have the largest share.
     fn rounding_of(&self, comparison: &Comparison<'_>, target: &Target<'_>) -> f64 {
+        crate::stop::check();
         let state = target.state;
         let own = self.rounding(state.temperature_k);
         let (surroundings, signal) = (comparison.target.surroundings(), comparison.target.signal());
@@ -160,6 +161,7 @@ impl<'a> Sources<'a> {
 
     /// Source `s` at a temperature.
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
+        crate::stop::check();
         let nodes = self.bands.nodes_cm1();
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
         planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
@@ -225,6 +227,7 @@ impl<'a> Sources<'a> {
     }
 
     fn counted(&self, s: usize, radiance: &mut [f64]) -> Vec<f64> {
+        crate::stop::check();
         let (bands, strength) = (self.bands.len(), &self.list[s].strength);
         let mut counts = vec![0.0; whole(bands)];
         if self.bands.one_node_per_band() {
@@ -241,6 +244,7 @@ impl<'a> Sources<'a> {
     /// With n = 1/(eˣ − 1), m = x n(1 + n) and w = x(1 + 2n): T²n″ = m(w − 2), T³n‴ = m(w² − 6w + 6 + 2xm), of which
     /// |w² − 6w + 6| ≤ w² as w ≥ 2; m grows with T, x and w fall.
     pub(super) fn bend(&self, s: usize, temperature_k: f64, [low, high]: [f64; 2]) -> [Vec<f64>; 2] {
+        crate::stop::check();
         let nodes = self.bands.nodes_cm1();
         let [mut bend, mut third, mut hot] = [(); 3].map(|()| vec![0.0; nodes.len()]);
         planck::photon_radiance_into(nodes, temperature_k, &mut bend);

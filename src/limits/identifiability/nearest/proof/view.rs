@@ -106,6 +106,7 @@ impl<'a> View<'a> {
 
     /// Makes sure of what only a look at these bands needs.
     pub(super) fn look(&mut self) {
+        crate::stop::check();
         if !self.later.fixed.is_empty() {
             return;
         }
@@ -125,6 +126,7 @@ impl<'a> View<'a> {
 
     /// Makes sure of the spectrum at an end of an interval.
     pub(super) fn know(&mut self, axis: usize, place: usize, temperature_k: f64) {
+        crate::stop::check();
         self.look();
         if self.ends[axis].len() <= place {
             self.ends[axis].resize_with(place + 1, || None);

@@ -33,6 +33,7 @@ impl Comparison<'_> {
 
     /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
     fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        crate::stop::check();
         self.separate(target, state, false);
         if is_other_scale(target.state.gain, state.gain) {
             return self.size_of_terms(target, |own, other| own + other);

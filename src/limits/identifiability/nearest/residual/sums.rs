@@ -42,6 +42,7 @@ pub(super) struct Sums {
 
 /// Σ r² alone.
 pub(super) fn cost(lines: Lines<'_>) -> f64 {
+    crate::stop::check();
     pass(lines, [&[]; TOGETHER], 0).cost
 }
 
@@ -66,6 +67,7 @@ pub(super) fn sums(lines: Lines<'_>, surface: &Jacobian<'_>) -> Sums {
 impl Sums {
     /// The sums of the columns at these places.
     fn put(&mut self, lines: Lines<'_>, surface: &Jacobian<'_>, places: &[usize]) {
+        crate::stop::check();
         let mut columns: [&[f64]; TOGETHER] = [&[]; TOGETHER];
         for (column, &place) in columns.iter_mut().zip(places) {
             *column = surface.column(place);
