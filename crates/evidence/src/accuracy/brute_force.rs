@@ -29,8 +29,8 @@ use crate::reference::local::{Noise, Pair};
 use hadar::error::{Error, Result};
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
 use hadar::scene::State;
+use hadar::stop::unless_it_panics;
 use rayon::prelude::*;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -85,11 +85,10 @@ pub fn brute_force(plan: &BruteForcePlan, progress: &(dyn Fn(u64, u64) + Sync)) 
 
 /// What a case finds; a panic of it is a fault.
 fn caught(seed: u64, case: u64, set: Set) -> Judged {
-    let judged = catch_unwind(AssertUnwindSafe(|| judge(seed, case, set)));
-    match judged {
-        Ok(Ok(judged)) => judged,
-        Ok(Err(error)) => Judged::fault(format!("an error where the input is in order: {error}")),
-        Err(_) => Judged::fault("panic".into()),
+    match unless_it_panics(|| judge(seed, case, set)) {
+        Some(Ok(judged)) => judged,
+        Some(Err(error)) => Judged::fault(format!("an error where the input is in order: {error}")),
+        None => Judged::fault("panic".into()),
     }
 }
 

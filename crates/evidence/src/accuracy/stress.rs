@@ -34,8 +34,8 @@ use self::draw::Draw;
 use self::findings::Findings;
 use self::report::Tallies;
 use hadar::error::{Result, check};
+use hadar::stop::unless_it_panics;
 use rayon::prelude::*;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Cases that are done one after the other.
@@ -74,8 +74,8 @@ pub fn stress(plan: &StressPlan, progress: &(dyn Fn(u64, u64) + Sync)) -> Result
 
 /// What a case finds; a panic of it is a fault.
 fn caught(case: impl FnOnce() -> Findings) -> Findings {
-    let panicked = |_| Findings { faults: vec!["panic".into()], ..Findings::default() };
-    catch_unwind(AssertUnwindSafe(case)).unwrap_or_else(panicked)
+    let panicked = || Findings { faults: vec!["panic".into()], ..Findings::default() };
+    unless_it_panics(case).unwrap_or_else(panicked)
 }
 
 fn one(seed: u64, case: u64) -> Findings {
