@@ -37,9 +37,11 @@ use self::terminal::Stream;
 use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
+use hadar::words::significant;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// The physical limits of seeing by heat: can this thermal camera tell one material from another?
 #[derive(Debug, Parser)]
@@ -112,8 +114,16 @@ pub(crate) fn answered<C>(
         say(&Stream::Err.message("error:", &error.to_string()));
         ExitCode::from(1)
     };
+    let start = Instant::now();
     match parsed {
-        Ok((cli, global)) => run(&cli, &global).unwrap_or_else(failed),
+        Ok((cli, global)) => {
+            let code = run(&cli, &global).unwrap_or_else(failed);
+            // Here alone is a time said: an answer that held one would be another each time.
+            if global.stats {
+                global.note(&format!("time: {} s", significant(start.elapsed().as_secs_f64(), 2)));
+            }
+            code
+        }
         // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
         Err(usage) => match usage.print() {
             Err(error) if !usage.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {

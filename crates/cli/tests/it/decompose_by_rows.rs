@@ -80,8 +80,7 @@ fn answer(
     let bundle = bundle(&found, Path::new("out"), rows.map(|_| room.path())).unwrap();
     let about = About { answer: "", provenance: &Provenance::default(), inputs: &[] };
     bundle.write_report(&reports::Folder::new(&out, Strangers::Refuse), &about).unwrap();
-    let mut json = serde_json::to_value(&found).unwrap();
-    json.as_object_mut().unwrap().remove("seconds");
+    let json = serde_json::to_value(&found).unwrap();
     let files = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
     let files = files
         .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read(&path).unwrap()));
