@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 thread_local! {
     static OPEN: RefCell<Option<Inputs>> = const { RefCell::new(None) };
@@ -107,6 +107,37 @@ pub fn folder(path: &Path) {
             inputs.folders.push(path.to_owned());
         }
     });
+}
+
+/// How a file is called in what is said and written, so that it is the same wherever the folder `home` is and wherever one stands: by the
+/// way from `home` to what is in it, with `/` on every system; else by its name alone, beside which its hash says which it is.
+///
+/// ```
+/// use hadar::inputs::called;
+/// use std::path::Path;
+/// let home = Path::new("/home/a/sizing");
+/// assert_eq!(called(Some(home), Path::new("/home/a/sizing/spectra/skin.csv")), "spectra/skin.csv");
+/// assert_eq!(called(Some(home), Path::new("/data/skin.csv")), "skin.csv");
+/// ```
+#[must_use]
+pub fn called(home: Option<&Path>, file: &Path) -> String {
+    let whole = |path: &Path| std::path::absolute(path).ok();
+    let plain = |inside: &PathBuf| inside.components().all(|part| matches!(part, Component::Normal(_)));
+    let inside = |home: Option<PathBuf>, file: Option<PathBuf>| {
+        Some(file?.strip_prefix(home?).ok()?.to_owned()).filter(plain)
+    };
+    let way = inside(home.and_then(whole), whole(file))
+        // Links are followed, as they are by whoever goes there.
+        .or_else(|| inside(home?.canonicalize().ok(), file.canonicalize().ok()))
+        .map(|way| if way.as_os_str().is_empty() { PathBuf::from(".") } else { way });
+    let name = || PathBuf::from(file.file_name().unwrap_or(file.as_os_str()));
+    slashed(&way.unwrap_or_else(name))
+}
+
+/// A path as it is written on every system.
+#[must_use]
+pub fn slashed(path: &Path) -> String {
+    path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
 /// Something built in was used. `content` is what it consists of, and changes when that does and not with its neighbours.

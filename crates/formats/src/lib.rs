@@ -21,6 +21,7 @@ pub mod file;
 mod library;
 mod members;
 mod noise_variance;
+pub mod sha256;
 pub mod spectra;
 pub mod spectral_unit;
 

@@ -5,14 +5,13 @@
 
 use crate::json;
 use hadar::error::{Error, Result};
-use hadar::inputs::Inputs;
+use hadar::inputs::{Inputs, called};
 use hadar_scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::fs::File;
-use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
+
+pub use hadar_formats::sha256::{sha256, sha256_of_file};
 
 /// The name of the file.
 pub const NAME: &str = "hadar.json";
@@ -54,7 +53,7 @@ pub fn answer_json(
 pub struct Provenance {
     /// Commit of the program's source, with `-dirty` if that was changed since; `unknown` where it was built without a repository.
     pub commit: String,
-    /// The command without what changes no answer, such as the folder it is written to.
+    /// The command without what changes no answer, such as the folder it is written to; paths in it as those of `inputs`.
     pub command: Vec<String>,
     /// Seed of random numbers.
     pub seed: u64,
@@ -65,7 +64,7 @@ pub struct Provenance {
 /// A file or something built in, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// Where it is, from the scenario's folder, with `..` where it is not in it; `built-in: material skin` of what comes with the program.
+    /// The way to it from the scenario's folder, of what is not in it its name alone; `built-in: material skin` of what comes with the program.
     pub path: String,
     /// SHA-256 of it; none of what can be read only once.
     pub sha256: Option<String>,
@@ -107,16 +106,16 @@ impl Provenance {
         };
         let home = first.and_then(|file| std::path::absolute(file).ok());
         let home = home.as_deref().and_then(Path::parent);
+        let command = without_places(command, home);
         let mut listed: Vec<Input> = inputs
             .streams
             .iter()
             .map(|(name, content)| Input { path: name.clone(), sha256: Some(sha256(content)) })
             .collect();
         for file in &inputs.files {
-            let beside = home.and_then(|home| from(home, file));
             let sha256 =
                 sha256_of_file(file).map_err(|error| Error::file("read for its hash", file, error.kind()))?;
-            listed.push(Input { path: slashed(beside.as_deref().unwrap_or(file)), sha256 });
+            listed.push(Input { path: called(home, file), sha256 });
         }
         for ((kind, name), content) in &inputs.built_in {
             listed.push(Input { path: format!("built-in: {kind} {name}"), sha256: Some(sha256(content)) });
@@ -204,66 +203,28 @@ impl Manifest {
     }
 }
 
-/// The way from a folder to a file, `None` where there is none.
-fn from(home: &Path, file: &Path) -> Option<PathBuf> {
-    let absolute = std::path::absolute(file).ok()?;
-    let plain = |inside: &&Path| inside.components().all(|part| part != Component::ParentDir);
-    if let Some(inside) = absolute.strip_prefix(home).ok().filter(plain) {
-        return Some(inside.to_owned());
-    }
-    // Links are followed, as they are by whoever goes up from there.
-    let (home, file) = (home.canonicalize().ok()?, absolute.canonicalize().ok()?);
-    let shared = home.components().zip(file.components()).take_while(|(one, other)| one == other).count();
-    let up = home.components().skip(shared).map(|_| Component::ParentDir);
-    (shared > 0).then(|| up.chain(file.components().skip(shared)).collect())
-}
-
-/// A path as it is written on every system.
-fn slashed(path: &Path) -> String {
-    path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
-}
-
-/// SHA-256 (FIPS 180-4) in hexadecimal digits.
-#[must_use]
-pub fn sha256(bytes: &[u8]) -> String {
-    digits(Sha256::new_with_prefix(bytes))
-}
-
-/// That of a file's content; `None` of what is no ordinary file, which may have been read up.
-///
-/// # Errors
-/// A file that cannot be read.
-pub fn sha256_of_file(path: &Path) -> std::io::Result<Option<String>> {
-    if !path.metadata()?.is_file() {
-        return Ok(None);
-    }
-    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut part)? {
-            0 => return Ok(Some(digits(hash))),
-            read => hash.update(&part[..read]),
+/// A command without where its files are. A word that may be a name (`skin`) is no file, unless an option has it.
+fn without_places(command: Vec<String>, home: Option<&Path>) -> Vec<String> {
+    let mut of_option = false;
+    let word = |word: String| {
+        let (key, value) =
+            word.split_once('=').map_or((None, word.as_str()), |(key, value)| (Some(key), value));
+        let bare = value.trim_matches('"');
+        let may_be =
+            of_option || key.is_some() || bare.contains('.') || bare.contains(std::path::is_separator);
+        of_option = key.is_none() && word.starts_with("--");
+        if bare.is_empty() || !may_be || !Path::new(bare).exists() {
+            return word;
         }
-    }
-}
-
-fn digits(hash: Sha256) -> String {
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        let named = value.replace(bare, &called(home, Path::new(bare)));
+        key.map_or_else(|| named.clone(), |key| format!("{key}={named}"))
+    };
+    command.into_iter().map(word).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// FIPS 180-4, example of one block.
-    #[test]
-    fn the_hash_is_that_of_the_standard() {
-        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(sha256(b"abc"), expected);
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("abc"), "abc").unwrap();
-        assert_eq!(sha256_of_file(&folder.path().join("abc")).unwrap().unwrap(), expected);
-        assert_eq!(sha256_of_file(folder.path()).unwrap(), None);
-    }
 
     #[test]
     fn a_list_that_reaches_out_of_its_folder_is_none() {

@@ -113,7 +113,7 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     }
     let text = if extent == Extent::Verdicts { rule::check(&answer) } else { rule::text(&answer, &study) };
     let provenance = global.provenance()?;
-    answer.stats.add(&global.report(&text, |out| rule::bundle(&study, &answer, &provenance, out))?);
+    answer.stats.add(&global.report(&text, || rule::bundle(&study, &answer, &provenance))?);
     global.answer(&rule::Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;
     Ok(code(args, &answer))
 }
@@ -223,7 +223,7 @@ fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Glo
     let answer = study.stand_in(library, on, &|done, all| bar.set(done, all))?;
     bar.finish();
     let text = rule::stand_in(&answer);
-    let work = global.report(&text, |_| rule::stand_in_bundle(&answer))?;
+    let work = global.report(&text, || rule::stand_in_bundle(&answer))?;
     global.answer(&answer, &text, &work)?;
     Ok(0)
 }

@@ -49,7 +49,7 @@ pub(super) fn each(
         rows.push(Row { scenario: named(path), exit_code, error, answer });
     }
     let text = several::text(question, &rows);
-    let work = global.report(&text, |_| several::bundle(question, &rows))?;
+    let work = global.report(&text, || several::bundle(question, &rows))?;
     let worst = rows.iter().map(|row| row.exit_code).min_by_key(|code| match code {
         1 => 0,
         0 => 2,

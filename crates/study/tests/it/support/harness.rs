@@ -210,7 +210,7 @@ fn scenario(folder: &Folder, bytes: &[u8]) {
     let lighting: f64 = scenario.environment.iter().map(|object| object.lighting).sum();
     assert!((0.0..=1.0 + 1e-9).contains(&lighting), "lighting {lighting}");
     for directory in [None, path.parent()] {
-        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
+        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml());
         match Scenario::from_toml(&text, Some(&path)) {
             Ok(again) => assert!(again == scenario, "{again:?}\nis not\n{scenario:?}\n{text}"),
             Err(error) => panic!("{error}\n{text}"),
@@ -220,7 +220,7 @@ fn scenario(folder: &Folder, bytes: &[u8]) {
 
 fn air_ranging_scenario(scenario: &AirRangingScenario, path: &Path) {
     for directory in [None, path.parent()] {
-        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
+        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml());
         match AirRangingScenario::from_toml(&text, Some(path)) {
             Ok(again) => assert_eq!(&again, scenario, "{text}"),
             Err(error) => panic!("{error}\n{text}"),
@@ -236,7 +236,7 @@ fn range_scenario(folder: &Folder, bytes: &[u8]) {
         None => return,
     };
     for directory in [None, path.parent()] {
-        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
+        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml());
         let again = match RangeScenario::from_toml(&text, Some(&path)) {
             Ok(again) => again,
             Err(error) => panic!("{error}\n{text}"),
