@@ -26,6 +26,16 @@ pub struct Inputs {
     pub built_in: BTreeMap<(&'static str, String), Vec<u8>>,
 }
 
+impl Inputs {
+    /// The folder that names of files are said from ([`called`]): that of what was read first, the current one for a stream.
+    #[must_use]
+    pub fn home(&self) -> Option<PathBuf> {
+        let stream = self.streams.first().map(|(name, _)| Path::new(name));
+        let first = stream.or_else(|| self.files.first().map(PathBuf::as_path))?;
+        std::path::absolute(first).ok()?.parent().map(Path::to_owned)
+    }
+}
+
 /// A list that is open on this thread until it is dropped.
 #[derive(Debug)]
 #[must_use]

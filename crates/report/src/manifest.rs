@@ -99,13 +99,8 @@ impl Provenance {
     /// # Errors
     /// A file that can no longer be read.
     pub fn of(commit: &str, command: Vec<String>, seed: u64, inputs: &Inputs) -> Result<Self> {
-        // What is no file names others from the current directory.
-        let first = match inputs.streams.first() {
-            Some((name, _)) => Some(Path::new(name)),
-            None => inputs.files.first().map(PathBuf::as_path),
-        };
-        let home = first.and_then(|file| std::path::absolute(file).ok());
-        let home = home.as_deref().and_then(Path::parent);
+        let home = inputs.home();
+        let home = home.as_deref();
         let command = without_places(command, home);
         let mut listed: Vec<Input> = inputs
             .streams

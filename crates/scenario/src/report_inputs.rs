@@ -1,12 +1,12 @@
 //! The files of a scenario that a report wrote (`scenario.toml`, `rule.toml`, `decompose.toml`).
 //!
 //! Such a scenario names them from the folder of the one that the report was made from, which it is not in. The report's list of what it
-//! read (`hadar.json`, `inputs`) has each by that name with its SHA-256: a file of that name and content is looked for beside the scenario
-//! and in the folders above it, nearest first, so that a report below the folder of its inputs can be asked again where it is. Of the list
-//! only the hashes are used: whoever forged one could but name a file of the same name in a folder above.
+//! read (`hadar.json`, `inputs`) has each by that name with its SHA-256: a file of that name and content is looked for beside the scenario,
+//! in the folders above it and in those beside them, nearest first, so that a report near its inputs can be asked again where it is. Of the
+//! list only the hashes are used: whoever forged one could but name another file of the same name there.
 
 use hadar::error::{Error, Result};
-use hadar_formats::sha256::sha256_of_file;
+use hadar_formats::sha256::{nearest_folder, sha256_of_file};
 use serde::Deserialize;
 use std::fs::File;
 use std::io::Read;
@@ -69,21 +69,28 @@ impl ReportInputs {
         let bare = name.strip_prefix("./").unwrap_or(name);
         let within =
             |path: &str| path.strip_prefix(bare).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
-        let read: Vec<&Noted> = self.inputs.iter().filter(|input| within(&input.path)).collect();
+        let mut read: Vec<(&str, &Noted)> =
+            self.inputs.iter().filter(|one| within(&one.path)).map(|one| (one.path.as_str(), one)).collect();
+        // What is not in the folder of the scenario is listed by its name alone.
+        if read.is_empty() && bare.contains("..") {
+            let last = bare.rsplit('/').next();
+            read.extend(
+                self.inputs.iter().find(|one| Some(one.path.as_str()) == last).map(|one| (bare, one)),
+            );
+        }
         if read.is_empty() {
             return Ok(own.join(name));
         }
-        let whole = std::path::absolute(own.join(name)).unwrap_or_else(|_| own.join(name));
-        let above = whole.parent().into_iter().flat_map(Path::ancestors);
-        let is_it = |folder: &&Path| {
-            read.iter().all(|input| {
-                let there = sha256_of_file(&folder.join(&input.path)).ok().flatten();
-                there.is_some() && there == input.sha256
+        let is_it = |folder: &Path| {
+            read.iter().all(|(path, noted)| {
+                let there = sha256_of_file(&folder.join(path)).ok().flatten();
+                there.is_some() && there == noted.sha256
             })
         };
-        let folder = above.into_iter().find(is_it);
+        let own = std::path::absolute(own.join(name)).ok();
+        let folder = own.as_deref().and_then(Path::parent).and_then(|own| nearest_folder(own, is_it));
         folder.map(|folder| folder.join(bare)).ok_or_else(|| {
-            let found = format!("`{bare}` as the report has read it is neither here nor in a folder above");
+            let found = format!("`{bare}` as the report has read it is neither here nor in a folder near by");
             Error::malformed(
                 found,
                 "name the folder that it is in with --inputs, or put this file there without the report",

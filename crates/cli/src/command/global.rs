@@ -134,7 +134,15 @@ impl Global {
             for warning in library.warnings() {
                 self.note(&Stream::Err.message("warning:", warning));
             }
-            library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
+            let home = inputs::so_far().home();
+            // In an answer files have the names of its inputs.
+            let said = |remark: &String| {
+                let name = |said: String, path: &PathBuf| {
+                    said.replace(&*path.to_string_lossy(), &inputs::called(home.as_deref(), path))
+                };
+                Warning::Library { remark: self.library.iter().fold(remark.clone(), name) }
+            };
+            library.warnings().iter().map(said).collect()
         });
         Ok(library)
     }
