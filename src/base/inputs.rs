@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::Metadata;
 use std::marker::PhantomData;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
 thread_local! {
@@ -82,6 +82,14 @@ impl Inputs {
             }
         }
         paths
+    }
+
+    /// The folder that names of files are said from ([`called`]): that of what was read first, the current one for a stream.
+    #[must_use]
+    pub fn home(&self) -> Option<PathBuf> {
+        let stream = self.streams.first().map(|(name, _)| Path::new(name));
+        let first = stream.or_else(|| self.files.first().map(|file| file.path.as_path()))?;
+        std::path::absolute(first).ok()?.parent().map(Path::to_owned)
     }
 }
 
@@ -166,6 +174,37 @@ pub fn folder(path: &Path) {
             inputs.folders.push(path.to_owned());
         }
     });
+}
+
+/// How a file is called in what is said and written, so that it is the same wherever the folder `home` is and wherever one stands: by the
+/// way from `home` to what is in it, with `/` on every system; else by its name alone, beside which its hash says which it is.
+///
+/// ```
+/// use hadar::inputs::called;
+/// use std::path::Path;
+/// let home = Path::new("/home/a/sizing");
+/// assert_eq!(called(Some(home), Path::new("/home/a/sizing/spectra/skin.csv")), "spectra/skin.csv");
+/// assert_eq!(called(Some(home), Path::new("/data/skin.csv")), "skin.csv");
+/// ```
+#[must_use]
+pub fn called(home: Option<&Path>, file: &Path) -> String {
+    let whole = |path: &Path| std::path::absolute(path).ok();
+    let plain = |inside: &PathBuf| inside.components().all(|part| matches!(part, Component::Normal(_)));
+    let inside = |home: Option<PathBuf>, file: Option<PathBuf>| {
+        Some(file?.strip_prefix(home?).ok()?.to_owned()).filter(plain)
+    };
+    let way = inside(home.and_then(whole), whole(file))
+        // Links are followed, as they are by whoever goes there.
+        .or_else(|| inside(home?.canonicalize().ok(), file.canonicalize().ok()))
+        .map(|way| if way.as_os_str().is_empty() { PathBuf::from(".") } else { way });
+    let name = || PathBuf::from(file.file_name().unwrap_or(file.as_os_str()));
+    slashed(&way.unwrap_or_else(name))
+}
+
+/// A path as it is written on every system.
+#[must_use]
+pub fn slashed(path: &Path) -> String {
+    path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
 /// Something built in was used. `content` is what it consists of, and changes when that does and not with its neighbours.

@@ -1,14 +1,35 @@
 //! Numbers in words: as short as they can be without losing what matters; names and titles in one form.
 
+use std::borrow::Cow;
+
 /// Powers of ten within which a number is written plainly: from 0.001 to 99999.
 const PLAIN: std::ops::Range<i32> = -3..5;
+
+/// What is said in the place of digits of what has none.
+const fn no_number(value: f64) -> Option<&'static str> {
+    match value {
+        f64::INFINITY => Some("infinite"),
+        f64::NEG_INFINITY => Some("minus infinite"),
+        value if value.is_nan() => Some("none"),
+        _ => None,
+    }
+}
+
+/// A number with so many decimals.
+#[must_use]
+pub fn fixed(value: f64, decimals: usize) -> String {
+    no_number(value).map_or_else(|| format!("{value:.decimals$}"), str::to_owned)
+}
 
 /// A number with `digits` significant digits, plain where that is short, else in powers of ten: the one style of all
 /// numbers in a text.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{}", value + 0.0);
+    if let Some(word) = no_number(value) {
+        return word.into();
+    }
+    if value == 0.0 {
+        return "0".into();
     }
     let last = digits.saturating_sub(1);
     // The power of ten after rounding: 0.0009999 may be 0.00100.
@@ -40,7 +61,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
 pub fn length(metres: f64) -> String {
     let (factor, unit) = match metres {
         _ if metres.is_nan() => return "-".into(),
-        _ if metres.is_infinite() => return "infinite".into(),
+        f64::INFINITY => return "infinite".into(),
         _ if metres >= 1.0 => (1.0, "m"),
         _ if metres >= 0.01 => (1e2, "cm"),
         _ if metres >= 1e-3 => (1e3, "mm"),
@@ -67,7 +88,7 @@ pub fn share(share: f64) -> String {
     } else if share < 1.0 && percent > 99.5 {
         "> 99 %".into()
     } else {
-        format!("{percent:.0} %")
+        no_number(percent).map_or_else(|| format!("{percent:.0} %"), str::to_owned)
     }
 }
 
@@ -102,6 +123,35 @@ pub fn one_line(text: &str) -> String {
     words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
+/// Whether a letter is not seen, or changes the order in which others are: what is read is then not what is there.
+#[must_use]
+pub fn is_hidden(letter: char) -> bool {
+    let unseen = matches!(letter,
+        '\u{AD}' | '\u{34F}' | '\u{61C}' | '\u{115F}' | '\u{1160}' | '\u{17B4}' | '\u{17B5}' | '\u{180B}'..='\u{180F}'
+        | '\u{200B}'..='\u{200F}' | '\u{2028}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{3164}' | '\u{FE00}'..='\u{FE0F}'
+        | '\u{FEFF}' | '\u{FFA0}' | '\u{FFF0}'..='\u{FFFB}' | '\u{E0000}'..='\u{E0FFF}');
+    unseen || (letter.is_control() && !matches!(letter, '\n' | '\t'))
+}
+
+/// A text as it may be shown: letters that are not seen, or that change the order of others, as `\u{202e}`. Lines stay lines.
+///
+/// ```
+/// use hadar::words::visible;
+/// assert_eq!(visible("skin, 37 degC"), "skin, 37 degC");
+/// assert_eq!(visible("gold\u{202e}toboR"), "gold\\u{202e}toboR");
+/// ```
+#[must_use]
+pub fn visible(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |letter: char| match is_hidden(letter) {
+        true => letter.escape_unicode().to_string(),
+        false => letter.to_string(),
+    };
+    Cow::Owned(text.chars().map(shown).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,12 +168,48 @@ mod tests {
         assert_eq!([99_999.9, 0.000_999_96, 9.999].map(|x| significant(x, 3)), ["1.00e5", "0.00100", "10.0"]);
         assert_eq!(
             [0.0, -0.0, f64::INFINITY, -f64::INFINITY].map(|x| significant(x, 3)),
-            ["0", "0", "inf", "-inf"]
+            ["0", "0", "infinite", "minus infinite"]
         );
         assert_eq!(significant(6.632e8, 3), "6.63e8");
         assert_eq!(quantity(12e-6, "m"), "12.0 um");
         assert_eq!(quantity(0.012, "s"), "12.0 ms");
         assert_eq!(quantity(0.0, "s"), "0 s");
+    }
+
+    /// What has no digits is said in words, whatever it is written as.
+    #[test]
+    fn no_number_is_said_as_the_computer_says_it() {
+        let mut seed = 1_u64;
+        let bits = std::iter::repeat_with(|| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            f64::from_bits(seed ^ (seed >> 29))
+        });
+        let ends = [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MAX, f64::MIN, 5e-324, -0.0, 0.0];
+        for value in ends.into_iter().chain(bits.take(20_000)) {
+            let said =
+                [significant(value, 3), fixed(value, 2), quantity(value, "m"), length(value), share(value)];
+            for text in &said {
+                let word = text.split([' ', '-', '>', '<']).any(|word| ["inf", "NaN", "nan"].contains(&word));
+                assert!(!word && !text.is_empty(), "{value}: {text}");
+                assert_eq!(
+                    value.is_finite(),
+                    text.contains(|letter: char| letter.is_ascii_digit()),
+                    "{value}: {text}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_seen_is_shown() {
+        for letter in ('\0'..='\u{2FFF}').chain(['\u{FEFF}', '\u{E0041}']) {
+            let text = format!("a{letter}b");
+            let shown = visible(&text);
+            assert!(!shown.contains(is_hidden));
+            // What is seen stays as it is.
+            assert_eq!(is_hidden(letter), shown != text, "{letter:?}");
+        }
+        assert_eq!(visible("one\n\ttwo ä Ω 人"), "one\n\ttwo ä Ω 人");
     }
 
     #[test]

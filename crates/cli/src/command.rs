@@ -39,11 +39,13 @@ use self::terminal::Stream;
 use clap::{CommandFactory as _, FromArgMatches, Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
+use hadar::words::significant;
 use hadar_study::budget::Watch;
 use std::ffi::{OsStr, OsString};
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// The physical limits of seeing by heat: can this thermal camera tell one material from another?
 #[derive(Debug, Parser)]
@@ -119,9 +121,16 @@ pub(crate) fn answered<C>(
         say(&Stream::Err.message("error:", &error.to_string()));
         ExitCode::from(1)
     };
+    let start = Instant::now();
     match parsed {
         Ok((cli, global)) => {
-            stopping::or_stopped(|| run(&cli, &global).unwrap_or_else(failed)).unwrap_or_else(|code| code)
+            let code = stopping::or_stopped(|| run(&cli, &global).unwrap_or_else(failed))
+                .unwrap_or_else(|code| code);
+            // Here alone is a time said: an answer that held one would be another each time.
+            if global.stats {
+                global.note(&format!("time: {} s", significant(start.elapsed().as_secs_f64(), 2)));
+            }
+            code
         }
         // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
         Err(usage) => match usage.print() {

@@ -46,7 +46,6 @@ pub(crate) use studies::FurtherStudy;
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
 use order::Figures;
-use std::path::Path;
 
 /// What can be made again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -196,27 +195,27 @@ impl Item {
     ///
     /// # Errors
     /// A figure that cannot be drawn.
-    pub(crate) fn make(self, order: Order, out: &Path, progress: Progress<'_>) -> Result<Reproduction> {
+    pub(crate) fn make(self, order: Order, progress: Progress<'_>) -> Result<Reproduction> {
         let (mut bundle, lines, figures) = match self {
-            Self::Fig3b => fig3b::all_bands(order, out, progress)?,
-            Self::FigS7 => fig3b::three_bands(order, out, progress)?,
-            Self::Fig3c => fig3c::make(out)?,
-            Self::EdFig1 => edfig1::make(order, out)?,
-            Self::EdFig5 => edfig5::make(order, out)?,
-            Self::EdFig6 => edfig6::make(order, out, progress)?,
+            Self::Fig3b => fig3b::all_bands(order, progress)?,
+            Self::FigS7 => fig3b::three_bands(order, progress)?,
+            Self::Fig3c => fig3c::make()?,
+            Self::EdFig1 => edfig1::make(order)?,
+            Self::EdFig5 => edfig5::make(order)?,
+            Self::EdFig6 => edfig6::make(order, progress)?,
             Self::EdFig7 => edfig7::make(order)?,
             Self::EdFig8 => edfig8::make(order, progress)?,
-            Self::EdFig9 => edfig9::make(order, out, progress)?,
+            Self::EdFig9 => edfig9::make(order, progress)?,
             Self::EdFig9a => edfig9a::make(order)?,
-            Self::Fig4 => fig4::make(order, out, progress)?,
+            Self::Fig4 => fig4::make(order, progress)?,
             Self::FigS12 => fig4::textures(order)?,
             Self::FigS17 => figs17::make(order)?,
-            Self::FigS19 => figs19::make(order, out)?,
+            Self::FigS19 => figs19::make(order)?,
             Self::FigS20 => figs20::make(order)?,
             Self::FigS29 => figs29::make(order)?,
             Self::TabS5 => tabs5::make()?,
-            Self::TabS2 => tabs2::make(out)?,
-            Self::Policy => policy::make(out)?,
+            Self::TabS2 => tabs2::make()?,
+            Self::Policy => policy::make()?,
         };
         bundle.add_table("ledger.csv", table(&lines))?;
         bundle.add("README.md", page(self, order.effort, &lines, &figures));

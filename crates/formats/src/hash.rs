@@ -1,14 +1,15 @@
 //! Files by their content: SHA-256 (FIPS 180-4) of what was read, in hexadecimal digits, taken as it was read.
 //!
 //! A file that is read whole is hashed then. One that is read part by part is hashed afterwards, and only if nobody has touched it
-//! since it was opened ([`Stamp`]): a hash never is that of other bytes than those that an answer rests on.
+//! since it was opened ([`Stamp`]): a hash never is that of other bytes than those that an answer rests on. By its hash a file is known
+//! wherever it is, and found again.
 
 use hadar::error::{Error, Result};
 use hadar::inputs::{FileRead, Held, Inputs, Stamp};
 use sha2::{Digest as _, Sha256};
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// That of bytes.
 #[must_use]
@@ -28,6 +29,33 @@ pub fn sha256_of(mut from: impl Read) -> io::Result<String> {
             read => hash.update(&part[..read]),
         }
     }
+}
+
+/// That of a file as it is now; `None` of what is no ordinary file, which may have been read up.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn sha256_of_file(path: &Path) -> io::Result<Option<String>> {
+    if !path.metadata()?.is_file() {
+        return Ok(None);
+    }
+    sha256_of(File::open(path)?).map(Some)
+}
+
+/// The folder nearest to `start` that is the one looked for: `start`, those above it, nearest first, each before the folders directly in it.
+/// Who asks for one by the content of its files finds again what was moved along with a report.
+#[must_use]
+pub fn nearest_folder(start: &Path, is_it: impl Fn(&Path) -> bool) -> Option<PathBuf> {
+    let below = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let real = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
+        let mut folders: Vec<PathBuf> = real.map(|entry| entry.path()).collect();
+        folders.sort_unstable();
+        folders
+    };
+    start.ancestors().find_map(|folder| {
+        std::iter::once(folder.to_owned()).chain(below(folder)).find(|folder| is_it(folder))
+    })
 }
 
 /// That of what a job read of a file.
@@ -66,7 +94,7 @@ pub fn of_all_read(inputs: &Inputs) -> Result<Vec<(PathBuf, String)>> {
     Ok(all)
 }
 
-fn changed(path: &std::path::Path) -> Error {
+fn changed(path: &Path) -> Error {
     Error::file("take as an input", path, "it was changed while it was read; run this again")
 }
 
@@ -87,6 +115,10 @@ mod tests {
     fn the_hash_is_that_of_the_standard() {
         assert_eq!(sha256(b"abc"), ABC);
         assert_eq!(sha256_of(&b"abc"[..]).unwrap(), ABC);
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("abc"), "abc").unwrap();
+        assert_eq!(sha256_of_file(&folder.path().join("abc")).unwrap().unwrap(), ABC);
+        assert_eq!(sha256_of_file(folder.path()).unwrap(), None);
     }
 
     /// Whatever is done to a file after it was read, its hash is that of what was read, or there is none.
@@ -132,5 +164,23 @@ mod tests {
             (first, file::bytes(&path, "read", 9))
         });
         assert!(of_all_read(&twice).is_err(), "one thing and then another");
+    }
+
+    #[test]
+    fn a_folder_is_found_above_and_beside() {
+        let root = tempfile::tempdir().unwrap();
+        let [report, inputs] = ["a/b/report", "a/inputs"].map(|name| root.path().join(name));
+        for folder in [&report, &inputs] {
+            std::fs::create_dir_all(folder).unwrap();
+        }
+        let with = |name: &'static str| nearest_folder(&report, move |folder| folder.join(name).is_file());
+        std::fs::write(inputs.join("cube"), "1").unwrap();
+        assert_eq!(with("cube"), Some(inputs));
+        // What is nearer is taken.
+        for folder in [root.path().join("a"), root.path().join("a/b"), report.clone()] {
+            std::fs::write(folder.join("cube"), "1").unwrap();
+            assert_eq!(with("cube"), Some(folder));
+        }
+        assert_eq!(with("nowhere"), None);
     }
 }

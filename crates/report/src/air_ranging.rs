@@ -9,15 +9,14 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number, optional, yes_no};
 use hadar::error::Result;
 use hadar_study::air_ranging::{AirPoint, AirRanging};
-use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
 ///
 /// # Errors
 /// A table that cannot be written.
-pub fn bundle(result: &AirRanging, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &AirRanging) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.scene.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("distances.csv", distances(&result.curve))?;
     if !result.witness.is_empty() {
         bundle.add_table("estimates.csv", estimates(result))?;

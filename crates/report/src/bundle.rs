@@ -11,6 +11,7 @@ use super::plot::{Drawn, Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
 use hadar::error::Result;
+use hadar::words::visible;
 use hadar_study::{Condition, Warning};
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -181,7 +182,8 @@ impl Bundle {
         let page = self.page_of(drawn.iter().map(|drawn| drawn.svg.as_str()), about);
         let mut files = self.files_with(&drawn);
         if self.names().all(|name| name != ANSWER) {
-            files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes().into()));
+            files
+                .push((ANSWER.into(), format!("{}\n", visible(about.answer.trim_end())).into_bytes().into()));
         }
         files.push(("report.html".into(), page.into_bytes().into()));
         folder.write(&files, about.provenance, about.inputs)?;

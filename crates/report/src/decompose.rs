@@ -27,9 +27,9 @@ const IMAGE: &str = "tex_vision_image.png";
 ///
 /// # Errors
 /// A figure that cannot be drawn; maps that cannot be read.
-pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bundle> {
+pub fn bundle(result: &Decomposed, room: Option<&Path>) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("materials.csv", materials(result))?;
     if let Some(truth) = &result.truth
         && !truth.confusion.is_empty()

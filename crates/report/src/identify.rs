@@ -11,17 +11,16 @@ use crate::table::{Table, number, optional, yes_no};
 use crate::tables;
 use hadar::error::Result;
 use hadar_study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
-use std::path::Path;
 
 /// All files of the answers; paths in the scenario are written relative to `out` where they lie below it.
 /// `seed` is that of sample spectra.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &Study, answers: &Answers, seed: u64) -> Result<Bundle> {
     let mut bundle = Bundle::about(study.scenario().title.as_deref());
     let result = &answers.identification;
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
     bundle.add_conditions(&result.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
     bundle.add_warnings(&result.warnings)?;

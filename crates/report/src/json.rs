@@ -2,6 +2,7 @@
 
 use crate::words;
 use hadar::error::{Error, Result};
+use hadar::words::is_hidden;
 use hadar_study::spoken::with_voice;
 use serde::Serialize;
 use serde_json::Value;
@@ -19,7 +20,7 @@ pub fn value(answer: &impl Serialize) -> Result<Value> {
 /// # Errors
 /// What is no JSON, which would be a bug.
 pub fn line(answer: &impl Serialize) -> Result<String> {
-    spoken(|| serde_json::to_string(answer))
+    spoken(|| serde_json::to_string(answer)).map(seen)
 }
 
 /// Anything as JSON of a line a key.
@@ -27,10 +28,40 @@ pub fn line(answer: &impl Serialize) -> Result<String> {
 /// # Errors
 /// What is no JSON, which would be a bug.
 pub fn pretty(answer: &impl Serialize) -> Result<String> {
-    spoken(|| serde_json::to_string_pretty(answer))
+    spoken(|| serde_json::to_string_pretty(answer)).map(seen)
+}
+
+/// The same JSON, letters that are not seen or change the order of others as `\u202e`. They are in its strings alone.
+fn seen(text: String) -> String {
+    let is_in_string = |letter: char| is_hidden(letter) && letter != '\n';
+    if !text.contains(is_in_string) {
+        return text;
+    }
+    let mut out = String::with_capacity(text.len() + 16);
+    for letter in text.chars() {
+        if is_in_string(letter) {
+            letter.encode_utf16(&mut [0; 2]).iter().for_each(|unit| out.push_str(&format!("\\u{unit:04x}")));
+        } else {
+            out.push(letter);
+        }
+    }
+    out
 }
 
 fn spoken<T>(write: impl FnOnce() -> serde_json::Result<T>) -> Result<T> {
     with_voice(words::voice, write)
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_letter_that_is_not_seen_is_written_as_its_number() {
+        let name = "gold\u{202e}\u{E0041}\u{7f}ä\n";
+        let text = line(&name).unwrap();
+        assert_eq!(text, "\"gold\\u202e\\udb40\\udc41\\u007fä\\n\"");
+        assert_eq!(serde_json::from_str::<String>(&text).unwrap(), name);
+    }
 }

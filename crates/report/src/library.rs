@@ -9,10 +9,9 @@ use crate::table::{Table, number};
 use hadar::error::Result;
 use hadar::order;
 use hadar_formats::cube::npy_map;
+use hadar_scenario::DecomposeScenario;
 use hadar_scenario::decompose::{LibrarySpec, TruthSpec};
-use hadar_scenario::{DecomposeScenario, Source};
 use hadar_study::library::LibraryFound;
-use std::path::Path;
 
 /// Least error of the emissivities that is handed on: with less than this a library is exact.
 const LEAST_ERROR: f64 = 1e-5;
@@ -21,9 +20,9 @@ const LEAST_ERROR: f64 = 1e-5;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &LibraryFound, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &LibraryFound) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("library.csv", library(result))?;
     bundle.add_table("library_sigma.csv", sigma(result))?;
     bundle.add_table("clusters.csv", clusters(result))?;
@@ -39,7 +38,7 @@ pub fn bundle(result: &LibraryFound, out: &Path) -> Result<Bundle> {
     bundle.add("lighting.npy", npy_map(&[size[0], size[1], lights], &maps.lighting)?);
     bundle.add("p_value.npy", npy_map(&size, &maps.p_value)?);
     bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
-    bundle.add("decompose.toml", decomposition(result, out).to_toml_beside(out));
+    bundle.add("decompose.toml", decomposition(result).to_toml());
     bundle.add_plots(&[figures::emissivities(result), figures::maps(result)])?;
     Ok(bundle)
 }
@@ -118,9 +117,8 @@ fn tried(result: &LibraryFound) -> Table {
 }
 
 /// The scenario that takes the cube apart with the library.
-fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
+fn decomposition(result: &LibraryFound) -> DecomposeScenario {
     let scenario = &result.scenario;
-    let there = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
     // What a cluster's emissivity may be off by is above all its magnitude, which all bands have in common.
     let [first, last] = result.range_cm1;
     let together = scenario.emissivity.correlation_cm1.max(last - first);
@@ -133,7 +131,7 @@ fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
         camera: scenario.camera.clone(),
         environment: scenario.environment.clone(),
         library: LibrarySpec {
-            path: Some(there.join("library.csv")),
+            path: Some("library.csv".into()),
             prior: Some(result.prior.clone()),
             emissivity_error: error,
             emissivity_correlation_cm1: error.map(|_| together),
@@ -150,7 +148,8 @@ fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
             .as_ref()
             .and_then(|truth| truth.temperature.clone())
             .map(|temperature| TruthSpec { temperature: Some(temperature), ..TruthSpec::default() }),
-        source: Source::default(),
+        // Its other files are those of this scenario.
+        source: scenario.source.clone(),
     }
 }
 

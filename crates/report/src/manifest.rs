@@ -6,16 +6,16 @@
 use crate::folder::inside::{self, Inside};
 use crate::json;
 use hadar::error::Result;
-use hadar::inputs::Inputs;
+use hadar::inputs::{Inputs, called};
 use hadar_formats::hash;
-pub use hadar_formats::hash::sha256;
 pub(crate) use hadar_formats::hash::sha256_of;
 use hadar_scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::Read;
-use std::path::{Component, Path, PathBuf};
+use std::io::Read as _;
+use std::path::Path;
+
+pub use hadar_formats::hash::{sha256, sha256_of_file};
 
 /// The name of the file.
 pub const NAME: &str = "hadar.json";
@@ -60,7 +60,7 @@ pub fn answer_json(
 pub struct Provenance {
     /// Commit of the program's source, with `-dirty` if that was changed since; `unknown` where it was built without a repository.
     pub commit: String,
-    /// The command without what changes no answer, such as the folder it is written to.
+    /// The command without what changes no answer, such as the folder it is written to; paths in it as those of `inputs`.
     pub command: Vec<String>,
     /// Seed of random numbers.
     pub seed: u64,
@@ -71,7 +71,7 @@ pub struct Provenance {
 /// A file or something built in, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// Where it is, from the scenario's folder, with `..` where it is not in it; `built-in: material skin` of what comes with the program.
+    /// The way to it from the scenario's folder, of what is not in it its name alone; `built-in: material skin` of what comes with the program.
     pub path: String,
     /// SHA-256 of it; none of what can be read only once.
     pub sha256: Option<String>,
@@ -106,22 +106,16 @@ impl Provenance {
     /// # Errors
     /// A file that can no longer be read, or that was changed while it was read.
     pub fn of(commit: &str, command: Vec<String>, seed: u64, inputs: &Inputs) -> Result<Self> {
-        // What is no file names others from the current directory.
-        let first = match inputs.streams.first() {
-            Some((name, _)) => Some(Path::new(name)),
-            None => inputs.files.first().map(|file| file.path.as_path()),
-        };
-        let home = first.and_then(|file| std::path::absolute(file).ok());
-        let home = home.as_deref().and_then(Path::parent);
+        let home = inputs.home();
+        let home = home.as_deref();
+        let command = without_places(command, home);
         let mut listed: Vec<Input> = inputs
             .streams
             .iter()
             .map(|(name, content)| Input { path: name.clone(), sha256: Some(sha256(content)) })
             .collect();
         for (file, sha256) in hash::of_all_read(inputs)? {
-            let beside = home.and_then(|home| from(home, &file));
-            let path = slashed(beside.as_deref().unwrap_or(&file));
-            listed.push(Input { path, sha256: Some(sha256) });
+            listed.push(Input { path: called(home, &file), sha256: Some(sha256) });
         }
         for ((kind, name), content) in &inputs.built_in {
             listed.push(Input { path: format!("built-in: {kind} {name}"), sha256: Some(sha256(content)) });
@@ -194,47 +188,28 @@ impl Manifest {
     }
 }
 
-/// The way from a folder to a file, `None` where there is none.
-fn from(home: &Path, file: &Path) -> Option<PathBuf> {
-    let absolute = std::path::absolute(file).ok()?;
-    let plain = |inside: &&Path| inside.components().all(|part| part != Component::ParentDir);
-    if let Some(inside) = absolute.strip_prefix(home).ok().filter(plain) {
-        return Some(inside.to_owned());
-    }
-    // Links are followed, as they are by whoever goes up from there.
-    let (home, file) = (home.canonicalize().ok()?, absolute.canonicalize().ok()?);
-    let shared = home.components().zip(file.components()).take_while(|(one, other)| one == other).count();
-    let up = home.components().skip(shared).map(|_| Component::ParentDir);
-    (shared > 0).then(|| up.chain(file.components().skip(shared)).collect())
-}
-
-/// A path as it is written on every system.
-fn slashed(path: &Path) -> String {
-    path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
-}
-
-/// SHA-256 of a file's content; `None` of what is no ordinary file, which may have been read up.
-///
-/// # Errors
-/// A file that cannot be read.
-pub fn sha256_of_file(path: &Path) -> std::io::Result<Option<String>> {
-    if !path.metadata()?.is_file() {
-        return Ok(None);
-    }
-    sha256_of(File::open(path)?).map(Some)
+/// A command without where its files are. A word that may be a name (`skin`) is no file, unless an option has it.
+fn without_places(command: Vec<String>, home: Option<&Path>) -> Vec<String> {
+    let mut of_option = false;
+    let word = |word: String| {
+        let (key, value) =
+            word.split_once('=').map_or((None, word.as_str()), |(key, value)| (Some(key), value));
+        let bare = value.trim_matches('"');
+        let may_be =
+            of_option || key.is_some() || bare.contains('.') || bare.contains(std::path::is_separator);
+        of_option = key.is_none() && word.starts_with("--");
+        if bare.is_empty() || !may_be || !Path::new(bare).exists() {
+            return word;
+        }
+        let named = value.replace(bare, &called(home, Path::new(bare)));
+        key.map_or_else(|| named.clone(), |key| format!("{key}={named}"))
+    };
+    command.into_iter().map(word).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_no_ordinary_file_has_no_hash() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("abc"), "abc").unwrap();
-        let of = |name: &str| sha256_of_file(&folder.path().join(name)).unwrap();
-        assert_eq!((of("abc"), of("")), (Some(sha256(b"abc")), None));
-    }
 
     #[test]
     fn a_list_that_reaches_out_of_its_folder_is_none() {

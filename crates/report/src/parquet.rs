@@ -40,7 +40,7 @@ pub fn of_csv(text: &str) -> Result<Vec<Column>> {
     let header = reader.headers().map_err(failed)?.clone();
     let mut columns: Vec<Column> = header
         .iter()
-        .map(|name| Column { name: name.to_owned(), cells: Vec::new(), is_text: false })
+        .map(|name| Column { name: table::as_given(name).to_owned(), cells: Vec::new(), is_text: false })
         .collect();
     for record in reader.records() {
         let record = record.map_err(failed)?;
@@ -50,7 +50,7 @@ pub fn of_csv(text: &str) -> Result<Vec<Column>> {
                 ("true" | "false", ..) => Cell::Boolean(cell == "true"),
                 (_, Ok(whole), _) => Cell::Integer(whole),
                 (_, _, Ok(number)) if number.is_finite() => Cell::Number(number),
-                _ => Cell::Text(cell.to_owned()),
+                _ => Cell::Text(table::as_given(cell).to_owned()),
             });
         }
     }

@@ -13,16 +13,15 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
 use hadar_study::range::{Line, ObjectBounds, Ranging, SignalBounds};
-use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it. `large` has the maps that the result does
 /// not.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &Ranging, out: &Path, large: Option<&MapFiles>) -> Result<Bundle> {
+pub fn bundle(result: &Ranging, large: Option<&MapFiles>) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("bounds.csv", bounds(result))?;
     if let Some(cells) = cells(result) {
         bundle.add_table("cells.csv", cells)?;

@@ -10,12 +10,12 @@ use crate::cube_format::CubeFormat;
 use crate::table::{Table, optional};
 use hadar::error::Result;
 use hadar_formats::cube::{mat_file, npy_map};
+use hadar_scenario::DecomposeScenario;
 use hadar_scenario::decompose::{
     CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
-use hadar_scenario::{DecomposeScenario, Source};
 use hadar_study::render::{Picture, Rendered};
-use std::path::Path;
+use std::path::PathBuf;
 
 /// 0 degC, K.
 const FREEZING_K: f64 = 273.15;
@@ -37,9 +37,9 @@ pub enum Layout {
 ///
 /// # Errors
 /// A figure that cannot be drawn, a cube that is too large for its format.
-pub fn bundle(result: &Rendered, layout: Layout, format: CubeFormat, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &Rendered, layout: Layout, format: CubeFormat) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     let spectra = |names: &[String], columns: &[Vec<f64>]| {
         let header = std::iter::once("wavenumber_cm1").chain(names.iter().map(String::as_str));
         let mut table = Table::new(header);
@@ -65,7 +65,7 @@ pub fn bundle(result: &Rendered, layout: Layout, format: CubeFormat, out: &Path)
             Layout::Hadar => database(&mut bundle, result, view, side)?,
         }
     }
-    bundle.add("decompose.toml", decomposition(result, layout, format, out).to_toml_beside(out));
+    bundle.add("decompose.toml", decomposition(result, layout, format).to_toml());
     bundle.add_plots(&[figures::scene(result)])?;
     Ok(bundle)
 }
@@ -114,9 +114,8 @@ fn database(bundle: &mut Bundle, result: &Rendered, view: &Picture, side: &str) 
 }
 
 /// The scenario that takes the left view apart.
-fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat, out: &Path) -> DecomposeScenario {
-    let there = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
-    let file = |name: &str| there.join(name);
+fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat) -> DecomposeScenario {
+    let file = |name: &str| PathBuf::from(name);
     let kelvin = result.surfaces.iter().filter(|row| row.pure > 0 && row.depth_m.is_some());
     let ends = kelvin.fold([f64::INFINITY, 0.0_f64], |[low, high], row| {
         [low.min(row.temperature_k), high.max(row.temperature_k)]
@@ -182,7 +181,8 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat, out: &Pa
         vision: Default::default(),
         categories,
         segmentation: Default::default(),
-        source: Source::default(),
+        // Files of its camera and bands are those of this scenario.
+        source: result.scenario.source.clone(),
     }
 }
 

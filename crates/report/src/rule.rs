@@ -19,10 +19,10 @@ use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
+use hadar::words::visible;
 use hadar_scenario::rule::Verdict;
 use hadar_study::companion::Companion;
 use hadar_study::{CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning};
-use std::path::Path;
 
 /// What can be changed of a camera.
 const HARDWARE: [Quantity; 5] =
@@ -42,15 +42,15 @@ pub struct Output<'a> {
 ///
 /// # Errors
 /// A table that cannot be written.
-pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> Result<Bundle> {
     let title = certificate::title(answer);
     let mut bundle = Bundle::about(Some(&title));
-    bundle.add("certificate.md", certificate::page(study, answer, provenance));
+    bundle.add("certificate.md", visible(&certificate::page(study, answer, provenance)).into_owned());
     let data = record::text(&record::record(study, answer, provenance)?)?;
     let statement = record::statement(answer, provenance, &data);
     bundle.add(record::NAME, data);
     bundle.add("certificate.intoto.json", record::text(&statement)?);
-    bundle.add_asked("rule.toml", study.rule().to_toml_beside(out));
+    bundle.add_asked("rule.toml", study.rule().to_toml());
     bundle.add_table("cameras.csv", cameras(answer))?;
     bundle.add_table("worst_cases.csv", worst_cases(answer))?;
     let companions: Vec<&Companion> = answer

@@ -13,15 +13,14 @@ use crate::table::{Table, number};
 use crate::words::simulate::{pair, retrieved};
 use hadar::error::Result;
 use hadar_study::{NoiseCurves, Simulation, Study};
-use std::path::Path;
 
 /// All files of a simulation; paths in the scenario are written relative to `out` where they lie below it.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>) -> Result<Bundle> {
     let mut bundle = Bundle::about(study.scenario().title.as_deref());
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     bundle.add_table("simulation.csv", figures::simulation_table(result))?;
     bundle.add_table("confusion.csv", confusion(result))?;
     spectra::add(&mut bundle, result)?;

@@ -17,7 +17,6 @@ use hadar::identifiability::detection;
 use hadar::order;
 use hadar::policy::TradeOff;
 use hadar_study::{PairResult, Sensitivity, Sizing, Study, Surface};
-use std::path::Path;
 
 /// Most alternatives that are drawn into one plot.
 const DRAWN: usize = 6;
@@ -26,9 +25,9 @@ const DRAWN: usize = 6;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &Study, result: &Sizing) -> Result<Bundle> {
     let mut bundle = Bundle::about(study.scenario().title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
     bundle.add_table("requirement.csv", requirement(result))?;
     if let Some(camera) = &result.camera {

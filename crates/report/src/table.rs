@@ -1,6 +1,7 @@
 //! Tables as CSV, with the unit in every header, and as Markdown.
 
 use hadar::error::{Error, Result};
+use std::borrow::Cow;
 
 /// A column: its name, and its cell in a row.
 pub type Column<'a, T, C = String> = (&'a str, &'a dyn Fn(&T) -> C);
@@ -68,22 +69,46 @@ impl Table {
         &self.rows
     }
 
-    /// The table as CSV text.
+    /// The table as CSV text. A text that a spreadsheet would compute (`=1+1`, `@SUM(A1)`, `-2+3`) has an apostrophe before it, by which
+    /// it is taken for text; numbers are as they are.
     ///
     /// # Errors
     /// A row whose length is not the header's.
     pub fn to_csv(&self) -> Result<String> {
         let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
         let failed = |error: csv::Error| Error::malformed(error.to_string(), "report this as a bug");
-        writer.write_record(&self.header).map_err(failed)?;
-        for row in &self.rows {
-            writer.write_record(row).map_err(failed)?;
+        for row in std::iter::once(&self.header).chain(&self.rows) {
+            writer.write_record(row.iter().map(|cell| inert(cell).into_owned())).map_err(failed)?;
         }
         let bytes = writer
             .into_inner()
             .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
+}
+
+/// Whether a spreadsheet would take a cell for a formula, behind apostrophes that were before it. A dash alone is none, nor is what
+/// begins with a number and has no operator in it, such as several numbers or `-20 to 50 degC`.
+fn is_formula(cell: &str) -> bool {
+    let cell = cell.trim_start_matches('\'');
+    let signed = cell.starts_with(['+', '-']) && cell != "-";
+    let first = cell.split(' ').next().unwrap_or_default().trim_end_matches([';', ',']);
+    let harmless = first.parse::<f64>().is_ok()
+        && !cell.chars().skip(1).any(|letter| "*/^&=<>|!(\"'@".contains(letter))
+        && !cell.contains(" +");
+    cell.starts_with(['=', '@', '\t', '\r', '\n', '\u{FF1D}', '\u{FF0B}', '\u{FF0D}', '\u{FF20}'])
+        || signed && !harmless
+}
+
+/// A cell as it is written, which no spreadsheet computes.
+fn inert(cell: &str) -> Cow<'_, str> {
+    if is_formula(cell) { format!("'{cell}").into() } else { cell.into() }
+}
+
+/// A cell as it was before it was written.
+#[must_use]
+pub fn as_given(cell: &str) -> &str {
+    cell.strip_prefix('\'').filter(|cell| is_formula(cell)).unwrap_or(cell)
 }
 
 /// A table in Markdown: its head, and a line for each row.
@@ -151,6 +176,36 @@ mod tests {
     fn a_stroke_ends_no_cell() {
         let expected = "| a | b |\n|---|---|\n| 1 | x \\| y |\n";
         assert_eq!(markdown(&["a", "b"], [["1", "x | y"]]), expected);
+    }
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        for (cell, written) in [
+            ("=HYPERLINK(\"x\")", "'=HYPERLINK(\"x\")"),
+            ("@SUM(A1)", "'@SUM(A1)"),
+            ("+1+cmd|' /C calc'!A0", "'+1+cmd|' /C calc'!A0"),
+            ("-2+3", "'-2+3"),
+            ("\t=1", "'\t=1"),
+            ("'=1", "''=1"),
+            ("\u{FF1D}1", "'\u{FF1D}1"),
+            // Numbers, one or several, and what is no formula.
+            ("-2.5e-3", "-2.5e-3"),
+            ("+7", "+7"),
+            ("-1 2 -3.5", "-1 2 -3.5"),
+            ("-20 to 50 degC", "-20 to 50 degC"),
+            ("-1 +cmd|' /C calc'!A0", "'-1 +cmd|' /C calc'!A0"),
+            ("-A1", "'-A1"),
+            ("-", "-"),
+            ("skin@wet", "skin@wet"),
+            ("'tis", "'tis"),
+            ("", ""),
+        ] {
+            assert_eq!(inert(cell), written);
+            assert_eq!(as_given(&inert(cell)), cell);
+        }
+        let mut table = Table::new(["=name", "x"]);
+        table.push(vec!["@a".into(), number(-1.0)]);
+        assert_eq!(table.to_csv().unwrap(), "'=name,x\n'@a,-1\n");
     }
 
     #[test]

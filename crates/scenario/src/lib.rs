@@ -33,6 +33,7 @@ pub mod range;
 mod read;
 mod reader;
 pub mod render;
+mod report_inputs;
 pub mod rule;
 pub mod scene;
 mod scene_folder;

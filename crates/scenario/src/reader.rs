@@ -64,26 +64,21 @@ macro_rules! file {
 
             /// The file again as TOML, every default filled in; reading it gives the same question. What stays silent
             /// has no value (a distance, an atmosphere, a camera) or one that others know (a preset's fields, the
-            /// library's materials). Paths of files are absolute, so that it may be put anywhere on the same machine.
+            /// library's materials). Paths of files are those of the file, from its folder, so that it may be put beside it;
+            /// a file that was named with its whole path outside of that folder has its name alone.
             #[must_use]
             pub fn to_toml(&self) -> String {
-                $crate::entries::text(self.document($crate::paths::Paths { beside: None }), &self.$($source).+)
-            }
-
-            /// As `to_toml`, for a file in `directory` that may be moved along with its neighbours: paths below
-            /// `directory` are written relative to it, others absolute.
-            #[must_use]
-            pub fn to_toml_beside(&self, directory: &std::path::Path) -> String {
-                let absolute = std::path::absolute(directory).ok();
-                let paths = $crate::paths::Paths { beside: absolute.as_deref() };
-                $crate::entries::text(self.document(paths), &self.$($source).+)
+                let source = &self.$($source).+;
+                $crate::paths::from_home(source, |paths| $crate::entries::text(self.document(paths), source))
             }
         }
 
-        /// The same keys as the TOML, quantities in the units used inside, with absolute paths.
+        /// The same keys as the TOML, quantities in the units used inside.
         impl serde::Serialize for $type {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-                $crate::entries::entries(self.document($crate::paths::Paths { beside: None }), serializer)
+                $crate::paths::from_home(&self.$($source).+, |paths| {
+                    $crate::entries::entries(self.document(paths), serializer)
+                })
             }
         }
     };

@@ -6,10 +6,11 @@ use std::sync::Arc;
 
 use toml::de::{DeTable, DeValue};
 
+use super::report_inputs::ReportInputs;
 use super::setting::Setting;
 pub(super) use super::setting::dotted;
 use super::stated_camera::StatedCamera;
-use hadar::error::Place;
+use hadar::error::{Place, Result};
 use hadar::instrument::CameraSpec;
 
 /// Longest name of a table or list whose entries are noted, bytes. No scenario needs as much, and names of entries
@@ -24,6 +25,10 @@ const LONGEST_TEXT: usize = 40;
 pub struct Source {
     /// The scenario file as it was named, `None` for text from elsewhere.
     pub path: Option<PathBuf>,
+    /// The folder that its relative paths start from, if that is not its own.
+    pub inputs: Option<PathBuf>,
+    /// Of a scenario that a report wrote: where that has its files from.
+    pub(super) report: Option<Arc<ReportInputs>>,
     /// Its text.
     pub text: Arc<str>,
     /// Line of each key that was written, e.g. `target.material` or `environment[0].lighting`.
@@ -44,7 +49,22 @@ impl Source {
     /// The directory that relative paths of the scenario start from; empty for the current one.
     #[must_use]
     pub fn directory(&self) -> &Path {
+        self.inputs.as_deref().unwrap_or_else(|| self.own_directory())
+    }
+
+    fn own_directory(&self) -> &Path {
         self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""))
+    }
+
+    /// Where a file is that the scenario names.
+    ///
+    /// # Errors
+    /// One of a report that is not there as the report has read it.
+    pub(super) fn located(&self, name: &str) -> Result<PathBuf> {
+        match &self.report {
+            Some(report) => report.located(name, self.own_directory(), self.inputs.as_deref()),
+            None => Ok(self.directory().join(name)),
+        }
     }
 
     /// Where `key` stands; see [`super::Scenario::place`].

@@ -1,5 +1,6 @@
 //! A file as it is to be read: its text, where it is from, and the values that stand in the place of its own.
 
+use super::report_inputs::ReportInputs;
 use super::setting::Setting;
 use super::source::Source;
 use super::stated_camera::StatedCamera;
@@ -23,6 +24,8 @@ pub struct Written {
     pub text: String,
     /// The file, `None` for text from elsewhere.
     pub path: Option<PathBuf>,
+    /// The folder that its relative paths start from, if that is not its own.
+    pub inputs: Option<PathBuf>,
     /// What stands in the place of its own values, the last one of a key.
     pub settings: Vec<Setting>,
     /// Cameras of the user's own, which it may name.
@@ -93,6 +96,12 @@ impl Written {
         Self { cameras, ..self }
     }
 
+    /// The same, whose relative paths start from a folder, if one is given.
+    #[must_use]
+    pub fn with_inputs(self, inputs: Option<PathBuf>) -> Self {
+        Self { inputs, ..self }
+    }
+
     /// The same, which may name no file of this machine: one that does is refused before anything is looked for.
     ///
     /// ```
@@ -110,7 +119,9 @@ impl Written {
     pub(super) fn source(&self) -> Source {
         let (path, settings, cameras) = (self.path.clone(), self.settings.clone(), Arc::clone(&self.cameras));
         Source {
+            report: path.as_deref().and_then(ReportInputs::beside).map(Arc::new),
             path,
+            inputs: self.inputs.clone(),
             text: self.text.as_str().into(),
             settings,
             cameras,

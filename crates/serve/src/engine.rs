@@ -21,7 +21,6 @@ use hadar_study::budget::Limits;
 use hadar_study::warning::Warning;
 use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Study, YesNo};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
 
 /// Bands times alternatives that are computed for a page: some seconds of work. Larger questions are for the command.
 const MOST_SPECTRAL_VALUES: usize = 100_000;
@@ -231,7 +230,7 @@ impl Engine {
         let command = ["hadar", "size", NAME].map(str::to_owned).to_vec();
         let provenance = Provenance::of(&self.commit, command, 1, &read)?;
         let about = About { answer: &size::text(&result, &study), provenance: &provenance, inputs: &[] };
-        size::bundle(&study, &result, Path::new(""))?.page(&about)
+        size::bundle(&study, &result)?.page(&about)
     }
 
     /// The text of a question with its changes.

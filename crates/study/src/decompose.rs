@@ -84,7 +84,6 @@ impl DecomposeStudy {
             Some(_) => None,
             None => Some(self.memory()?),
         };
-        let start = std::time::Instant::now();
         let (setting, options) = (self.setting(), self.options(skipping));
         let finished = std::sync::atomic::AtomicUsize::new(0);
         let progress = |more: usize| {
@@ -112,7 +111,6 @@ impl DecomposeStudy {
         };
         decompose_by_rows(method, &setting, &options, &self.cube, (height, &mut take), &progress)
             .map_err(|error| self.at_cube(error))?;
-        let seconds = start.elapsed().as_secs_f64();
         let mut warnings = self.warnings.clone();
         if options.library_error.is_none() && method.names_materials() {
             warnings.push(Warning::LibraryTakenAsExact);
@@ -131,7 +129,7 @@ impl DecomposeStudy {
             .map_err(|error| self.at_cube(error))?;
         let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
         let answer = (truth, vision, segmented);
-        Ok(summary(self, (method, seconds), (&counted, found), answer, warnings, kept))
+        Ok(summary(self, method, (&counted, found), answer, warnings, kept))
     }
 
     /// Refuses what the scenario asks for and the method has not.

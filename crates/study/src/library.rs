@@ -59,7 +59,6 @@ impl LibraryStudy {
     /// # Errors
     /// Counts that are negative, a cube that cannot be read, more clusters than pixels that have an emissivity.
     pub fn library(&self, seed: u64, done: &(dyn Fn(usize, usize) + Sync)) -> Result<LibraryFound> {
-        let start = std::time::Instant::now();
         let (measured, scenario) = (&self.measured, &self.scenario);
         let setting = Setting {
             bands: &measured.bands,
@@ -146,7 +145,6 @@ impl LibraryStudy {
                 clusters: hardly.into_iter().map(|one| one.0).collect(),
             });
         }
-        let seconds = start.elapsed().as_secs_f64();
-        Ok(results::summary(scenario, measured, found, truth, seconds, (misfits, warnings)))
+        Ok(results::summary(scenario, measured, found, truth, (misfits, warnings)))
     }
 }

@@ -70,8 +70,6 @@ pub struct Rendered {
     pub noise_variance: f64,
     /// Seed of the noise; expected counts without.
     pub seed: Option<u64>,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What is written of each view, the left one first.
@@ -193,7 +191,6 @@ impl RenderStudy {
     /// # Errors
     /// A scene that cannot be rendered: a camera inside an object.
     pub fn render(&self, plan: RenderPlan, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Rendered> {
-        let start = std::time::Instant::now();
         let at = |error: Error| error.at(self.scenario.place("scene"));
         let options = stage::options(&self.scenario.scene);
         let scene = &self.staged.scene;
@@ -235,7 +232,6 @@ impl RenderStudy {
             counts_median: sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN),
             noise_variance: noise.get(bands / 2).copied().unwrap_or(f64::NAN),
             seed: plan.seed,
-            seconds: start.elapsed().as_secs_f64(),
             warnings,
             views,
             wavenumbers_cm1: nodes.to_vec(),

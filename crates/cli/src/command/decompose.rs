@@ -59,7 +59,7 @@ pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
         study.decompose(args.method.into(), global.skipping(), keep, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = decompose::text(&result);
-    result.stats.add(&global.report(&text, |out| decompose::bundle(&result, out, room.as_deref()))?);
+    result.stats.add(&global.report(&text, || decompose::bundle(&result, room.as_deref()))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -21,7 +21,7 @@ const CAMERAS: Flags = &["cameras"];
 const UNCOVERED: Flags = &["skip_uncovered"];
 const SEED: Flags = &["seed"];
 const SKIP: Flags = &["no_skip"];
-const SET: Flags = &["set"];
+const SET: Flags = &["set", "inputs"];
 
 /// Every command that does something, by the words that name it, with the flags that it takes beside its own.
 const TAKEN: &[(&str, &[Flags])] = &[

@@ -60,6 +60,9 @@ pub struct Global {
     /// Cameras of your own that a file may name, [[camera]] tables with a name and the keys of [camera]; may be given several times
     #[arg(long, value_name = "FILE")]
     pub(super) cameras: Vec<PathBuf>,
+    /// Folder that relative paths of the file start from (default: its own)
+    #[arg(long, value_name = "DIR")]
+    pub(super) inputs: Option<PathBuf>,
     /// Leave out alternatives whose spectra do not cover the bands, with a warning
     #[arg(long)]
     pub(super) skip_uncovered: bool,
@@ -143,6 +146,7 @@ impl Global {
             only_library: yes(places, "only_library"),
             strict: yes(places, "strict"),
             cameras: many(places, "cameras"),
+            inputs: one(places, "inputs"),
             skip_uncovered: yes(places, "skip_uncovered"),
             seed: one(places, "seed").unwrap_or(1),
             threads: one(places, "threads"),
@@ -184,7 +188,15 @@ impl Global {
             for warning in library.warnings() {
                 self.note(&Stream::Err.message("warning:", warning));
             }
-            library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
+            let home = inputs::so_far().home();
+            // In an answer files have the names of its inputs.
+            let said = |remark: &String| {
+                let name = |said: String, path: &PathBuf| {
+                    said.replace(&*path.to_string_lossy(), &inputs::called(home.as_deref(), path))
+                };
+                Warning::Library { remark: self.library.iter().fold(remark.clone(), name) }
+            };
+            library.warnings().iter().map(said).collect()
         });
         Ok(library)
     }
@@ -208,6 +220,7 @@ impl Global {
         }
         Ok(written
             .with(self.set.iter().cloned())
+            .with_inputs(self.inputs.clone())
             .with_cameras(OwnCameras::from_files(&self.cameras)?.stated.into()))
     }
 
@@ -279,13 +292,13 @@ impl Global {
     }
 
     /// Makes and writes a report where there is a folder for it; what that took.
-    pub(super) fn report(&self, answer: &str, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<Work> {
+    pub(super) fn report(&self, answer: &str, make: impl FnOnce() -> Result<Bundle>) -> Result<Work> {
         let mut work = Work::default();
         let Some(out) = &self.out else {
             work.spare(Thing::Reports, Reason::NotAsked, 1);
             return Ok(work);
         };
-        let bundle = make(out)?;
+        let bundle = make()?;
         self.write(&bundle, out, Some(&with_settings(answer, &self.set)))?;
         work.compute(Thing::Reports, 1);
         work.compute(Thing::Figures, bundle.figures() as u64);

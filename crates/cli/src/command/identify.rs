@@ -96,7 +96,7 @@ fn one(scenario: &Path, args: &IdentifyArgs, global: &Global) -> Result<u8> {
     let mut answers = study.answer(&asked, &watch)?;
     bars.iter().for_each(Bar::finish);
     let text = identify::text(&answers, &study);
-    let report = global.report(&text, |out| identify::bundle(&study, &answers, global.seed, out))?;
+    let report = global.report(&text, || identify::bundle(&study, &answers, global.seed))?;
     answers.identification.stats.add(&report);
     global.answer(&answers, &text, &answers.identification.stats)?;
     Ok(0)

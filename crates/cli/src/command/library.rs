@@ -24,7 +24,7 @@ pub(super) fn run(args: &LibraryArgs, global: &Global) -> Result<ExitCode> {
     let mut result = study.library(global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = library::text(&result);
-    result.stats.add(&global.report(&text, |out| library::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, || library::bundle(&result))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -9,7 +9,8 @@ pub(super) const COMMIT: &str = env!("HADAR_COMMIT");
 
 /// Options that change no answer: where it is put, how it is printed, by how many threads, processes and runs it is found.
 const SILENT: [&str; 6] = ["--json", "--stats", "--quiet", "-q", "--force", "--merge"];
-const SILENT_WITH_VALUE: [&str; 4] = ["--out", "--threads", "--shard", "--recompute"];
+const SILENT_WITH_VALUE: [&str; 7] =
+    ["--out", "--threads", "--shard", "--recompute", "--inputs", "--time-limit", "--memory-limit"];
 
 /// Names that most reports take. All of them are known only when the work is done, and are looked at then.
 pub(super) const USUAL_NAMES: [&str; 7] =

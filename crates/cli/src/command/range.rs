@@ -58,7 +58,7 @@ fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> R
     let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = air_ranging::text(&result);
-    result.stats.add(&global.report(&text, |out| air_ranging::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, || air_ranging::bundle(&result))?);
     global.answer(&result, &text, &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { 3 } else { 0 })
@@ -89,7 +89,7 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
         true => result.verdict.sentence.say(),
         false => range::text(&result),
     };
-    result.stats.add(&global.report(&text, |out| range::bundle(&result, out, maps.as_ref()))?);
+    result.stats.add(&global.report(&text, || range::bundle(&result, maps.as_ref()))?);
     global.answer(&result, &text, &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { 3 } else { 0 })

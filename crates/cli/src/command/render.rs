@@ -55,7 +55,7 @@ pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
     let result = study.render(plan, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = render::text(&result);
-    let work = global.report(&text, |out| render::bundle(&result, layout, format, out))?;
+    let work = global.report(&text, || render::bundle(&result, layout, format))?;
     global.answer_with(json::value(&result)?, &text, &work)?;
     Ok(ExitCode::SUCCESS)
 }

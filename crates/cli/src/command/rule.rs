@@ -5,10 +5,11 @@ use super::several;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
-use hadar::inputs::inputs_of;
+use hadar::inputs::{self, inputs_of};
 use hadar::material::Library;
 use hadar_formats::file;
-use hadar_report::manifest::{Input, sha256_of_file};
+use hadar_formats::hash::{nearest_folder, sha256_of_file};
+use hadar_report::manifest::Input;
 use hadar_report::rule;
 use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, STDIN, Setting, Written, day};
@@ -17,7 +18,6 @@ use hadar_study::{
     CameraAnswer, Condition, Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning,
 };
 use serde_json::Value;
-use std::iter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -120,7 +120,7 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     }
     let text = if extent == Extent::Verdicts { rule::check(&answer) } else { rule::text(&answer, &study) };
     let provenance = global.provenance()?;
-    answer.stats.add(&global.report(&text, |out| rule::bundle(&study, &answer, &provenance, out))?);
+    answer.stats.add(&global.report(&text, || rule::bundle(&study, &answer, &provenance))?);
     global.answer(&rule::Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;
     Ok(code(args, &answer))
 }
@@ -160,12 +160,16 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     })
     .map_err(|error| told(format!("what it set is not readable: {error}")))?;
     let on = of(&before, "on").as_str().and_then(day);
-    let inputs: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
+    let listed: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
-    let path = found_again(path, certificate, inputs.first());
+    let path = found_again(path, certificate, listed.first(), global);
     let home = path.parent().unwrap_or(Path::new(""));
-    for input in inputs.iter().filter(|input| !input.path.starts_with("built-in: ")) {
+    for input in listed.iter().filter(|input| !input.path.starts_with("built-in: ")) {
         let file = home.join(&input.path);
+        // What is not in the folder of the rule, such as --library, is compared when it is read.
+        if !file.exists() {
+            continue;
+        }
         let now =
             sha256_of_file(&file).map_err(|error| Error::file("read for its hash", &file, error.kind()))?;
         if now != input.sha256 {
@@ -201,24 +205,26 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let digits = if off == 0.0 { "to the last digit".to_owned() } else { format!("to {off:.1e}") };
     let text = format!(
         "Verified: {} inputs are as they were, and all that {} says was found again, {digits}.\n",
-        inputs.len(),
-        certificate.display()
+        listed.len(),
+        inputs::called(None, certificate)
     );
     global.answer(&Output { verified: true, largest_difference: off }, &text, &answer.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// The rule of a certificate: as the one who made it named it, or from a folder that the certificate is in; the one of its content, if
-/// there are several.
-fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>) -> PathBuf {
-    let absolute = std::path::absolute(certificate).unwrap_or_else(|_| certificate.to_owned());
-    let above = absolute.ancestors().skip(1).map(|folder| folder.join(&path));
-    let there: Vec<PathBuf> = iter::once(path.clone()).chain(above).filter(|path| path.is_file()).collect();
-    let is_it = |path: &&PathBuf| {
-        let hash = sha256_of_file(path).ok().flatten();
-        rule_read.is_some_and(|input| input.sha256 == hash)
+/// The rule of a certificate: where it is told to be, else by its content from here or near the certificate.
+fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>, global: &Global) -> PathBuf {
+    if let Some(inputs) = &global.inputs {
+        return inputs.join(path);
+    }
+    let is_it = |folder: &Path| {
+        let hash = sha256_of_file(&folder.join(&path)).ok().flatten();
+        hash.is_some() && rule_read.is_some_and(|input| input.sha256 == hash)
     };
-    there.iter().find(is_it).or(there.first()).cloned().unwrap_or(path)
+    let absolute = std::path::absolute(certificate).ok();
+    let near = absolute.as_deref().and_then(Path::parent).and_then(|folder| nearest_folder(folder, is_it));
+    let here = || std::env::current_dir().ok().and_then(|folder| nearest_folder(&folder, is_it));
+    near.or_else(here).map_or_else(|| path.clone(), |folder| folder.join(&path))
 }
 
 /// How exact a stand-in must be.
@@ -227,7 +233,7 @@ fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Glo
     let answer = study.stand_in(library, on, &|done, all| bar.set(done, all))?;
     bar.finish();
     let text = rule::stand_in(&answer);
-    let work = global.report(&text, |_| rule::stand_in_bundle(&answer))?;
+    let work = global.report(&text, || rule::stand_in_bundle(&answer))?;
     global.answer(&answer, &text, &work)?;
     Ok(0)
 }

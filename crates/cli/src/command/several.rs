@@ -28,7 +28,8 @@ pub(super) fn each(
         let found = "standard input is named twice, and can be read once";
         return Err(Error::malformed(found, "name `-` once"));
     }
-    let folders = folders(paths);
+    let (folders, home) = (folders(paths), shared_folder(paths));
+    let named = |path: &Path| named(path, home.as_deref());
     if let Some(out) = &global.out {
         folders.iter().try_for_each(|name| global.folder(&out.join(name)).check())?;
     }
@@ -43,13 +44,13 @@ pub(super) fn each(
         inputs::add(&read);
         let (exit_code, error) = match outcome {
             Ok(code) => (code, None),
-            Err(error) => (1, Some(error.to_string())),
+            Err(error) => (1, Some(error.to_string().replace(&*path.to_string_lossy(), &named(path)))),
         };
         let answer = own.kept().filter(|_| error.is_none());
         rows.push(Row { scenario: named(path), exit_code, error, answer });
     }
     let text = several::text(question, &rows);
-    let work = global.report(&text, |_| several::bundle(question, &rows))?;
+    let work = global.report(&text, || several::bundle(question, &rows))?;
     let worst = rows.iter().map(|row| row.exit_code).min_by_key(|code| match code {
         1 => 0,
         0 => 2,
@@ -64,8 +65,25 @@ pub(super) fn each(
     Ok(ExitCode::from(worst.unwrap_or(0)))
 }
 
-fn named(path: &Path) -> String {
-    if path.as_os_str() == "-" { STDIN.to_owned() } else { path.display().to_string() }
+/// How a scenario is called in the table: by the way to it from the folder that all are in, wherever that is.
+fn named(path: &Path, home: Option<&Path>) -> String {
+    if path.as_os_str() == "-" { STDIN.to_owned() } else { inputs::called(home, path) }
+}
+
+/// The deepest folder that all files are in.
+fn shared_folder(paths: &[PathBuf]) -> Option<PathBuf> {
+    let folder = |path: &PathBuf| {
+        let whole = std::path::absolute(path).ok()?;
+        let folder = whole.parent()?;
+        Some(folder.canonicalize().unwrap_or_else(|_| folder.to_owned()))
+    };
+    let mut folders = paths.iter().filter(|path| path.as_os_str() != "-").filter_map(folder);
+    let first = folders.next()?;
+    let shared = |one: PathBuf, other: PathBuf| {
+        let same = one.components().zip(other.components()).take_while(|(one, other)| one == other);
+        same.map(|(part, _)| part).collect()
+    };
+    Some(folders.fold(first, shared))
 }
 
 /// A folder for each, by the name of its file; a number behind those of the same name.

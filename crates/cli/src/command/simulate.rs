@@ -146,12 +146,12 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         global.write(&bundle, folder, None)?;
     }
     let text = simulate::text(&result, &study);
-    let report = global.report(&text, |out| {
+    let report = global.report(&text, || {
         let rival = result.points.first().and_then(|point| point.classes.get(1));
         let rival =
             rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
         let noise = rival.map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS)).transpose()?;
-        simulate::bundle(&study, &result, noise.as_ref(), out)
+        simulate::bundle(&study, &result, noise.as_ref())
     })?;
     result.stats.add(&planning.and(&report));
     global.answer(&result, &text, &result.stats)?;
@@ -168,7 +168,7 @@ fn average(
 ) -> Result<ExitCode> {
     let mut result = study.simulate_average(plan)?;
     let text = average_report::text(&result, study);
-    let report = global.report(&text, |out| average_report::bundle(study, &result, out))?;
+    let report = global.report(&text, || average_report::bundle(study, &result))?;
     result.stats.add(&planning.and(&report));
     global.answer(&result, &text, &result.stats)?;
     Ok(if args.check && !result.brackets_hold { ExitCode::from(3) } else { ExitCode::SUCCESS })
@@ -185,7 +185,7 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
         study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = thermometry_report::text(&result);
-    result.stats.add(&global.report(&text, |out| thermometry_report::bundle(study, &result, out))?);
+    result.stats.add(&global.report(&text, || thermometry_report::bundle(study, &result))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -54,7 +54,7 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
         true => size::check(&result),
         false => size::text(&result, &study),
     };
-    result.stats.add(&global.report(&text, |out| size::bundle(&study, &result, out))?);
+    result.stats.add(&global.report(&text, || size::bundle(&study, &result))?);
     global.answer(&result, &text, &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");

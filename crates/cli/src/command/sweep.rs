@@ -238,7 +238,8 @@ fn answered(
     let text = sweep::text(swept);
     let mut files = Vec::new();
     if let Some(out) = global.out.as_ref().filter(|_| to_go == 0 || args.merge) {
-        let title = format!("{} of {}", swept.question.name(), args.scenario.display());
+        let file = inputs::called(inputs::so_far().home().as_deref(), &args.scenario);
+        let title = format!("{} of {file}", swept.question.name());
         let bundle = sweep::bundle(swept, &title)?;
         let bundle = global.formatted(&bundle)?;
         files.extend(bundle.names().map(str::to_owned));

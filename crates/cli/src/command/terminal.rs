@@ -4,6 +4,7 @@
 //! `NO_COLOR` and `CLICOLOR_FORCE`.
 
 use console::{Style, Term};
+use hadar::words::visible;
 
 /// Narrowest column that is worth wrapping into.
 const NARROWEST: usize = 24;
@@ -37,12 +38,12 @@ impl Stream {
 
     /// An answer as it is shown here.
     pub(super) fn answer(self, text: &str) -> String {
-        dressed(text, self.width(), self.is_coloured())
+        dressed(&visible(text), self.width(), self.is_coloured())
     }
 
     /// A message behind its first word (`error:`), as it is shown here.
     pub(super) fn message(self, word: &str, text: &str) -> String {
-        let line = wrapped(&format!("{word} {text}"), self.width());
+        let line = wrapped(&format!("{word} {}", visible(text)), self.width());
         match line.strip_prefix(word) {
             Some(rest) => {
                 format!("{}{rest}", style_of(word).force_styling(self.is_coloured()).apply_to(word))

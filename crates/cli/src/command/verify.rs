@@ -5,8 +5,9 @@ use super::{Command, dispatch, line, provenance};
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar::inputs::inputs_of;
+use hadar_formats::hash::{nearest_folder, sha256_of_file};
 use hadar_report::folder::Scratch;
-use hadar_report::manifest::{Provenance, sha256_of_file};
+use hadar_report::manifest::{Input, Provenance};
 use hadar_report::verify::{Stored, text};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,10 +17,9 @@ use std::sync::Arc;
 pub(super) struct VerifyArgs {
     /// The folder of a report (--out)
     folder: PathBuf,
-    /// The folder in which the command of the report was given, from which it names its files (default: this one, else one that the
-    /// report is in)
+    /// The folder that the report's inputs are in, by the names that it gives them (default: one near by in which they are as they were)
     #[arg(long, value_name = "DIR")]
-    from: Option<PathBuf>,
+    inputs: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &VerifyArgs, global: &Global) -> Result<ExitCode> {
@@ -28,13 +28,13 @@ pub(super) fn run(args: &VerifyArgs, global: &Global) -> Result<ExitCode> {
     let stored = Stored::read(&folder)?;
     let (command, given) = read_again(stored.provenance()).map_err(|error| error.in_file(&folder))?;
     let scenario = scenario_of(stored.provenance());
-    let base = base(args, &folder, &stored, scenario.as_deref())?;
+    let base = base(args, &folder, &stored)?;
     std::env::set_current_dir(&base)
         .map_err(|error| Error::file("give the command from", &base, error.kind()))?;
     // As it is, not as the report says.
     let was = stored.provenance().inputs.first().and_then(|input| input.sha256.clone());
     let asked = scenario.as_deref().and_then(|path| sha256_of_file(path).ok().flatten());
-    let asked = asked.filter(|is| args.from.is_some() || Some(is) == was.as_ref());
+    let asked = asked.filter(|is| args.inputs.is_some() || Some(is) == was.as_ref());
     let scratch = Scratch::temporary()?;
     let made = scratch.place().join("report");
     let remade = Arc::new(Remade::new(
@@ -94,20 +94,27 @@ fn scenario_of(provenance: &Provenance) -> Option<PathBuf> {
     Some(if word == "-" { first.to_owned() } else { word.into() })
 }
 
-/// The folder in which the command was given: one in which the file of the question is as it was; of a report without a copy of it, else one
-/// in which it is.
-fn base(args: &VerifyArgs, folder: &Path, stored: &Stored, scenario: Option<&Path>) -> Result<PathBuf> {
-    if let Some(from) = &args.from {
-        return Ok(from.clone());
+/// The folder of the report's inputs: one near the report or near this one in which all of them are as they were; else one in which all but
+/// the file of the question are, of which the report has a copy; else one in which that file is. What is another there is then said.
+fn base(args: &VerifyArgs, folder: &Path, stored: &Stored) -> Result<PathBuf> {
+    if let Some(inputs) = &args.inputs {
+        return Ok(inputs.clone());
     }
     let here = std::env::current_dir()
         .map_err(|error| Error::file("find the current folder", Path::new("."), error.kind()))?;
-    let Some(scenario) = scenario else { return Ok(here) };
-    let was = stored.provenance().inputs.first().and_then(|input| input.sha256.clone());
-    let bases = || std::iter::once(here.as_path()).chain(folder.ancestors().skip(1));
-    let of = |base: &Path| sha256_of_file(&base.join(scenario)).ok().flatten();
-    let is_as_it_was = |base: &&Path| of(base).is_some_and(|hash| Some(hash) == was);
-    let any = || bases().find(|base| of(base).is_some() && stored.asked.is_none());
-    let found = bases().find(is_as_it_was).or_else(any);
-    Ok(found.unwrap_or(&here).to_owned())
+    let files: Vec<&Input> =
+        stored.provenance().inputs.iter().filter(|input| !input.path.starts_with("built-in: ")).collect();
+    let (question, others) = files.split_at(files.len().min(1));
+    let are_in = |inputs: &[&Input]| {
+        let is_it = |base: &Path| {
+            inputs.iter().all(|input| {
+                let there = sha256_of_file(&base.join(&input.path)).ok().flatten();
+                there.is_some() && there == input.sha256
+            })
+        };
+        let starts = folder.parent().into_iter().chain([here.as_path()]).filter(|_| !inputs.is_empty());
+        starts.into_iter().find_map(|start| nearest_folder(start, is_it))
+    };
+    let found = are_in(&files).or_else(|| stored.asked.as_ref().and_then(|_| are_in(others)));
+    Ok(found.or_else(|| are_in(question)).unwrap_or(here))
 }

@@ -37,7 +37,7 @@ list = ["20 m", "80 m", "400 m"]
 "#;
 
 /// A wall between sky and ground.
-const WALL: &str = r#"signal = "air"
+pub(crate) const WALL: &str = r#"signal = "air"
 [target]
 material = "concrete"
 temperature = "35 degC"
@@ -75,7 +75,7 @@ fn coefficient(nu: f64) -> f64 {
     5e-4 + 4e-3 * (-((nu - 950.0) / 70.0).powi(2)).exp()
 }
 
-fn with_air(scenario: &str) -> Folder {
+pub(crate) fn with_air(scenario: &str) -> Folder {
     let folder = Folder::with(scenario);
     let mut air = "wavenumber_cm1,tau_10m,tau_100m,tau_1000m".to_owned();
     for i in 0..=20 {

@@ -66,7 +66,7 @@ fn written(folder: &Folder, name: &str, bands: usize, samples: &[f64]) {
     write_npy(&folder.path().join(name), shape, samples).unwrap();
 }
 
-fn walls() -> Folder {
+pub(crate) fn walls() -> Folder {
     let folder = Folder::with(DECOMPOSITION);
     let (means, temperature) = wall();
     written(&folder, "frame_1.npy", BANDS, &drawn(&means, 0));

@@ -10,7 +10,7 @@ use hadar_formats::cube::write_npy;
 use hadar_simulate::draws::{Draws, generator};
 use std::path::Path;
 
-const SPECTROMETER: &str = r#"title = "FTIR of today"
+pub(crate) const SPECTROMETER: &str = r#"title = "FTIR of today"
 [bands]
 start = "800 cm^-1"
 stop = "1200 cm^-1"
@@ -59,7 +59,7 @@ fn scene_k(pixel: usize) -> f64 {
 }
 
 /// Blackbodies of 8 × 8 pixels, the mildest 60 mK warmer than it says; a scene; noise of 2.
-fn spectrometer(scenario: &str) -> Folder {
+pub(crate) fn spectrometer(scenario: &str) -> Folder {
     let folder = Folder::with(scenario);
     let response = |band: usize| 1e-15 * (1.0 + 0.3 * (band as f64 / 4.0).sin());
     let cube = |temperatures: &[f64], stream: u64| -> Vec<f64> {
@@ -315,7 +315,7 @@ fn a_scene_may_miss_samples() {
     }
 }
 
-const WHEEL: &str = r#"title = "Response of a camera"
+pub(crate) const WHEEL: &str = r#"title = "Response of a camera"
 [response]
 filters = "filters.csv"
 typical = "typical.csv"
@@ -341,7 +341,7 @@ reference_temperature = "35 degC"
 "#;
 
 /// The twin of prototype 1 before four blackbodies and a scene of 330 K.
-fn wheel(scenario: &str) -> (Folder, FilterWheelTwin) {
+pub(crate) fn wheel(scenario: &str) -> (Folder, FilterWheelTwin) {
     let folder = Folder::with(scenario);
     let mut twin = FilterWheelTwin::prototype().unwrap();
     let fine: Vec<f64> = (0..1201).map(|i| 400.0 + f64::from(i)).collect();

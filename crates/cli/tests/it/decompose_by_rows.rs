@@ -16,7 +16,6 @@ use hadar_scenario::DecomposeScenario;
 use hadar_study::decompose::{DecomposeStudy, Keep, Kept};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 
 const ROWS: usize = 19;
 const COLUMNS: usize = 13;
@@ -77,11 +76,10 @@ fn answer(
     assert_eq!(matches!(found.kept, Kept::InFiles(_)), rows.is_some());
     let out = folder.path().join("report");
     let _ = fs::remove_dir_all(&out);
-    let bundle = bundle(&found, Path::new("out"), rows.map(|_| room.path())).unwrap();
+    let bundle = bundle(&found, rows.map(|_| room.path())).unwrap();
     let about = About { answer: "", provenance: &Provenance::default(), inputs: &[] };
     bundle.write_report(&reports::Folder::new(&out, Strangers::Refuse), &about).unwrap();
-    let mut json = serde_json::to_value(&found).unwrap();
-    json.as_object_mut().unwrap().remove("seconds");
+    let json = serde_json::to_value(&found).unwrap();
     let files = fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
     let files = files
         .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), fs::read(&path).unwrap()));

@@ -8,7 +8,7 @@ use hadar_simulate::draws::generator;
 use rand::RngExt;
 use std::fs;
 
-const SCENARIO: &str = r#"title = "Wall and pane"
+pub(crate) const SCENARIO: &str = r#"title = "Wall and pane"
 [cube]
 data = "counts.npy"
 counts_per_photon_radiance = 1e-13
@@ -50,7 +50,7 @@ fn sky(band: usize) -> f64 {
 }
 
 /// Two materials in halves, temperatures and lighting at random, some 10⁶ counts a band, no noise.
-fn with(scenario: &str) -> Folder {
+pub(crate) fn with(scenario: &str) -> Folder {
     let folder = Folder::with(scenario);
     let rows: Vec<String> = (0..BANDS).map(|w| format!("{},{}", wavenumber(w), sky(w))).collect();
     folder.file("light.csv", &format!("wavenumber_cm1,sky\n{}\n", rows.join("\n")));

@@ -1,6 +1,7 @@
 //! Tests of the command `hadar`, and what several packages do together.
 
 mod air_ranging;
+mod anywhere;
 mod arrows;
 mod asked;
 mod calibrate;

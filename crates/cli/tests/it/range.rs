@@ -25,7 +25,7 @@ fn shape() -> Shape {
     Shape::new(ROWS, COLUMNS, BANDS).unwrap()
 }
 
-const CUBE: &str = "[cube]\nleft = \"left.npy\"\ndepth = \"10 m\"\n[stereo]\nbaseline = \"0.2 m\"\n\
+pub(crate) const CUBE: &str = "[cube]\nleft = \"left.npy\"\ndepth = \"10 m\"\n[stereo]\nbaseline = \"0.2 m\"\n\
                     focal_length = \"14 mm\"\npixel = \"12 um\"\n[requirement]\nrelative_depth_error = 0.05\n";
 
 /// A small, quick street.
@@ -34,7 +34,7 @@ const SCENE: &str = "[scene]\nsize = [60, 80]\nsky_temperature = \"-15 degC\"\n\
                      [camera]\nexposure = \"12 ms\"\npixel = \"96 um\"\nf_number = 1.4\nfocal_length = \"14 mm\"\nnoise_electrons = 0\n\
                      [stereo]\nbaseline = \"0.2 m\"\n";
 
-fn with_cube(scenario: &str) -> Folder {
+pub(crate) fn with_cube(scenario: &str) -> Folder {
     let folder = Folder::with(scenario);
     write_npy(&folder.path().join("left.npy"), shape(), &samples()).unwrap();
     folder

@@ -5,7 +5,7 @@ use hadar::cube::Cube;
 use hadar::planck::photon_radiance;
 use std::fs;
 
-const SCENARIO: &str = r#"title = "Three at night"
+pub(crate) const SCENARIO: &str = r#"title = "Three at night"
 [scene]
 sky = { material = "sky-us-standard", temperature = "288 K" }
 ground = { material = "asphalt", temperature = "12 degC", variation = "1 K", marks = "marble" }

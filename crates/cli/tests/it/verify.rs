@@ -55,7 +55,7 @@ fn the_report_of_every_command_is_made_again_byte_by_byte() {
         let out = folder.path().join(format!("work/report-{index}"));
         made(&folder, command, &out);
         // From another folder, above which the command was given.
-        let outcome = folder.run(&["verify", out.to_str().unwrap(), "--from", &home]);
+        let outcome = folder.run(&["verify", out.to_str().unwrap(), "--inputs", &home]);
         assert!(outcome.code == 0, "{command:?}: {}{}", outcome.stdout, outcome.stderr);
         assert!(outcome.stdout.starts_with("Verified: all "), "{}", outcome.stdout);
     }
@@ -76,7 +76,7 @@ fn nothing_that_is_changed_goes_unseen() {
     let command = ["size", "a.toml", "--library", "mine", "--set", "alternatives.materials=[\"own\"]"];
     let out = folder.path().join("work/report");
     made(&folder, &command, &out);
-    let verified = || folder.run(&["verify", out.to_str().unwrap(), "--from", &home]);
+    let verified = || folder.run(&["verify", out.to_str().unwrap(), "--inputs", &home]);
     assert_eq!(verified().code, 0);
     let list = out.join("hadar.json");
     let written = fs::read_to_string(&list).unwrap();

@@ -56,9 +56,8 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
     let mut ledger = Vec::new();
     for (i, item) in items.iter().enumerate() {
         let folder = global.out.as_ref().map(|out| out.join(item.name()));
-        let place = folder.clone().unwrap_or_default();
         let watch = Watch::start(global, item.name());
-        let made = item.make(order, &place, &|done, total| watch.bar.set(done, total))?;
+        let made = item.make(order, &|done, total| watch.bar.set(done, total))?;
         watch.stop(&format!("{} of {count}: {}", i + 1, item.title()));
         stats.add(&write(global, &made.bundle, folder, &text(&[*item], &made.lines))?);
         ledger.extend(made.lines);

@@ -12,7 +12,6 @@ use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, markdown, number};
-use std::path::Path;
 
 /// 95 % of a Gaussian is within so many deviations.
 const WITHIN: f64 = 1.96;
@@ -45,7 +44,7 @@ struct Beside {
     over_sigma: Option<[f64; 2]>,
 }
 
-pub(super) fn make(order: Order, out: &Path) -> Result<Made> {
+pub(super) fn make(order: Order) -> Result<Made> {
     let yard = Textured::new(EXPOSURE, order.seed)?;
     // Light does not hang on the exposure.
     let truth = yard.light_of_sky()?;
@@ -64,7 +63,7 @@ pub(super) fn make(order: Order, out: &Path) -> Result<Made> {
         }
     }
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", yard.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", yard.scenario.to_toml());
     bundle.add_table("distilled.csv", table(&rows))?;
     let mut pictures = Vec::new();
     if let Some((texture, found)) = &shown {

@@ -26,17 +26,16 @@ use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, markdown, number};
 use hadar_study::decompose::hues_deg;
 use hadar_study::range::quantile;
-use std::path::Path;
 
 /// Segments of the thermal image in pseudo-TeX vision.
 const SEGMENTS: usize = 6;
 /// The paper's mean standard deviations: TeX vision, and the enhanced thermal image.
 const PAPER: [f64; 2] = [0.0788, 0.0170];
 
-pub(super) fn make(order: Order, out: &Path) -> Result<Made> {
+pub(super) fn make(order: Order) -> Result<Made> {
     let found = compared(order)?;
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", found.yard.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", found.yard.scenario.to_toml());
     bundle.add_table("textures.csv", table(&found.rows))?;
     let plots: Vec<Plot> = [looks(&found, order)?, maps(&found)].into_iter().flatten().collect();
     bundle.add_plots(&plots)?;

@@ -9,13 +9,12 @@ use hadar_report::identify;
 use hadar_scenario::examples;
 use hadar_simulate::sequential::Plan;
 use hadar_study::{Answers, Asked, Trial, Watch};
-use std::path::Path;
 
 /// Half width of the simulated decisions' intervals, and most trials.
 const HALF_WIDTH: f64 = 0.005;
 const TRIALS: u64 = 1_000_000;
 
-pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
+pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
     let study = scene::study(examples::FIVE_MATERIALS)?;
     let asked = Asked {
         matrix: true,
@@ -28,7 +27,7 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     };
     let answers = study.answer(&asked, &Watch { simulated: progress, ..Watch::NONE })?;
     let answer = identify::text(&answers, &study);
-    let mut bundle = identify::bundle(&study, &answers, order.seed, out)?;
+    let mut bundle = identify::bundle(&study, &answers, order.seed)?;
     let lines = lines(&answers);
     let text = format!(
         "`hadar identify examples/five_materials.toml --matrix --scaling --bands 6 --filters 5 --exact --half-width \

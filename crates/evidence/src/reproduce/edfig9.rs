@@ -14,7 +14,6 @@ use hadar_report::text::significant;
 use hadar_scenario::examples;
 use hadar_simulate::efficiency::{Errors, Verdict as Standing};
 use hadar_study::{Reader, Thermometry, ThermometryRow};
-use std::path::Path;
 
 /// Heating powers.
 const POWERS: usize = 16;
@@ -29,7 +28,7 @@ const HELD: f64 = 1e-3;
 const PLATE_C: [f64; 2] = [30.0, 105.0];
 const PEOPLE_C: [f64; 2] = [33.0, 40.5];
 
-pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
+pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
     let mut bundle = Bundle::default();
     let mut lines = Vec::new();
     let mut text = String::new();
@@ -47,7 +46,7 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         let total = temperatures.len();
         let tell = |done: usize, _: usize| progress(i * total + done, 2 * total);
         let result = study.thermometry(&temperatures, TRIALS, order.seed, &tell)?;
-        bundle.add(format!("{name}_scenario.toml"), study.scenario().to_toml_beside(out));
+        bundle.add(format!("{name}_scenario.toml"), study.scenario().to_toml());
         bundle.add(format!("{name}_thermometry.csv"), thermometry::table(&result).to_csv()?);
         bundle.add_plots(&[
             Plot { name: plots[0].into(), ..thermometry::errors(&result) },

@@ -18,7 +18,6 @@ use hadar_simulate::experiment::Design;
 use hadar_study::{
     NoiseCurves, PhotonLaw, SimulatedPerformance, Simulation, SimulationPlan, Standing, Study,
 };
-use std::path::Path;
 
 /// The paper's numbers of photon numbers and of spectra.
 const EXPERIMENTS: usize = 150;
@@ -38,12 +37,12 @@ const REACHED: f64 = 0.9;
 const SLIGHT: f64 = 2.5;
 
 /// Fig. 3b.
-pub(super) fn all_bands(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
+pub(super) fn all_bands(order: Order, progress: Progress<'_>) -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let result = experiments(&study, order, SHOT, false, progress)?;
     let rival = &study.alternatives()[..1];
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     let mut lines = robot(&result);
     if let [rival] = rival {
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;
@@ -59,13 +58,13 @@ pub(super) fn all_bands(order: Order, out: &Path, progress: Progress<'_>) -> Res
 }
 
 /// Fig. S7.
-pub(super) fn three_bands(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
+pub(super) fn three_bands(order: Order, progress: Progress<'_>) -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT_3_BANDS)?;
     let (first, second) = (AtHalf(progress, 0), AtHalf(progress, 1));
     let result = experiments(&study, order, SHOT, false, &|done, total| first.set(done, total))?;
     let noisy = experiments(&study, order, NOISY, true, &|done, total| second.set(done, total))?;
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     let mut lines = Vec::new();
     if let [rival] = study.alternatives() {
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;

@@ -7,12 +7,11 @@ use hadar::error::Result;
 use hadar_report::bundle::Bundle;
 use hadar_report::size::figures;
 use hadar_scenario::examples;
-use std::path::Path;
 
-pub(super) fn make(out: &Path) -> Result<Made> {
+pub(super) fn make() -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     let mut lines = Vec::new();
     let result = study.identify()?;
     if let ([rival], [pair]) = (study.alternatives(), result.pairs.as_slice())

@@ -21,7 +21,6 @@ use hadar_simulate::draws::{Draws, generator};
 use hadar_study::range::{
     PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile,
 };
-use std::path::Path;
 
 /// Draws of the noise along the lines.
 const TRIALS: usize = 100;
@@ -32,22 +31,22 @@ pub(super) fn study(toml: &str) -> Result<RangeStudy> {
     RangeStudy::new(&RangeScenario::from_toml(toml, None)?, &Library::embedded()?)
 }
 
-pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
+pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
     let plan = RangePlan { trials: TRIALS, seed: order.seed, bounds_alone: true, ..RangePlan::default() };
     let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&plan, None, progress)?;
     let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, None, progress)?;
     let dim = study(&dimmer())?.range(&plan, None, progress)?;
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", paper.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", paper.scenario.to_toml());
     bundle.add_table("bounds.csv", range::bounds(&paper))?;
-    bundle.add("night_scenario.toml", night.scenario.to_toml_beside(out));
+    bundle.add("night_scenario.toml", night.scenario.to_toml());
     bundle.add_table("night_bounds.csv", range::bounds(&night))?;
     let mut plots: Vec<_> = [range::views(&paper), range::bound_maps(&paper), range::matched_maps(&paper)]
         .into_iter()
         .flatten()
         .collect();
     plots.extend(range::lines(&paper));
-    bundle.add("dim_scenario.toml", dim.scenario.to_toml_beside(out));
+    bundle.add("dim_scenario.toml", dim.scenario.to_toml());
     for mut plot in range::lines(&dim) {
         plot.name = format!("dim_{}", plot.name).into();
         plots.push(plot);

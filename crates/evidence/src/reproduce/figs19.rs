@@ -27,7 +27,6 @@ use hadar_simulate::matching::dense::disparity_map;
 use hadar_simulate::matching::{Search, StereoPair};
 use hadar_study::range;
 use hadar_study::render::Picture as Rendered;
-use std::path::Path;
 
 /// Windows of the matcher: the paper's.
 const SIDE: usize = 5;
@@ -67,7 +66,7 @@ struct Kind {
 const EXPOSURES: [&str; 3] = [EXPOSURE, LONG, "20 us"];
 const LONG: &str = "20 ms";
 
-pub(super) fn make(order: Order, out: &Path) -> Result<Made> {
+pub(super) fn make(order: Order) -> Result<Made> {
     let mut rows = Vec::new();
     let mut bundle = Bundle::default();
     let mut noise = Vec::new();
@@ -77,7 +76,7 @@ pub(super) fn make(order: Order, out: &Path) -> Result<Made> {
         rows.extend(own);
         noise.push(format!("{} mK at {exposure}", significant(1e3 * yard.netd_k(), 2)));
         if exposure == EXPOSURE {
-            bundle.add_asked("scenario.toml", yard.scenario.to_toml_beside(out));
+            bundle.add_asked("scenario.toml", yard.scenario.to_toml());
             let subtitle = format!(
                 "{exposure}. Windows of {SIDE} × {SIDE}, correlation with a parabola. No value: sky, what one camera alone sees, no match."
             );

@@ -13,14 +13,13 @@ use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_report::size;
 use hadar_scenario::examples;
 use hadar_study::Sizing;
-use std::path::Path;
 
 const PLACE: &str = "Methods, Guiding public policy";
 
-pub(super) fn make(out: &Path) -> Result<Made> {
+pub(super) fn make() -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let result = study.size()?;
-    let mut bundle = size::bundle(&study, &result, out)?;
+    let mut bundle = size::bundle(&study, &result)?;
     let answer = size::text(&result, &study);
     let mut lines = verdicts(&result).unwrap_or_default();
     lines.extend(camera(&result).unwrap_or_default());

@@ -11,17 +11,16 @@ use hadar::units::SPEED_OF_LIGHT_M_S;
 use hadar_report::bundle::Bundle;
 use hadar_report::text::significant;
 use hadar_scenario::examples;
-use std::path::Path;
 
 /// Relative difference up to which a figure counts as the same: the table has three digits.
 const TOLERANCE: f64 = 0.02;
 /// Temperature of the scenes, K.
 const SCENE_K: f64 = 300.0;
 
-pub(super) fn make(out: &Path) -> Result<Made> {
+pub(super) fn make() -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     let (flir, spectrometer) = (presets::get("flir-a325sc")?, presets::get("nicolet-is50")?);
     let mut lines = microbolometer(&flir)?;
     lines.extend(mct(&spectrometer)?);

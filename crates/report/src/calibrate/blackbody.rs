@@ -10,15 +10,14 @@ use crate::table::{Table, number};
 use crate::words::calibrate::blackbody::in_the_middle;
 use hadar::error::Result;
 use hadar_study::calibrate::{BlackbodyFound, ChannelRow};
-use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &BlackbodyFound, format: CubeFormat, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &BlackbodyFound, format: CubeFormat) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("channels.csv", response(result))?;
     bundle.add_table("temperatures.csv", temperatures(result))?;
     if let Some(scene) = &result.scene {

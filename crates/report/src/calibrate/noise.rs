@@ -11,7 +11,6 @@ use crate::words::calibrate::noise::{camera, each_point};
 use hadar::error::Result;
 use hadar_estimate::calibrate::{Line, OfBand};
 use hadar_study::calibrate::NoiseFound;
-use std::path::Path;
 
 /// Curves of a figure.
 const MOST: usize = 6;
@@ -20,9 +19,9 @@ const MOST: usize = 6;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &NoiseFound, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &NoiseFound) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("noise.csv", bands(result))?;
     bundle.add_table("variance.csv", variances(result))?;
     bundle.add_table("sigma.csv", sigmas(result))?;

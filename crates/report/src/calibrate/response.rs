@@ -11,7 +11,6 @@ use crate::words::calibrate::response::SHADED;
 use hadar::error::Result;
 use hadar_formats::cube::{npy_map, write_npy_to};
 use hadar_study::calibrate::{ResponseFound, ResponseRow};
-use std::path::Path;
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
 const WIDEST: usize = 420;
@@ -20,9 +19,9 @@ const WIDEST: usize = 420;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &ResponseFound, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &ResponseFound) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("values.csv", response(result))?;
     bundle.add_table("covariance.csv", square(result, &result.covariance))?;
     bundle.add_table("kernels.csv", square(result, &result.kernels))?;

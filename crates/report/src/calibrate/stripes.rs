@@ -12,7 +12,6 @@ use hadar::error::Result;
 use hadar_estimate::calibrate::Why;
 use hadar_formats::cube::npy_map;
 use hadar_study::calibrate::{Samples, StripesFound};
-use std::path::Path;
 
 /// Largest picture, pixels.
 const WIDEST: usize = 420;
@@ -24,9 +23,9 @@ const CUT: f64 = 0.005;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &StripesFound, format: CubeFormat, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &StripesFound, format: CubeFormat) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
-    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_asked("scenario.toml", result.scenario.to_toml());
     // In the order of its file.
     let centres = result.read.centres_cm1.as_deref().unwrap_or_default();
     match &result.corrected {

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 
+use hadar::words::visible;
 use hadar::{Error, Result};
 
 /// Names for documents that leave the font to the viewer.
@@ -60,10 +61,11 @@ pub(super) fn rasterise(text: &str, size: f64, mut paint: impl FnMut((i32, i32),
     Ok(())
 }
 
-/// Text without characters that no picture can show.
+/// Text without characters that no picture can show, in one line.
 pub(super) fn clean(text: &str) -> String {
     let printable = |c: char| if c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') { ' ' } else { c };
-    text.trim().chars().map(printable).collect()
+    let line: String = text.trim().chars().map(printable).collect();
+    visible(&line).into_owned()
 }
 
 /// Where a long word may be broken: after these.

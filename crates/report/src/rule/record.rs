@@ -12,6 +12,7 @@ use crate::manifest::{Input, Provenance, SCHEMA, VERSION, sha256};
 use crate::words::Say;
 use crate::words::rule::{measure, together};
 use hadar::error::{Error, Result};
+use hadar::inputs::called;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{ClauseAnswer, Condition, Found, Grade, Line, RuleAnswer, RuleStudy};
 use serde_json::{Value, json};
@@ -30,7 +31,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
     let about = &answer.rule.about;
     let day = |day: Option<hadar_scenario::Date>| day.map(|day| day.to_string());
     let file = provenance.inputs.first().map(|input| input.path.clone());
-    let path = study.rule().scenario.source.path.as_deref().map(|path| path.to_string_lossy().into_owned());
+    let path = study.rule().scenario.source.path.as_deref().map(|path| called(path.parent(), path));
     let clauses = answer.clauses.iter().map(of_clause).collect::<Result<Vec<_>>>()?;
     let cameras = answer.cameras.iter().map(|camera| {
         json!({

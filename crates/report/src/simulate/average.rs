@@ -6,15 +6,14 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number, optional, yes_no};
 use hadar::error::Result;
 use hadar_study::{AverageSimulation, Study};
-use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
 ///
 /// # Errors
 /// A table that cannot be written.
-pub fn bundle(study: &Study, result: &AverageSimulation, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &Study, result: &AverageSimulation) -> Result<Bundle> {
     let mut bundle = Bundle::about(study.scenario().title.as_deref());
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     bundle.add_table("average.csv", table(result))?;
     bundle.add_warnings(&result.warnings)?;
     Ok(bundle)

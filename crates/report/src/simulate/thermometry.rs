@@ -12,15 +12,14 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number, optional, yes_no};
 use hadar::error::Result;
 use hadar_study::{Reader, Study, Thermometry};
-use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(study: &Study, result: &Thermometry, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &Study, result: &Thermometry) -> Result<Bundle> {
     let mut bundle = Bundle::about(study.scenario().title.as_deref());
-    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml());
     bundle.add_table("thermometry.csv", table(result))?;
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&[errors(result), rmse(result)])?;

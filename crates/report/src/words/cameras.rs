@@ -11,7 +11,7 @@ pub(crate) use rows::{alone, in_scene};
 
 use crate::cameras::Sheet;
 use crate::text::columns::{Columns, left, right};
-use crate::text::numbers::{celsius, quantity, significant};
+use crate::text::numbers::{celsius, fixed, quantity, significant};
 use crate::words::Say;
 use hadar::instrument::equivalents::blackbody_microflick;
 use hadar::instrument::figures::{CameraSpec, Kind, Line, Row, StatedNoise, TABLE};
@@ -190,7 +190,10 @@ fn noise(preset: &Preset) -> String {
             let at = wavelength_um.map_or_else(String::new, |um| {
                 let (all, slope) = blackbody_microflick(um, 300.0);
                 let kelvin = quantity(microflick / slope, "K");
-                format!(" at {um} um: {kelvin} of a blackbody at 300 K there, 1 of {:.0}", all / microflick)
+                format!(
+                    " at {um} um: {kelvin} of a blackbody at 300 K there, 1 of {}",
+                    fixed(all / microflick, 0)
+                )
             });
             format!("NESR {microflick} uflick{at}")
         }
@@ -252,7 +255,7 @@ fn budget(budget: &[NoiseLine]) -> String {
 
 fn part(share: f64) -> String {
     if share >= 1e-3 {
-        format!("{:.1} %", 100.0 * share)
+        format!("{} %", fixed(100.0 * share, 1))
     } else {
         format!("{} %", significant(100.0 * share, 1))
     }

@@ -2,6 +2,7 @@
 
 use super::Say;
 use super::text::significant;
+use hadar::words::fixed;
 use hadar::words::share;
 use hadar_study::{ClassAnswer, ClassSide};
 use std::fmt::Write as _;
@@ -94,7 +95,7 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
         }
         let chance = |side: &ClassSide| {
             let chance = ClassAnswer::chance_one_more_is_nearer(side)?;
-            Some(format!("1 in {:.0} of {}", 1.0 / chance, side.name))
+            Some(format!("1 in {} of {}", fixed(1.0 / chance, 0), side.name))
         };
         let chance = |side: &ClassSide| chance(side).filter(|_| answer.mixtures.is_none());
         let chances: Vec<String> =

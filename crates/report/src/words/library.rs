@@ -6,7 +6,7 @@ use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
 use crate::text::numbers::degrees;
 use crate::words::pictures::thinned;
-use hadar::words::{quantity, share, significant, whole};
+use hadar::words::{fixed, quantity, share, significant, whole};
 use hadar_study::library::{LibraryFound, TruthOfClusters};
 use std::fmt::Write as _;
 
@@ -54,7 +54,7 @@ fn clusters(result: &LibraryFound) -> String {
         table.row([
             row.name.clone(),
             whole(row.pixels as u64),
-            format!("{:.3} +- {}", row.emissivity_mean, significant(one.sigma_mean, 2)),
+            format!("{} +- {}", fixed(row.emissivity_mean, 3), significant(one.sigma_mean, 2)),
             degrees(row.temperature_median_k),
             format!("+- {}", significant(one.sigma_temperature_k, 2)),
             significant(one.chi_square_reduced, 3),
@@ -81,7 +81,7 @@ fn counts(result: &LibraryFound) -> String {
         table.row([
             one.count.to_string(),
             one.left.to_string(),
-            format!("{:.2} +- {}", one.loss, significant(one.error, 1)),
+            format!("{} +- {}", fixed(one.loss, 2), significant(one.error, 1)),
             significant(one.chi_square_reduced, 3),
         ]);
     }

@@ -61,7 +61,6 @@ pub fn text(result: &Rendered) -> String {
             share(result.lighting_left_out)
         );
     }
-    let _ = writeln!(out, "Time: {} s", significant(result.seconds, 2));
     out.push_str(
         "\nAssumptions\n  opaque, Lambertian surfaces; no air between them and the camera; no blur of a lens\n  \
          what lights a surface is the mean radiance of each other surface, after the scatterings before\n",

@@ -21,7 +21,7 @@ use super::classes::one_number;
 use super::probability::demanded;
 use super::text::numbers::in_a_row;
 use hadar::ranging::depth::Demand;
-use hadar::words::{self, length, quantity, significant};
+use hadar::words::{self, fixed, length, quantity, significant};
 use hadar_scenario::{Units, interval};
 use hadar_study::{
     Certified, Condition, Definition, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof,
@@ -136,8 +136,10 @@ impl Say for Certified {
             Proof::DenseSearch => {
                 "searched, not proved: the best of a dense search and its refinements".into()
             }
-            Proof::BranchAndBound => format!("proved by branch and bound to {percent:.2} %"),
-            Proof::Bounded => format!("searched; proved that no scene is more than {percent:.2} % below"),
+            Proof::BranchAndBound => format!("proved by branch and bound to {} %", fixed(percent, 2)),
+            Proof::Bounded => {
+                format!("searched; proved that no scene is more than {} % below", fixed(percent, 2))
+            }
             Proof::Counterexample => "proved by this scene; a worse one was not looked for".into(),
         }
     }

@@ -5,7 +5,7 @@ pub(crate) mod thermometry;
 
 use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{assumptions, warnings};
-use crate::text::numbers::{shortened, significant, some};
+use crate::text::numbers::{fixed, shortened, significant, some};
 use crate::words::probability::percent;
 use hadar_scenario::Units;
 use hadar_study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
@@ -215,7 +215,7 @@ fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
         Some(Standing::Reaches) => "reaches it".to_owned(),
         Some(Standing::Undecided) => "may reach it; more spectra would tell".to_owned(),
         Some(Standing::Below) => {
-            format!("{:.1} points below", 100.0 * (limit - found.performance.accuracy))
+            format!("{} points below", fixed(100.0 * (limit - found.performance.accuracy), 1))
         }
         None => "-".to_owned(),
     }

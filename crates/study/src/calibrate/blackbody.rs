@@ -90,8 +90,6 @@ pub struct BlackbodyFound {
     pub chi_square_reduced: Option<f64>,
     /// The scene.
     pub scene: Option<SceneFound>,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -133,7 +131,6 @@ impl BlackbodyStudy {
     /// # Errors
     /// Samples that are no numbers, channels that respond to nothing.
     pub fn calibrate(&self) -> Result<BlackbodyFound> {
-        let start = std::time::Instant::now();
         let (scenario, source) = (&self.scenario, &self.scenario.source);
         let nu = &self.wavenumbers_cm1;
         let (mut counts, mut sigma, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
@@ -226,7 +223,6 @@ impl BlackbodyStudy {
                 .collect(),
             chi_square_reduced,
             scene,
-            seconds: start.elapsed().as_secs_f64(),
             stats,
             warnings,
         })

@@ -46,8 +46,6 @@ pub struct NoiseFound {
     /// What was fitted.
     #[serde(flatten)]
     pub transfer: Transfer,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -68,7 +66,6 @@ impl NoiseStudy {
     /// # Errors
     /// Cubes out of which no noise can be told, each with what to give instead.
     pub fn noise(&self) -> Result<NoiseFound> {
-        let start = std::time::Instant::now();
         let spec = self.scenario.noise;
         let asked = Asked { dark_level: spec.dark_level, gain_spread: spec.gain_spread };
         let singles: Vec<&dyn Rows<f32>> = self.frames.cubes.iter().filter_map(of_32).collect();
@@ -143,7 +140,6 @@ impl NoiseStudy {
                 work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
                 work
             },
-            seconds: start.elapsed().as_secs_f64(),
             warnings,
         })
     }

@@ -118,8 +118,6 @@ pub struct ResponseFound {
     pub eta_sigma: Option<f64>,
     /// The scene.
     pub scene: Option<FilterRadiances>,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -190,7 +188,6 @@ impl ResponseStudy {
     /// # Errors
     /// Samples that are no numbers, blackbodies that read all the same.
     pub fn calibrate(&self) -> Result<ResponseFound> {
-        let start = std::time::Instant::now();
         let (scenario, source) = (&self.scenario, &self.scenario.source);
         let (specs, filters) = (&scenario.blackbodies, self.names.len());
         let read = self.cubes.iter().enumerate();
@@ -275,7 +272,6 @@ impl ResponseStudy {
             eta_sigma: eta.as_ref().map(|eta| eta.sigma),
             eta,
             scene,
-            seconds: start.elapsed().as_secs_f64(),
             stats,
             warnings,
         })

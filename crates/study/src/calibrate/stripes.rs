@@ -50,8 +50,6 @@ pub struct StripesFound {
     /// The stripes.
     #[serde(flatten)]
     pub destriped: Destriped,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -85,7 +83,6 @@ impl StripesStudy {
     /// # Errors
     /// A cube in which stripes cannot be told from the scene, each with what to give instead.
     pub fn destripe(&self) -> Result<StripesFound> {
-        let start = std::time::Instant::now();
         let place = |error: Error| match (&error, &self.scenario.source.path, self.scenario.cube.data.first())
         {
             (Error::At { place, .. }, ..) if place.path.is_some() => error,
@@ -176,7 +173,6 @@ impl StripesStudy {
             off_relative,
             left_relative,
             destriped,
-            seconds: start.elapsed().as_secs_f64(),
             stats,
             warnings,
             before,

@@ -53,8 +53,6 @@ pub struct Decomposed {
     pub segmentation: Option<Segmented>,
     /// How good the maps are, where that is known.
     pub truth: Option<TruthFound>,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -233,7 +231,7 @@ pub(super) fn rows(
 /// What was found, put together.
 pub(super) fn summary(
     study: &DecomposeStudy,
-    (method, seconds): (Method, f64),
+    method: Method,
     (counted, found): (&Counted, Vec<MaterialRow>),
     (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
     mut warnings: Vec<Warning>,
@@ -269,7 +267,6 @@ pub(super) fn summary(
         vision,
         segmentation,
         truth,
-        seconds,
         stats: counted.spared.work(),
         warnings,
         kept,

@@ -33,8 +33,6 @@ pub struct Segmented {
     pub agreement: Option<Agreement>,
     /// The best that the thermal image alone can say, laid out with the truth, against it.
     pub agreement_by_brightness: Option<Agreement>,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// The map, `[row][column]`.
     #[serde(skip)]
     pub map: Vec<u8>,
@@ -80,12 +78,10 @@ impl Segmented {
             return Ok(None);
         }
         let Block { maps, thermal, .. } = block;
-        let start = std::time::Instant::now();
         let columns = study.cube.shape().columns();
         let last = |map: Vec<u8>| if spec.smoothing { smoothed(&map, columns) } else { Ok(map) };
         let map = last(segment(&maps.fitting_material(), columns, &study.categories, spec.rule)?)?;
         let found = objects(&map, columns, spec.smallest_object)?;
-        let seconds = start.elapsed().as_secs_f64();
         // Decided to be of the category that the pixel was given.
         let is_decided: Vec<bool> = (0..map.len())
             .map(|i| maps.is_decided(i) && study.categories.contains(map[i], maps.material[i]))
@@ -135,7 +131,6 @@ impl Segmented {
             smallest_object: spec.smallest_object,
             agreement,
             agreement_by_brightness,
-            seconds,
             map,
         }))
     }

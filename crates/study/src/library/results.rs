@@ -47,8 +47,6 @@ pub struct LibraryFound {
     pub emissivity_error: f64,
     /// How good it is, where that is known.
     pub truth: Option<TruthOfClusters>,
-    /// Time that it took, s.
-    pub seconds: f64,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -143,7 +141,6 @@ pub(super) fn summary(
     measured: &Measured,
     found: Found,
     truth: Option<TruthOfClusters>,
-    seconds: f64,
     (misfits, mut warnings): (Vec<usize>, Vec<Warning>),
 ) -> LibraryFound {
     let Found { clusters, prior, tried, drawn, without_nem, maps, .. } = found;
@@ -198,7 +195,6 @@ pub(super) fn summary(
         flags: skipped,
         emissivity_error: if weight > 0.0 { f64::sqrt(square / weight) } else { 0.0 },
         truth,
-        seconds,
         stats: maps.spared.work(),
         warnings,
         maps,

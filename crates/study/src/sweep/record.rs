@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// What an answer says of how it was asked and found, and not of the scene.
-const LEFT_OUT: [&str; 4] = ["scenario", "stats", "warnings", "seconds"];
+const LEFT_OUT: [&str; 3] = ["scenario", "stats", "warnings"];
 /// Lists of what has a code: the codes of a list are a column.
 const CODED: [&str; 2] = ["warnings", "conditions"];
 

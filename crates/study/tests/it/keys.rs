@@ -56,23 +56,22 @@ fn base(kind: &str) -> String {
 
 /// Reads a file, and writes it with every default filled in.
 fn read(kind: &str, written: &Written) -> Result<String> {
-    let beside = Path::new("/");
     Ok(match kind {
-        "task" => Scenario::from_written(written)?.to_toml_beside(beside),
-        "rule" => Rule::from_written(written)?.to_toml_beside(beside),
-        "stereo" => RangeScenario::from_written(written)?.to_toml_beside(beside),
-        "scene" => RenderScenario::from_written(written)?.to_toml_beside(beside),
-        "air" => AirRangingScenario::from_written(written)?.to_toml_beside(beside),
-        "cube" => DecomposeScenario::from_written(written)?.to_toml_beside(beside),
-        "library" => LibraryScenario::from_written(written)?.to_toml_beside(beside),
-        "response" => ResponseScenario::from_written(written)?.to_toml_beside(beside),
-        "blackbodies" => BlackbodyScenario::from_written(written)?.to_toml_beside(beside),
-        "noise" => NoiseScenario::from_written(written)?.to_toml_beside(beside),
+        "task" => Scenario::from_written(written)?.to_toml(),
+        "rule" => Rule::from_written(written)?.to_toml(),
+        "stereo" => RangeScenario::from_written(written)?.to_toml(),
+        "scene" => RenderScenario::from_written(written)?.to_toml(),
+        "air" => AirRangingScenario::from_written(written)?.to_toml(),
+        "cube" => DecomposeScenario::from_written(written)?.to_toml(),
+        "library" => LibraryScenario::from_written(written)?.to_toml(),
+        "response" => ResponseScenario::from_written(written)?.to_toml(),
+        "blackbodies" => BlackbodyScenario::from_written(written)?.to_toml(),
+        "noise" => NoiseScenario::from_written(written)?.to_toml(),
         "cameras" => {
             StatedCameras::from_written(written)?;
             String::new()
         }
-        _ => StripesScenario::from_written(written)?.to_toml_beside(beside),
+        _ => StripesScenario::from_written(written)?.to_toml(),
     })
 }
 

@@ -25,9 +25,7 @@ pub(super) fn run(args: &BlackbodyArgs, global: &Global) -> Result<ExitCode> {
     global.inputs_are_safe()?;
     let mut result = study.calibrate()?;
     let text = blackbody::text(&result, args.cube_format.format());
-    result
-        .stats
-        .add(&global.report(&text, |out| blackbody::bundle(&result, args.cube_format.format(), out))?);
+    result.stats.add(&global.report(&text, || blackbody::bundle(&result, args.cube_format.format()))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

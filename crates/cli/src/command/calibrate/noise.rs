@@ -34,7 +34,7 @@ pub(super) fn run(args: &NoiseArgs, global: &Global) -> Result<ExitCode> {
     global.inputs_are_safe()?;
     let mut result = study.noise()?;
     let text = noise::text(&result);
-    result.stats.add(&global.report(&text, |out| noise::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, || noise::bundle(&result))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -22,7 +22,7 @@ pub(super) fn run(args: &ResponseArgs, global: &Global) -> Result<ExitCode> {
     global.inputs_are_safe()?;
     let mut result = study.calibrate()?;
     let text = response::text(&result);
-    result.stats.add(&global.report(&text, |out| response::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, || response::bundle(&result))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

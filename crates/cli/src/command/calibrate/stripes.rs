@@ -31,7 +31,7 @@ pub(super) fn run(args: &StripesArgs, global: &Global) -> Result<ExitCode> {
     global.inputs_are_safe()?;
     let mut result = study.destripe()?;
     let text = stripes::text(&result);
-    result.stats.add(&global.report(&text, |out| stripes::bundle(&result, args.cube_format.format(), out))?);
+    result.stats.add(&global.report(&text, || stripes::bundle(&result, args.cube_format.format()))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -27,8 +27,7 @@ fn every_row_fills_every_column() {
     let csv = table(&found).to_csv().unwrap();
     let columns: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
     assert_eq!(columns, [39, 39, 39]);
-    let names: Vec<String> =
-        bundle(&study, &found, Path::new("out")).unwrap().names().map(str::to_owned).collect();
+    let names: Vec<String> = bundle(&study, &found).unwrap().names().map(str::to_owned).collect();
     for name in ["thermometry.csv", "temperature_error.png", "temperature_rmse.svg", "scenario.toml"] {
         assert!(names.iter().any(|found| found == name), "{name}: {names:?}");
     }

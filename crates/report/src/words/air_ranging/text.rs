@@ -5,7 +5,7 @@ use crate::text::footing::{ASSUMPTIONS, warnings};
 use crate::text::numbers::{listed, some};
 use crate::words::Say;
 use hadar::order;
-use hadar::words::{length, share, significant};
+use hadar::words::{fixed, length, share, significant};
 use hadar_scenario::air_ranging::AirStereo;
 use hadar_study::air_ranging::{AirBand, AirPoint, AirRanging};
 use std::fmt::Write as _;
@@ -163,7 +163,12 @@ fn estimates(result: &AirRanging) -> String {
             format!("{} m", significant(one.distance_m, 3)),
             length(one.bound_m),
             length(one.errors.rmse),
-            format!("{:.3} ({:.3} to {:.3})", one.rmse_over_bound, interval.low, interval.high),
+            format!(
+                "{} ({} to {})",
+                fixed(one.rmse_over_bound, 3),
+                fixed(interval.low, 3),
+                fixed(interval.high, 3)
+            ),
             signed(one.errors.bias),
             one.verdict.text().to_owned(),
             share(one.at_edge),

@@ -3,7 +3,7 @@
 //! Ranges have two digits, for Johnson's cycles are known to a quarter; MRTDs are rounded to what ASTM E1213 calls significant. The
 //! table has every digit.
 
-use crate::text::numbers::significant;
+use crate::text::numbers::{fixed, significant};
 use crate::words::Say;
 use crate::words::probability::probability;
 use hadar::policy::practice::resolution::{PERCEPTION, SIGNIFICANT_K};
@@ -134,7 +134,7 @@ fn value(row: &CompanionRow, units: Units) -> String {
 fn resolvable(kelvin: f64) -> String {
     match kelvin {
         _ if kelvin < SIGNIFICANT_K => format!("below {SIGNIFICANT_K} K"),
-        _ if kelvin < 100.0 => format!("{:.1} K", (kelvin / SIGNIFICANT_K).round() * SIGNIFICANT_K),
+        _ if kelvin < 100.0 => format!("{} K", fixed((kelvin / SIGNIFICANT_K).round() * SIGNIFICANT_K, 1)),
         _ => format!("{} K", significant(kelvin, 2)),
     }
 }

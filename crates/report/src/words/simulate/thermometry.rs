@@ -7,6 +7,7 @@ use crate::text::significant;
 use crate::words::Say;
 use hadar::fisher::Nuisance;
 use hadar::fisher::precision::Sight;
+use hadar::words::fixed;
 use hadar_scenario::Units;
 use hadar_simulate::efficiency::{Errors, Verdict};
 use hadar_simulate::sequential::Interval;
@@ -22,7 +23,7 @@ fn unsigned_zero(number: String) -> String {
 }
 
 fn decimal(value: f64, decimals: usize) -> String {
-    unsigned_zero(format!("{value:.decimals$}"))
+    unsigned_zero(fixed(value, decimals))
 }
 
 fn degrees(temperature_k: f64, decimals: usize, units: Units) -> String {

@@ -1,6 +1,6 @@
 //! The numbers of a sizing one by one: what each is called, its value with its unit, and the key of the JSON that it stands at.
 
-use crate::text::numbers::{between, quantity, significant};
+use crate::text::numbers::{between, fixed, quantity, significant};
 use crate::words::probability::probability;
 use crate::words::size::no_limit;
 use hadar::identifiability::decision::DecisionLaw;
@@ -190,7 +190,7 @@ pub(crate) fn in_unit(solved: Quantity, value: f64, units: Units) -> String {
         Quantity::Pixel => quantity(value, "m"),
         Quantity::FNumber => format!("f/{}", significant(value, 3)),
         Quantity::Noise => format!("{} counts", significant(value, 3)),
-        Quantity::Frames => format!("{value:.0}"),
+        Quantity::Frames => fixed(value, 0),
         Quantity::Distance => units.length(value),
         Quantity::Speed => units.speed(value),
     }

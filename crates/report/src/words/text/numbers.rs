@@ -1,5 +1,6 @@
 //! Numbers and names as text: as short as they can be without losing what matters.
 
+pub(crate) use hadar::words::fixed;
 pub use hadar::words::{quantity, significant};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,12 +29,12 @@ pub fn photons_between([least, enough]: [Option<f64>; 2]) -> String {
 }
 
 pub(crate) fn celsius(kelvin: f64) -> String {
-    format!("{:.2} degC", kelvin - 273.15)
+    format!("{} degC", fixed(kelvin - 273.15, 2))
 }
 
 /// Degrees Celsius, without their unit.
 pub(crate) fn degrees(kelvin: f64) -> String {
-    format!("{:.1}", kelvin - 273.15)
+    fixed(kelvin - 273.15, 1)
 }
 
 /// `a`, `a and b`, `a, b and c`, or with another word before the last one.
@@ -56,7 +57,7 @@ pub(crate) fn some(all: usize, most: usize) -> Vec<usize> {
 
 /// Numbers with `decimals` decimals behind a label; nothing where there are none.
 pub(crate) fn numbers(label: &str, values: &[f64], decimals: usize) -> String {
-    let values: Vec<String> = values.iter().map(|value| format!("{value:.decimals$}")).collect();
+    let values: Vec<String> = values.iter().map(|value| fixed(*value, decimals)).collect();
     if values.is_empty() { String::new() } else { format!("{label}{}", values.join(" ")) }
 }
 

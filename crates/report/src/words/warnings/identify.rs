@@ -2,7 +2,7 @@
 
 use super::block::words;
 use hadar::scene::Parameter;
-use hadar::words::significant;
+use hadar::words::{fixed, significant};
 
 words! {
     Identical {
@@ -45,9 +45,10 @@ words! {
             failed.",
         remedy: "Use the nearest distance (requirement.by = \"nearest\").",
         LocalDiffers { local, nearest, ratio } => format!(
-            "local ({}) and nearest ({}) distance differ by a factor {ratio:.1}; only the nearest one is a limit",
+            "local ({}) and nearest ({}) distance differ by a factor {}; only the nearest one is a limit",
             significant(*local, 3),
-            significant(*nearest, 3)
+            significant(*nearest, 3),
+            fixed(*ratio, 1)
         ),
     }
     Fragile {
@@ -107,7 +108,7 @@ words! {
             } else {
                 "bunching, which is neglected (camera.photon_bunching), raises the noise by as much"
             };
-            format!("{occupancy:.2} photons per mode at {wavenumber_cm1:.0} cm^-1: {what}")
+            format!("{} photons per mode at {wavenumber_cm1:.0} cm^-1: {what}", fixed(*occupancy, 2))
         },
     }
     EnvelopeNotSearched {

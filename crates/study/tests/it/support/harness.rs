@@ -209,22 +209,18 @@ fn scenario(folder: &Folder, bytes: &[u8]) {
     assert!(kelvins.into_iter().all(|kelvin| kelvin > 0.0 && kelvin.is_finite()));
     let lighting: f64 = scenario.environment.iter().map(|object| object.lighting).sum();
     assert!((0.0..=1.0 + 1e-9).contains(&lighting), "lighting {lighting}");
-    for directory in [None, path.parent()] {
-        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
-        match Scenario::from_toml(&text, Some(&path)) {
-            Ok(again) => assert!(again == scenario, "{again:?}\nis not\n{scenario:?}\n{text}"),
-            Err(error) => panic!("{error}\n{text}"),
-        }
+    let text = scenario.to_toml();
+    match Scenario::from_toml(&text, Some(&path)) {
+        Ok(again) => assert!(again == scenario, "{again:?}\nis not\n{scenario:?}\n{text}"),
+        Err(error) => panic!("{error}\n{text}"),
     }
 }
 
 fn air_ranging_scenario(scenario: &AirRangingScenario, path: &Path) {
-    for directory in [None, path.parent()] {
-        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
-        match AirRangingScenario::from_toml(&text, Some(path)) {
-            Ok(again) => assert_eq!(&again, scenario, "{text}"),
-            Err(error) => panic!("{error}\n{text}"),
-        }
+    let text = scenario.to_toml();
+    match AirRangingScenario::from_toml(&text, Some(path)) {
+        Ok(again) => assert_eq!(&again, scenario, "{text}"),
+        Err(error) => panic!("{error}\n{text}"),
     }
 }
 
@@ -235,20 +231,18 @@ fn range_scenario(folder: &Folder, bytes: &[u8]) {
         Some(RangingScenario::Air(scenario)) => return air_ranging_scenario(&scenario, &path),
         None => return,
     };
-    for directory in [None, path.parent()] {
-        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
-        let again = match RangeScenario::from_toml(&text, Some(&path)) {
-            Ok(again) => again,
-            Err(error) => panic!("{error}\n{text}"),
-        };
-        let same = again.title == scenario.title
-            && again.subject == scenario.subject
-            && again.bands == scenario.bands
-            && again.camera == scenario.camera
-            && again.stereo == scenario.stereo
-            && again.requirement == scenario.requirement;
-        assert!(same, "{again:?}\nis not\n{scenario:?}\n{text}");
-    }
+    let text = scenario.to_toml();
+    let again = match RangeScenario::from_toml(&text, Some(&path)) {
+        Ok(again) => again,
+        Err(error) => panic!("{error}\n{text}"),
+    };
+    let same = again.title == scenario.title
+        && again.subject == scenario.subject
+        && again.bands == scenario.bands
+        && again.camera == scenario.camera
+        && again.stereo == scenario.stereo
+        && again.requirement == scenario.requirement;
+    assert!(same, "{again:?}\nis not\n{scenario:?}\n{text}");
 }
 
 /// A line per quantity.
