@@ -8,7 +8,6 @@ use hadar_scenario::{
     AirRangingScenario, DecomposeScenario, LibraryScenario, RangeScenario, RenderScenario, Rule, Scenario,
     Setting, Written,
 };
-use std::path::Path;
 
 const TASK: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n\
     [[environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n[class.x]\nmaterials = [\"skin\"]\n";
