@@ -99,9 +99,9 @@ pub(crate) fn begun(path: &str, body: &[u8], engine: &Engine) -> Begun {
 }
 
 impl Question {
-    /// Whether it takes a part of a second.
+    /// Whether it takes a part of a second. A report takes longer than its answer.
     pub(crate) fn is_quick(&self) -> bool {
-        self.prepared.is_quick()
+        !matches!(self.wanted, Wanted::Report) && self.prepared.is_quick()
     }
 
     /// Computes the answer.
