@@ -6,7 +6,6 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::fs::Metadata;
 use std::marker::PhantomData;
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
@@ -36,25 +35,12 @@ pub enum Held {
 /// By which a file is known that nobody has written to or put another one in the place of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp {
-    length: u64,
-    modified: Option<SystemTime>,
+    /// Length, bytes.
+    pub length: u64,
+    /// When it was last written to.
+    pub modified: Option<SystemTime>,
     /// Device, number on it, and when the system last changed what it knows of the file, which nobody can set (seconds, ns).
-    known_by: [i128; 4],
-}
-
-impl Stamp {
-    /// That of an open file.
-    #[must_use]
-    pub fn of(found: &Metadata) -> Self {
-        #[cfg(unix)]
-        let known_by = {
-            use std::os::unix::fs::MetadataExt as _;
-            [found.dev().into(), found.ino().into(), found.ctime().into(), found.ctime_nsec().into()]
-        };
-        #[cfg(not(unix))]
-        let known_by = [0; 4];
-        Self { length: found.len(), modified: found.modified().ok(), known_by }
-    }
+    pub known_by: [i128; 4],
 }
 
 /// What was read.

@@ -4,15 +4,14 @@
 //! compiled once and not anew for each use (an iterator of `rayon` costs the compiler some 9000 lines of intermediate code a use). Locks
 //! cost some 20 ns for each result, three times that with a workspace: what takes less is better done in blocks.
 
+pub use crate::stop::STACK;
+
 use crate::demand;
 use crate::error::Result as Checked;
 use crate::stop;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-
-/// Stack of every thread that the program starts, bytes: what it needs does not depend on what the system gives the first one.
-pub const STACK: usize = 16 << 20;
 
 /// `of(0)`, `of(1)`, … `of(count - 1)`, computed in parallel, in this order.
 ///

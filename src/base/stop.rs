@@ -13,7 +13,6 @@
 //! What is shared between questions must not be left half done: initialisers of statics do not check, and locks are taken over
 //! from a thread that unwound.
 
-use crate::parallel::STACK;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::cell::RefCell;
 use std::fmt;
@@ -36,6 +35,9 @@ pub enum Reason {
     /// Nobody waits for its answer any more.
     NobodyListens,
 }
+
+/// Stack of every thread that the program starts, bytes: what it needs does not depend on what the system gives the first one.
+pub const STACK: usize = 16 << 20;
 
 const REASONS: [Reason; 5] =
     [Reason::Interrupted, Reason::Terminated, Reason::TimeLimit, Reason::MemoryLimit, Reason::NobodyListens];

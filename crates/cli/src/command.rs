@@ -200,6 +200,28 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
     dispatch(command, global)
 }
 
+/// The command of a report, by its words.
+fn read_again(words: &[String]) -> Option<verify::Again> {
+    let (Cli { command }, given) = parsed_from::<Cli>(&line(), words).ok()?;
+    let is_rule = matches!(command, Command::Rule(_));
+    let makes_reports = match &command {
+        Command::Rule(args) => !args.verifies(),
+        Command::Size(_)
+        | Command::Identify(_)
+        | Command::Range(_)
+        | Command::Decompose(_)
+        | Command::Library(_)
+        | Command::Calibrate(_)
+        | Command::Render(_)
+        | Command::Simulate(_)
+        | Command::Sweep(_)
+        | Command::Materials(_) => true,
+        _ => false,
+    };
+    let run = Box::new(move |global: &Global| dispatch(&command, global));
+    Some(verify::Again { makes_reports, is_rule, given, run })
+}
+
 /// Does what a command says, where all is prepared.
 fn dispatch(command: &Command, global: &Global) -> Result<ExitCode> {
     match command {
@@ -217,7 +239,7 @@ fn dispatch(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Materials(args) => materials::run(args, global),
         Command::Cameras(args) => cameras::run(args, global),
         Command::Diff(args) => Ok(diff::run(args, global)),
-        Command::Verify(args) => verify::run(args, global),
+        Command::Verify(args) => verify::run(args, global, &read_again),
         Command::Serve(args) => serve::run(args, global),
         Command::Completions(args) => shell::completions(args, line()),
         Command::Man(_) => shell::man(line(), global),

@@ -1,8 +1,9 @@
 //! Files of a user's: only those with an end. A pipe that nobody writes would be waited for, a device has no end.
 
 use crate::hash::sha256;
+use crate::hash::stamp;
 use hadar::error::{Error, Result};
-use hadar::inputs::{self, Held, Stamp};
+use hadar::inputs::{self, Held};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -20,7 +21,7 @@ const LONGEST_FILE: u64 = 1 << 26;
 pub fn open(path: &Path, action: &str) -> Result<File> {
     let file = opened(path, action)?;
     let found = file.metadata().map_err(|error| Error::file(action, path, error.kind()))?;
-    inputs::file(path, Held::Since(Stamp::of(&found)));
+    inputs::file(path, Held::Since(stamp(&found)));
     Ok(file)
 }
 

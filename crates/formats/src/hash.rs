@@ -7,7 +7,7 @@
 use hadar::error::{Error, Result};
 use hadar::inputs::{FileRead, Held, Inputs, Stamp};
 use sha2::{Digest as _, Sha256};
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -29,6 +29,18 @@ pub fn sha256_of(mut from: impl Read) -> io::Result<String> {
             read => hash.update(&part[..read]),
         }
     }
+}
+
+/// By which an open file is known.
+pub(crate) fn stamp(found: &Metadata) -> Stamp {
+    #[cfg(unix)]
+    let known_by = {
+        use std::os::unix::fs::MetadataExt as _;
+        [found.dev().into(), found.ino().into(), found.ctime().into(), found.ctime_nsec().into()]
+    };
+    #[cfg(not(unix))]
+    let known_by = [0; 4];
+    Stamp { length: found.len(), modified: found.modified().ok(), known_by }
 }
 
 /// That of a file as it is now; `None` of what is no ordinary file, which may have been read up.
@@ -69,7 +81,7 @@ pub fn sha256_of_read(read: &FileRead) -> Result<String> {
     };
     let failed = |error: io::Error| Error::file("read for its hash", &read.path, error.kind());
     let file = File::open(&read.path).map_err(failed)?;
-    let is_same = || file.metadata().map(|found| Stamp::of(&found) == stamp).map_err(failed);
+    let is_same = || file.metadata().map(|found| self::stamp(&found) == stamp).map_err(failed);
     if !is_same()? {
         return Err(changed(&read.path));
     }

@@ -32,9 +32,6 @@ use hadar::material::{Material, OpticalConstants, is_spectra};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// Most spectra of one file: each takes a thousand bytes of memory, however short it is.
-const MOST_SPECTRA: usize = 100_000;
-
 /// The files of a directory that are called as spectra are ([`is_spectra`]), in the order of their names.
 ///
 /// # Errors

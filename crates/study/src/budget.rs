@@ -165,20 +165,20 @@ impl Limits {
     /// What is said of work that was stopped.
     #[must_use]
     pub fn stopped(self, reason: Reason) -> Error {
-        let (found, instead) = match (reason, self) {
-            (Reason::TimeLimit, Self { time: Some(time), .. }) => (
+        match (reason, self) {
+            (Reason::TimeLimit, Self { time: Some(time), .. }) => Error::malformed(
                 format!("stopped after {}, the limit of time", duration(time.as_secs_f64())),
                 "allow more, or ask for less",
             ),
-            (Reason::MemoryLimit, Self { memory_bytes: Some(most), .. }) => {
-                (format!("stopped above {} of memory, the limit", bytes(most)), "allow more, or ask for less")
-            }
+            (Reason::MemoryLimit, Self { memory_bytes: Some(most), .. }) => Error::malformed(
+                format!("stopped above {} of memory, the limit", bytes(most)),
+                "allow more, or ask for less",
+            ),
             (Reason::NobodyListens, _) => {
-                ("stopped: nobody waits for the answer any more".to_owned(), "ask again")
+                Error::malformed("stopped: nobody waits for the answer any more", "ask again")
             }
-            _ => ("stopped".to_owned(), "ask again"),
-        };
-        Error::malformed(found, instead)
+            _ => Error::malformed("stopped", "ask again"),
+        }
     }
 }
 

@@ -188,8 +188,14 @@ impl Global {
             for warning in library.warnings() {
                 self.note(&Stream::Err.message("warning:", warning));
             }
-            let home = inputs::so_far().home();
-            // In an answer files have the names of its inputs.
+            // In an answer files have the names of its inputs; where the library is all that was read, from here.
+            let of_library = |home: &PathBuf| {
+                self.library
+                    .iter()
+                    .any(|path| std::path::absolute(path).is_ok_and(|path| home.starts_with(path)))
+            };
+            let home = inputs::so_far().home().filter(|home| !of_library(home));
+            let home = home.or_else(|| std::env::current_dir().ok());
             let said = |remark: &String| {
                 let name = |said: String, path: &PathBuf| {
                     said.replace(&*path.to_string_lossy(), &inputs::called(home.as_deref(), path))

@@ -1,7 +1,7 @@
 //! `hadar verify FOLDER`: the command of a report given again, and every file compared. Exit codes: 0 the same, 1 not.
 
 use super::global::{Global, Remade};
-use super::{Command, dispatch, line, provenance};
+use super::provenance;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar::inputs::inputs_of;
@@ -22,11 +22,26 @@ pub(super) struct VerifyArgs {
     inputs: Option<PathBuf>,
 }
 
-pub(super) fn run(args: &VerifyArgs, global: &Global) -> Result<ExitCode> {
+/// A command of a report, read again.
+pub(super) struct Again {
+    /// Whether it is one that makes reports.
+    pub(super) makes_reports: bool,
+    /// Whether it is of a rule.
+    pub(super) is_rule: bool,
+    pub(super) given: Global,
+    pub(super) run: Box<dyn Fn(&Global) -> Result<ExitCode>>,
+}
+
+/// `read_again` reads the words of a command.
+pub(super) fn run(
+    args: &VerifyArgs,
+    global: &Global,
+    read_again: &dyn Fn(&[String]) -> Option<Again>,
+) -> Result<ExitCode> {
     let folder = std::path::absolute(&args.folder)
         .map_err(|error| Error::file("read the report", &args.folder, error.kind()))?;
     let stored = Stored::read(&folder)?;
-    let (command, given) = read_again(stored.provenance()).map_err(|error| error.in_file(&folder))?;
+    let again = checked(stored.provenance(), read_again).map_err(|error| error.in_file(&folder))?;
     let scenario = scenario_of(stored.provenance());
     let base = base(args, &folder, &stored)?;
     std::env::set_current_dir(&base)
@@ -37,12 +52,12 @@ pub(super) fn run(args: &VerifyArgs, global: &Global) -> Result<ExitCode> {
     let asked = asked.filter(|is| args.inputs.is_some() || Some(is) == was.as_ref());
     let scratch = Scratch::temporary()?;
     let made = scratch.place().join("report");
-    let remade = Arc::new(Remade::new(
-        stored.asked.clone().zip(scenario).map(|(text, path)| (path, text)),
-        stored.provenance().clone(),
-    ));
-    let again = given.made_again(&made, Arc::clone(&remade), global);
-    let (outcome, _) = inputs_of(|| dispatch(&command, &again));
+    // The copy of a rule has no sources: it has figures that nobody wrote. Where the rule itself is as it was, it is asked again.
+    let is_rule = again.is_rule && asked.is_some() && asked == was;
+    let copy = stored.asked.clone().zip(scenario).filter(|_| !is_rule);
+    let remade = Arc::new(Remade::new(copy.map(|(text, path)| (path, text)), stored.provenance().clone()));
+    let given = again.given.made_again(&made, Arc::clone(&remade), global);
+    let (outcome, _) = inputs_of(|| (again.run)(&given));
     outcome?;
     let verified = stored.against(&folder, &made, &remade.inputs(), asked.as_deref(), provenance::COMMIT)?;
     global.print(&verified, &text(&verified))?;
@@ -50,33 +65,20 @@ pub(super) fn run(args: &VerifyArgs, global: &Global) -> Result<ExitCode> {
 }
 
 /// The command of a report, if it is one that makes reports and says nothing of where they go.
-fn read_again(provenance: &Provenance) -> Result<(Command, Global)> {
+fn checked(provenance: &Provenance, read_again: &dyn Fn(&[String]) -> Option<Again>) -> Result<Again> {
     let refuse = |found: String| {
         Error::malformed(found, "name the report of a command that answers a scenario, a rule or a cube")
     };
     let said = provenance.command_line();
-    let (cli, given) = super::parsed_from::<super::Cli>(&line(), &provenance.command)
-        .map_err(|_| refuse(format!("its command, {said}, is none of this program")))?;
-    if given.out.is_some() || given.force {
-        return Err(refuse(format!("its command, {said}, says where to write, which a report never does")));
-    }
-    let makes_reports = match &cli.command {
-        Command::Rule(args) => !args.verifies(),
-        Command::Size(_)
-        | Command::Identify(_)
-        | Command::Range(_)
-        | Command::Decompose(_)
-        | Command::Library(_)
-        | Command::Calibrate(_)
-        | Command::Render(_)
-        | Command::Simulate(_)
-        | Command::Sweep(_)
-        | Command::Materials(_) => true,
-        _ => false,
-    };
-    match makes_reports {
-        true => Ok((cli.command, given)),
-        false => Err(refuse(format!("its command, {said}, cannot be given again from here"))),
+    match read_again(&provenance.command) {
+        None => Err(refuse(format!("its command, {said}, is none of this program"))),
+        Some(again) if again.given.out.is_some() || again.given.force => {
+            Err(refuse(format!("its command, {said}, says where to write, which a report never does")))
+        }
+        Some(again) if !again.makes_reports => {
+            Err(refuse(format!("its command, {said}, cannot be given again from here")))
+        }
+        Some(again) => Ok(again),
     }
 }
 

@@ -17,6 +17,7 @@ fn of_files(outside: &Path) -> Folder {
     let folder = Folder::with(&SCENARIO.replace("\"aluminium\"", &listed));
     fs::create_dir(folder.path().join("own")).unwrap();
     folder.file("own/paint.csv", OWN);
+    folder.file("b.toml", SCENARIO);
     folder.file("rule.toml", &rule("flir-a325sc").replace("\"aluminium\"", "\"own/paint.csv\""));
     folder
 }
@@ -29,7 +30,7 @@ fn asked(outside: &Path) -> Vec<(Folder, Vec<&'static str>)> {
             of_files(outside),
             &[
                 "size a.toml",
-                "size a.toml rule.toml",
+                "size a.toml b.toml",
                 "identify a.toml --library @/lib --seed 3",
                 "identify a.toml --set target.material=\"@/whole.csv\"",
                 "rule rule.toml",

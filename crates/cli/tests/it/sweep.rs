@@ -120,7 +120,7 @@ fn a_bad_row_has_its_message_and_the_others_their_answers() {
     assert_eq!(table[1]["status"], "error");
     let message = &table[1]["message"];
     assert!(
-        message.starts_with("--vary target.material: there is no material `wood-that-is-none`"),
+        message.starts_with("'--vary target.material: there is no material `wood-that-is-none`"),
         "{message}"
     );
     assert!(table[1]["verdict.margin"].is_empty() && number(&table[2], "verdict.margin") > 0.0);

@@ -17,6 +17,7 @@ const COMMANDS: &[&[&str]] = &[
     &["materials", "plot", "skin"],
     &["sweep", "a.toml", "--vary", "target.distance=5 m,6 m", "--columns", "verdict"],
     &["rule", "examples/stand_in.toml"],
+    &["rule", "examples/rule_delivery_robots_at_night.toml"],
 ];
 
 fn work() -> (Folder, String) {
@@ -24,12 +25,14 @@ fn work() -> (Folder, String) {
     for part in ["work/mine", "work/examples"] {
         fs::create_dir_all(folder.path().join(part)).unwrap();
     }
-    folder.file("work/a.toml", SCENARIO);
+    // Found by its content, by which it is no other test's.
+    let own = format!("{SCENARIO}# {}\n", folder.path().display());
+    folder.file("work/a.toml", &own);
     folder.file("work/mine/own.csv", "wavenumber_cm1,emissivity\n500,0.5\n2000,0.6\n");
     // A camera that is completed by figures that nobody states.
     let completed = "preset = \"flir-boson-640-14mm\"\nf_number = 1.0\nreadout = \"sequential\"\n";
     folder.file("work/completed.toml", &SCENARIO.replace("preset = \"flir-a325sc\"\n", completed));
-    for example in ["street.toml", "stand_in.toml"] {
+    for example in ["street.toml", "stand_in.toml", "rule_delivery_robots_at_night.toml"] {
         fs::copy(
             repository().join("examples").join(example),
             folder.path().join("work/examples").join(example),

@@ -5,9 +5,9 @@
 //! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are left out at the ends of a spectrum; between
 //! others they are no number: an error once a band needs them, as values below 0 or above 1 are.
 
-use super::MOST_SPECTRA;
 use super::content::{Content, of_all, stem, warnings};
 use super::header::{self, Axis, Meaning, Quantity, Values};
+use super::layout::MOST_SPECTRA;
 use crate::envi_header::{EnviHeader, Layout, data_of, header_of};
 use crate::file;
 use crate::file::READ_SPECTRUM;

@@ -5,7 +5,7 @@
 //! or `1,500` may be 1.5 or 1500, it is asked for. The header is the last line above the numbers that names an axis, in a
 //! comment too, as NumPy writes it; a line of units may follow it.
 
-use super::{MOST_SPECTRA, header};
+use super::header;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use hadar::grid::{EXAMPLE, Grid, number};
@@ -75,6 +75,9 @@ impl Form {
             .collect()
     }
 }
+
+/// Most spectra of one file: each takes a thousand bytes of memory, however short it is.
+pub(super) const MOST_SPECTRA: usize = 100_000;
 
 /// Whether a line has more columns than are read, in any form.
 fn too_wide(line: &str) -> bool {

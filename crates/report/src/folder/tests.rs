@@ -303,7 +303,7 @@ fn what_is_planted_is_not_believed() {
         let outcome = folder.check().and_then(|()| write(&folder, &["x.csv", "sub/keys"], "2"));
         refusal(
             outcome,
-            if strangers == Strangers::Refuse { "x.csv" } else { "its `sub` is a file or a link" },
+            if strangers == Strangers::Refuse { "`sub`" } else { "its `sub` is a file or a link" },
         );
         assert_eq!(fs::read_to_string(at("away/keys")).unwrap(), "mine");
         assert_eq!(fs::read_to_string(at("out/x.csv")).unwrap(), "mine");

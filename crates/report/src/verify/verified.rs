@@ -1,0 +1,68 @@
+//! What comes of a report that was made again.
+
+use serde::Serialize;
+
+/// What is not as it should be.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Difference {
+    /// A file of the report is not there.
+    Missing {
+        /// Its name.
+        file: String,
+    },
+    /// A file is not as it was when the report was written.
+    Changed {
+        /// Its name.
+        file: String,
+    },
+    /// A file is made again with other content.
+    Differs {
+        /// Its name.
+        file: String,
+    },
+    /// The command makes no such file.
+    NotMade {
+        /// Its name.
+        file: String,
+    },
+    /// The command makes a file that the report does not list.
+    Unlisted {
+        /// Its name.
+        file: String,
+    },
+    /// Something that the answer rests on is another.
+    Input {
+        /// As the report names it.
+        path: String,
+        /// SHA-256 that the report has.
+        was: Option<String>,
+        /// SHA-256 of what was read now.
+        is: Option<String>,
+    },
+    /// Another program made it: no difference by itself.
+    Program {
+        /// Version and commit.
+        was: String,
+        /// Version and commit.
+        is: String,
+    },
+}
+
+/// What came of it.
+#[derive(Debug, Serialize)]
+pub struct Verified {
+    /// Whether all files and inputs are the same.
+    pub verified: bool,
+    /// Files that were compared.
+    pub files: usize,
+    /// Inputs that were compared, the file of the question among them if it was found.
+    pub inputs: usize,
+    /// The command that was given again.
+    pub command: String,
+    /// What is not as it should be.
+    pub differences: Vec<Difference>,
+    /// Files in the folder that are not the report's, of which nothing is said.
+    pub strangers: Vec<String>,
+}
