@@ -23,7 +23,7 @@ use hadar_study::{
     Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Warning, Watch,
 };
 use pyo3::prelude::*;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 type Draw = Box<dyn Fn() -> Result<Bundle> + Send + Sync>;
 
@@ -190,7 +190,7 @@ pub(crate) fn size(
         let text = size_report::text(&result, &study);
         result.stats.add(&no_report());
         let json = reading.json(&result)?;
-        Ok(Found { json, text, draw: Box::new(move || size_report::bundle(&study, &result, Path::new(""))) })
+        Ok(Found { json, text, draw: Box::new(move || size_report::bundle(&study, &result)) })
     })
 }
 
@@ -259,11 +259,7 @@ pub(crate) fn identify(
         let text = identify_report::text(&answers, &study);
         answers.identification.stats.add(&no_report());
         let (json, seed) = (reading.json(&answers)?, common.seed);
-        Ok(Found {
-            json,
-            text,
-            draw: Box::new(move || identify_report::bundle(&study, &answers, seed, Path::new(""))),
-        })
+        Ok(Found { json, text, draw: Box::new(move || identify_report::bundle(&study, &answers, seed)) })
     })
 }
 
@@ -292,7 +288,7 @@ pub(crate) fn rule(
         answer.stats.add(&no_report());
         let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;
         let json = reading.json(&rule_report::Output { answer: &answer, inputs: &provenance.inputs })?;
-        let draw = move || rule_report::bundle(&study, &answer, &provenance, Path::new(""));
+        let draw = move || rule_report::bundle(&study, &answer, &provenance);
         Ok(Found { json, text, draw: Box::new(draw) })
     })
 }
@@ -318,7 +314,7 @@ pub(crate) fn range_(
                 let text = air_ranging::text(&result);
                 result.stats.add(&no_report());
                 let json = reading.json(&result)?;
-                Ok(Found { json, text, draw: Box::new(move || air_ranging::bundle(&result, Path::new(""))) })
+                Ok(Found { json, text, draw: Box::new(move || air_ranging::bundle(&result)) })
             }
             RangingScenario::Stereo(scenario) => {
                 let study = RangeStudy::new(&scenario, &reading.library()?)?;
@@ -328,7 +324,7 @@ pub(crate) fn range_(
                 let text = range::text(&result);
                 result.stats.add(&no_report());
                 let json = reading.json(&result)?;
-                Ok(Found { json, text, draw: Box::new(move || range::bundle(&result, Path::new(""), None)) })
+                Ok(Found { json, text, draw: Box::new(move || range::bundle(&result, None)) })
             }
         }
     })
@@ -385,7 +381,7 @@ pub(crate) fn simulate(
             let text = simulate_report::thermometry::text(&result);
             result.stats.add(&no_report());
             let json = reading.json(&result)?;
-            let draw = move || simulate_report::thermometry::bundle(&study, &result, Path::new(""));
+            let draw = move || simulate_report::thermometry::bundle(&study, &result);
             return Ok(Found { json, text, draw: Box::new(draw) });
         }
         let asked = SimulationAsked {
@@ -406,7 +402,7 @@ pub(crate) fn simulate(
         let text = simulate_report::text(&result, &study);
         result.stats.add(&planning.and(&no_report()));
         let json = reading.json(&result)?;
-        let draw = move || simulate_report::bundle(&study, &result, None, Path::new(""));
+        let draw = move || simulate_report::bundle(&study, &result, None);
         Ok(Found { json, text, draw: Box::new(draw) })
     })
 }

@@ -317,7 +317,7 @@ impl Folder {
 
     /// What is in the folder, if it may be written to.
     fn content(&self, place: &Path) -> Result<Content> {
-        let of_begun = begun(place).into_iter().flat_map(|folders| folders.map(|f| Manifest::in_folder(&f)));
+        let of_begun = begun(place).flat_map(|folders| folders.map(|f| Manifest::in_folder(&f)));
         let manifests = std::iter::once(Manifest::in_folder(place)).chain(of_begun).flatten();
         let mut content = Content { manifests: manifests.collect(), alone: true };
         if !place.exists() {

@@ -34,7 +34,7 @@ use std::path::PathBuf;
 /// ```
 /// ```
 /// use hadar_scenario::RangeScenario;
-/// let text = "[cube]\nleft = \"/data/left.npy\"\n[stereo]\nbaseline = \"0.2 m\"\nfocal_length = \"14 mm\"\npixel = \"12 um\"\n";
+/// let text = "[cube]\nleft = \"left.npy\"\n[stereo]\nbaseline = \"0.2 m\"\nfocal_length = \"14 mm\"\npixel = \"12 um\"\n";
 /// let scenario = RangeScenario::from_toml(text, None)?;
 /// let again = RangeScenario::from_toml(&scenario.to_toml(), None)?;
 /// assert_eq!((&again.subject, &again.stereo), (&scenario.subject, &scenario.stereo));

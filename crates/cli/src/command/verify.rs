@@ -22,6 +22,9 @@ pub(super) struct VerifyArgs {
     inputs: Option<PathBuf>,
 }
 
+/// What does a command as it is told.
+type Run = Box<dyn Fn(&Global) -> Result<ExitCode>>;
+
 /// A command of a report, read again.
 pub(super) struct Again {
     /// Whether it is one that makes reports.
@@ -29,7 +32,7 @@ pub(super) struct Again {
     /// Whether it is of a rule.
     pub(super) is_rule: bool,
     pub(super) given: Global,
-    pub(super) run: Box<dyn Fn(&Global) -> Result<ExitCode>>,
+    pub(super) run: Run,
 }
 
 /// `read_again` reads the words of a command.
