@@ -1,7 +1,7 @@
 //! A budget for a question: how long it may take and how much memory, what that does to it, and what it will take at least.
 //!
 //! Two things hold a question to its [`Limits`]. Before the work, what it takes at least is computed from its scenario
-//! ([`Study::takes`], [`memory`](super::memory) for cubes), and what exceeds a limit is refused. During the work one thread looks at
+//! ([`Study::takes`], `memory` for cubes), and what exceeds a limit is refused. During the work one thread looks at
 //! the clock and at the memory of the process, and stops the question at its next [`stop::check`](hadar::stop::check) where either
 //! has passed its limit. The forecast is a lower bound, since how many boxes a proof needs, or a classifier needs epochs, is known
 //! only afterwards: the rest is the watching thread's.
