@@ -75,8 +75,9 @@ fn copied(from: &Path, to: &Path) {
 /// Where the program is run, and how it is told of a file from there.
 struct Place {
     stands: PathBuf,
-    /// What is written before the name of a file of the scenario's folder, and before the folder outside.
-    before: [String; 2],
+    /// What is written before the name of a file of the scenario's folder, and before the folder outside; in a value of the scenario that
+    /// is its whole path.
+    before: [String; 3],
     out: PathBuf,
 }
 
@@ -84,6 +85,7 @@ impl Place {
     /// What is printed as JSON, and every file that is written.
     fn run(&self, command: &str, home: &Path) -> (String, BTreeMap<String, Vec<u8>>) {
         let word = |word: &str| match word.split_once('@') {
+            Some((key, rest)) if key.contains('=') => format!("{key}{}{rest}", self.before[2]),
             Some((key, rest)) => format!("{key}{}{rest}", self.before[1]),
             None if home.join(word).exists() => format!("{}{word}", self.before[0]),
             None => word.to_owned(),
@@ -144,19 +146,19 @@ fn reports_are_the_same_bytes_anywhere() {
             // In the folder itself.
             Place {
                 stands: homes[0].clone(),
-                before: [String::new(), "../../outside".into()],
+                before: [String::new(), "../../outside".into(), whole(&outside)],
                 out: "out".into(),
             },
             // Beside, by a way up and down.
             Place {
                 stands: elsewhere.clone(),
-                before: [format!("../{number}/a deep/er/place/"), whole(&outside)],
+                before: [format!("../{number}/a deep/er/place/"), whole(&outside), whole(&outside)],
                 out: "report".into(),
             },
             // Above, by the whole path.
             Place {
                 stands: root.to_owned(),
-                before: [format!("{}/", whole(&homes[1])), "outside".into()],
+                before: [format!("{}/", whole(&homes[1])), "outside".into(), whole(&outside)],
                 out: homes[1].join("of this").join("out"),
             },
         ];
