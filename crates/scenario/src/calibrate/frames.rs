@@ -3,6 +3,7 @@
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, is_cube, variable};
 use super::super::section::Entry;
+use crate::Source;
 use hadar::error::Result;
 use hadar_formats::cube::Axes;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,12 @@ impl Frames {
     pub fn bare(paths: &[PathBuf]) -> Self {
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
         Self { data: paths.iter().map(absolute).collect(), variable: None, axes: None }
+    }
+
+    /// Where frames that no file names are named from: the folder of the first of them.
+    pub(crate) fn home(&self) -> Source {
+        let folder = self.data.first().and_then(|path| path.parent());
+        Source { inputs: folder.map(std::path::Path::to_owned), ..Source::default() }
     }
 
     /// `data`, one or a list, and `variable`.

@@ -43,12 +43,9 @@ impl NoiseScenario {
     /// Bare cubes, with what holds where nothing is said.
     #[must_use]
     pub fn bare(paths: &[std::path::PathBuf]) -> Self {
-        Self {
-            title: None,
-            cube: Frames::bare(paths),
-            noise: NoiseSpec::default(),
-            source: Source::default(),
-        }
+        let cube = Frames::bare(paths);
+        let source = cube.home();
+        Self { title: None, cube, noise: NoiseSpec::default(), source }
     }
 
     fn of_root(root: &Section<'_>) -> Result<Self> {

@@ -37,7 +37,8 @@ impl StripesScenario {
     #[must_use]
     pub fn bare(path: &Path) -> Self {
         let cube = Frames::bare(&[path.to_owned()]);
-        Self { title: None, cube, stripes: SOUGHT, source: Source::default() }
+        let source = cube.home();
+        Self { title: None, cube, stripes: SOUGHT, source }
     }
 
     fn of_root(root: &Section<'_>) -> Result<Self> {
