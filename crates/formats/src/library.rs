@@ -37,7 +37,8 @@ pub trait ReadLibrary {
 impl ReadLibrary for Library {
     fn add_directory(&mut self, directory: &Path) -> Result<()> {
         let path = directory.join(MANIFEST);
-        if path.is_file() {
+        let there = path.symlink_metadata();
+        if !there.is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
             return add_manifest(self, &path, directory);
         }
         let (mut sources, mut passed_over) = (Vec::new(), Vec::new());

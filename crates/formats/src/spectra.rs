@@ -48,7 +48,9 @@ pub fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(directory).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        if path.is_file() && name.is_some_and(|name| is_spectra(&name)) {
+        // A link to nothing is no folder: it is not passed over in silence.
+        let is_folder = || path.metadata().is_ok_and(|found| found.is_dir());
+        if name.is_some_and(|name| is_spectra(&name)) && !is_folder() {
             files.push(path);
         }
     }

@@ -18,6 +18,7 @@ pub(crate) mod inside;
 mod staging;
 
 pub use self::inside::Inside;
+use self::inside::if_there;
 use self::staging::{Left, Staging, begun, clear, is_staging};
 use crate::manifest::{self, Manifest, Provenance};
 use hadar::error::{Error, Result};
@@ -130,9 +131,12 @@ struct Content {
 
 impl Content {
     /// Whether a file or folder is listed, and whether it is as it was listed.
-    fn knows(&self, place: &Path, name: &str) -> (bool, bool) {
-        let owns = |manifest: &Manifest| manifest.owns(place, name) || manifest.owns_folder(place, name);
-        (self.manifests.iter().any(|manifest| manifest.lists(name)), self.manifests.iter().any(owns))
+    fn knows(&self, place: &Path, name: &str) -> io::Result<(bool, bool)> {
+        let mut owned = false;
+        for manifest in &self.manifests {
+            owned = owned || manifest.owns(place, name)? || manifest.owns_folder(place, name)?;
+        }
+        Ok((self.manifests.iter().any(|manifest| manifest.lists(name)), owned))
     }
 }
 
@@ -195,7 +199,7 @@ impl Folder {
     /// The first one that is.
     pub fn check_inputs(&self, inputs: &[PathBuf], names: &[&str]) -> Result<()> {
         let place = self.place()?;
-        let listed = Manifest::in_folder(&place);
+        let listed = Manifest::in_folder(&place).map_err(|error| self.refused(&error))?;
         let listed = listed.iter().flat_map(|manifest| &manifest.files).map(|file| file.name.as_str());
         for name in names.iter().copied().chain([manifest::NAME]).chain(listed) {
             let path = place.join(name);
@@ -216,10 +220,17 @@ impl Folder {
     /// As [`Folder::check`].
     pub fn own_files(&self) -> Result<Vec<(String, Vec<u8>)>> {
         let place = self.place()?;
-        let Some(manifest) = Manifest::in_folder(&place) else { return Ok(Vec::new()) };
-        let own = manifest.files.iter().map(|file| &file.name).filter(|name| manifest.owns(&place, name));
-        own.map(|name| Ok((name.clone(), fs::read(place.join(name)).map_err(|error| self.refused(&error))?)))
-            .collect()
+        let own = || -> io::Result<_> {
+            let Some(manifest) = Manifest::in_folder(&place)? else { return Ok(Vec::new()) };
+            let mut own = Vec::new();
+            for file in &manifest.files {
+                if manifest.owns(&place, &file.name)? {
+                    own.push((file.name.clone(), fs::read(place.join(&file.name))?));
+                }
+            }
+            Ok(own)
+        };
+        own().map_err(|error| self.refused(&error))
     }
 
     /// Writes files and the manifest that lists them. None of `inputs` is replaced.
@@ -317,19 +328,21 @@ impl Folder {
 
     /// What is in the folder, if it may be written to.
     fn content(&self, place: &Path) -> Result<Content> {
-        let of_begun = begun(place).flat_map(|folders| folders.map(|f| Manifest::in_folder(&f)));
-        let manifests = std::iter::once(Manifest::in_folder(place)).chain(of_begun).flatten();
-        let mut content = Content { manifests: manifests.collect(), alone: true };
-        if !place.exists() {
+        let refused = |error: io::Error| self.refused(&error);
+        let mut content = Content { manifests: Vec::new(), alone: true };
+        if if_there(place.metadata()).map_err(refused)?.is_none() {
             return Ok(content);
         }
+        let begun = begun(place).map_err(refused)?;
+        for folder in std::iter::once(place).chain(begun.iter().flatten().map(PathBuf::as_path)) {
+            content.manifests.extend(Manifest::in_folder(folder).map_err(refused)?);
+        }
         let entries = fs::read_dir(place).and_then(Iterator::collect::<io::Result<Vec<_>>>);
-        let mut names: Vec<_> =
-            entries.map_err(|error| self.refused(&error))?.iter().map(fs::DirEntry::file_name).collect();
+        let mut names: Vec<_> = entries.map_err(refused)?.iter().map(fs::DirEntry::file_name).collect();
         names.sort();
         for name in names {
             let (name, path) = (name.to_string_lossy().into_owned(), place.join(&name));
-            let (listed, owned) = content.knows(place, &name);
+            let (listed, owned) = content.knows(place, &name).map_err(refused)?;
             if owned {
                 continue;
             }
@@ -337,7 +350,7 @@ impl Folder {
             let bystander = !listed
                 && (is_staging(&path)
                     || is_hidden(&name)
-                    || (!path.is_symlink() && Manifest::in_folder(&path).is_some()));
+                    || (!path.is_symlink() && matches!(Manifest::in_folder(&path), Ok(Some(_)))));
             if !bystander && self.strangers == Strangers::Refuse {
                 let found = match (listed, content.manifests.is_empty()) {
                     (true, _) => format!("its `{name}` was changed since hadar wrote it"),
@@ -419,13 +432,17 @@ fn moved(
     let [ready, old] = staging.commit()?;
     let inside = Inside::open(place)?;
     // From here on the folder is no whole report, and says so.
-    if inside.file(manifest::NAME).is_ok() {
+    if if_there(inside.file(manifest::NAME))?.is_some() {
         disk::create_dir_all(&old)?;
         disk::rename(&place.join(manifest::NAME), &old.join(manifest::NAME))?;
     }
     for old in before {
         let obsolete = old.files.iter().map(|file| &file.name).filter(|name| !new.lists(name));
-        obsolete.filter(|name| old.owns(place, name)).try_for_each(|name| inside.remove(name))?;
+        for name in obsolete {
+            if old.owns(place, name)? {
+                inside.remove(name)?;
+            }
+        }
     }
     let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
     names.into_iter().try_for_each(|name| inside.take(&ready.join(name), name))?;

@@ -3,7 +3,7 @@
 //! Nothing in it depends on when or where it was made: no time, no machine, no folder of the one who ran it. The same program with
 //! the same command and inputs writes the same bytes, so that anyone can check a report by making it again.
 
-use crate::folder::inside::{self, Inside};
+use crate::folder::inside::{self, Inside, if_there};
 use crate::json;
 use hadar::error::Result;
 use hadar::inputs::{Inputs, called};
@@ -12,7 +12,7 @@ pub(crate) use hadar_formats::hash::sha256_of;
 use hadar_scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
-use std::io::Read as _;
+use std::io::{self, Read as _};
 use std::path::Path;
 
 pub use hadar_formats::hash::{sha256, sha256_of_file};
@@ -146,35 +146,54 @@ impl Manifest {
     }
 
     /// The manifest in a folder; `None` where there is none, or none of this program.
-    pub(crate) fn in_folder(folder: &Path) -> Option<Self> {
-        let file = Inside::open(folder).ok()?.file(NAME).ok()?;
+    ///
+    /// # Errors
+    /// One that cannot be read.
+    pub(crate) fn in_folder(folder: &Path) -> io::Result<Option<Self>> {
+        let file = Inside::open(folder).and_then(|inside| inside.file(NAME));
+        let Some(file) = if_there(file)? else { return Ok(None) };
         let mut text = Vec::new();
-        file.take(LONGEST).read_to_end(&mut text).ok()?;
-        let manifest: Self = serde_json::from_slice(&text).ok()?;
+        file.take(LONGEST).read_to_end(&mut text)?;
+        let Ok(manifest) = serde_json::from_slice::<Self>(&text) else { return Ok(None) };
         // Names of files in this folder and below: whoever changed the list reaches no others by it.
         let inside = |name: &str| inside::is_within(name) && name != NAME;
-        manifest.files.iter().all(|file| inside(&file.name)).then_some(manifest)
+        Ok(manifest.files.iter().all(|file| inside(&file.name)).then_some(manifest))
     }
 
     /// Whether a file of the folder is listed and as it was written. No link on the way is followed.
-    pub(crate) fn owns(&self, folder: &Path, name: &str) -> bool {
-        let Ok(file) = Inside::open(folder).and_then(|inside| inside.file(name)) else { return false };
-        let listed = self.files.iter().find(|file| file.name == name);
-        name == NAME || listed.is_some_and(|listed| sha256_of(file).is_ok_and(|now| now == listed.sha256))
+    ///
+    /// # Errors
+    /// A listed file that cannot be read.
+    pub(crate) fn owns(&self, folder: &Path, name: &str) -> io::Result<bool> {
+        let listed = self.files.iter().find(|file| file.name == name).map(|file| file.sha256.as_str());
+        if listed.is_none() && name != NAME {
+            return Ok(false);
+        }
+        let Some(file) = if_there(Inside::open(folder).and_then(|inside| inside.file(name)))? else {
+            return Ok(false);
+        };
+        listed.map_or(Ok(true), |listed| Ok(sha256_of(file)? == listed))
     }
 
     /// Whether a folder in it holds files of the run alone, unchanged.
-    pub(crate) fn owns_folder(&self, folder: &Path, name: &str) -> bool {
+    ///
+    /// # Errors
+    /// A folder that files of the run are listed in, or one of these, that cannot be read.
+    pub(crate) fn owns_folder(&self, folder: &Path, name: &str) -> io::Result<bool> {
         let path = folder.join(name);
-        let real = path.symlink_metadata().is_ok_and(|found| found.is_dir());
-        let Ok(entries) = std::fs::read_dir(&path) else { return false };
-        let own = |entry: std::io::Result<std::fs::DirEntry>| {
-            let Ok(entry) = entry else { return false };
-            let inner = format!("{name}/{}", entry.file_name().to_string_lossy());
-            self.owns(folder, &inner) || self.owns_folder(folder, &inner)
-        };
-        real && self.files.iter().any(|file| file.name.starts_with(&format!("{name}/")))
-            && entries.into_iter().all(own)
+        if !self.files.iter().any(|file| file.name.starts_with(&format!("{name}/"))) {
+            return Ok(false);
+        }
+        if !if_there(path.symlink_metadata())?.is_some_and(|found| found.is_dir()) {
+            return Ok(false);
+        }
+        for entry in std::fs::read_dir(&path)? {
+            let inner = format!("{name}/{}", entry?.file_name().to_string_lossy());
+            if !self.owns(folder, &inner)? && !self.owns_folder(folder, &inner)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Whether a file is listed, changed or not.
@@ -220,7 +239,7 @@ mod tests {
             let mut manifest = Manifest::of(&Provenance::default(), [("x", sha256(b"1"))]);
             manifest.files[0].name = name.into();
             std::fs::write(folder.path().join(NAME), manifest.to_json().unwrap()).unwrap();
-            assert_eq!(Manifest::in_folder(folder.path()).is_some(), good, "{name}");
+            assert_eq!(Manifest::in_folder(folder.path()).unwrap().is_some(), good, "{name}");
         }
     }
 

@@ -3,7 +3,7 @@
 //! `hadar.json` says which command made the report of which inputs. The command is given again, with the scenario that the report has
 //! in its folder, and what it writes elsewhere is compared. Nothing of the report is believed: its list only says what to compare.
 
-use crate::folder::Inside;
+use crate::folder::inside::{Inside, if_there};
 use crate::manifest::{self, Input, Manifest, Provenance, VERSION, sha256_of};
 use hadar::error::{Error, Result};
 use std::collections::BTreeMap;
@@ -34,7 +34,8 @@ impl Stored {
     /// # Errors
     /// A folder without one.
     pub fn read(folder: &Path) -> Result<Self> {
-        let Some(manifest) = Manifest::in_folder(folder) else {
+        let unread = |error: std::io::Error| Error::file("read the report", folder, error.kind());
+        let Some(manifest) = Manifest::in_folder(folder).map_err(unread)? else {
             let instead = "name a folder that --out made";
             return Err(Error::malformed("there is no report in this folder", instead).in_file(folder));
         };
@@ -68,7 +69,8 @@ impl Stored {
         asked: Option<&str>,
         commit: &str,
     ) -> Result<Verified> {
-        let Some(again) = Manifest::in_folder(made) else {
+        let unread = |error: std::io::Error| Error::file("read the report", made, error.kind());
+        let Some(again) = Manifest::in_folder(made).map_err(unread)? else {
             let found = format!("its command, {}, writes no report", self.provenance().command_line());
             return Err(Error::malformed(found, "make the report again").in_file(folder));
         };
@@ -130,7 +132,7 @@ impl Stored {
         for listed in &self.manifest.files {
             let file = listed.name.clone();
             let made = again.files.iter().find(|made| made.name == file).map(|made| made.sha256.as_str());
-            let is = inside.file(&file).and_then(sha256_of).ok();
+            let is = if_there(inside.file(&file).and_then(sha256_of)).map_err(failed)?;
             to.extend(match (is, made) {
                 (None, _) => Some(Difference::Missing { file }),
                 (Some(is), _) if is != listed.sha256 => Some(Difference::Changed { file }),
@@ -162,10 +164,14 @@ impl Stored {
         let names = entries.map_err(failed)?.into_iter().map(|entry| entry.file_name());
         let mut names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
         // Hidden ones are nobody's concern, as where a report is written.
-        names.retain(|name| {
-            !name.starts_with('.') && !self.manifest.lists(name) && !self.manifest.owns_folder(folder, name)
-        });
+        names.retain(|name| !name.starts_with('.') && !self.manifest.lists(name));
         names.sort();
-        Ok(names)
+        let mut strangers = Vec::new();
+        for name in names {
+            if !self.manifest.owns_folder(folder, &name).map_err(failed)? {
+                strangers.push(name);
+            }
+        }
+        Ok(strangers)
     }
 }

@@ -67,7 +67,8 @@ impl Side {
     }
 
     fn of_folder(folder: &Path) -> Result<Self> {
-        let Some(manifest) = Manifest::in_folder(folder) else {
+        let unread = |error: std::io::Error| Error::file("read the report", folder, error.kind());
+        let Some(manifest) = Manifest::in_folder(folder).map_err(unread)? else {
             let instead = "name a folder that --out made, or a file with what --json printed";
             return Err(Error::malformed("there is no report in this folder", instead).in_file(folder));
         };

@@ -17,6 +17,24 @@ pub(crate) fn is_within(name: &str) -> bool {
     !name.is_empty() && Path::new(name).components().all(plain)
 }
 
+/// What was found: `None` where nothing of the name is, or nothing but a link or a folder. That the system could not look is neither.
+///
+/// # Errors
+/// What the system says where it could not look.
+pub(crate) fn if_there<T>(found: io::Result<T>) -> io::Result<Option<T>> {
+    use io::ErrorKind::{InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound};
+    match found {
+        Ok(found) => Ok(Some(found)),
+        Err(error)
+            if [InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound]
+                .contains(&error.kind()) =>
+        {
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}
+
 /// A folder.
 #[derive(Debug)]
 pub struct Inside {
@@ -56,6 +74,7 @@ impl Inside {
     /// # Errors
     /// No folder of this name, or one that may not be opened.
     pub fn open(folder: &Path) -> io::Result<Self> {
+        call()?;
         let handle = openat(CWD, folder, OFlags::DIRECTORY | OFlags::CLOEXEC, Mode::empty())?;
         Ok(Self { handle })
     }
@@ -82,6 +101,7 @@ impl Inside {
     /// # Errors
     /// No ordinary file of this name.
     pub fn file(&self, name: &str) -> io::Result<File> {
+        call()?;
         let (folders, last) = split(name)?;
         let plain = OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::CLOEXEC;
         ordinary(openat(&self.above(&folders, false)?, last, plain, Mode::empty()))
@@ -129,6 +149,7 @@ impl Inside {
 #[cfg(not(unix))]
 impl Inside {
     pub fn open(folder: &Path) -> io::Result<Self> {
+        call()?;
         Ok(Self { path: folder.canonicalize()? })
     }
 
@@ -145,6 +166,7 @@ impl Inside {
     }
 
     pub fn file(&self, name: &str) -> io::Result<File> {
+        call()?;
         let path = self.way(name)?;
         if path.symlink_metadata()?.is_file() {
             File::open(path)

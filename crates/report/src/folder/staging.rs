@@ -137,7 +137,7 @@ fn remove(folder: &Path, lock: &mut Option<File>) {
 
 /// Removes the staging folders in `home` whose processes are dead. What cannot be removed stays, as what may still be in use.
 pub(super) fn clear(home: &Path, left: Left) {
-    for folder in own(home) {
+    for folder in own(home).into_iter().flatten() {
         let Ok(lock) = disk::open_lock(&folder.join(LOCK)) else { continue };
         let Some(lock) = lock else {
             clear_begun(&folder);
@@ -150,9 +150,9 @@ pub(super) fn clear(home: &Path, left: Left) {
 }
 
 /// Folders of a process whose report was begun to be moved out of them into `home`: of the new report and of the old one.
-pub(super) fn begun(home: &Path) -> impl Iterator<Item = [PathBuf; 2]> {
-    let begun = own(home).filter(|folder| is_begun(folder));
-    begun.map(|folder| [READY, OLD].map(|name| folder.join(name)))
+pub(super) fn begun(home: &Path) -> io::Result<Vec<[PathBuf; 2]>> {
+    let begun = own(home)?.into_iter().filter(|folder| is_begun(folder));
+    Ok(begun.map(|folder| [READY, OLD].map(|name| folder.join(name))).collect())
 }
 
 /// Whether a report waits to be moved: its list goes last.
@@ -162,9 +162,9 @@ fn is_begun(folder: &Path) -> bool {
 }
 
 /// Staging folders in `home` that are this user's.
-fn own(home: &Path) -> impl Iterator<Item = PathBuf> {
-    let entries = disk::entries(home).into_iter().flatten().map(|entry| entry.path());
-    entries.filter(|path| is_staging(path) && disk::is_private(path))
+fn own(home: &Path) -> io::Result<Vec<PathBuf>> {
+    let entries = disk::entries(home)?.into_iter().map(|entry| entry.path());
+    Ok(entries.filter(|path| is_staging(path) && disk::is_private(path)).collect())
 }
 
 /// The longest way that a report takes to its folder.

@@ -69,9 +69,10 @@ impl Entry {
         self.files.iter().all(|(path, hash)| hash.is_some() && hashes.of(path) == *hash)
     }
 
-    /// A file that it read and that is not as it was.
+    /// A file that it read and that is not as it was, or that nothing tells to be.
     pub(super) fn changed(&self, hashes: &Hashes) -> Option<PathBuf> {
-        self.files.iter().find(|(path, hash)| hashes.of(path) != *hash).map(|(path, _)| path.clone())
+        let is_same = |path: &Path, hash: &Option<String>| hash.is_some() && hashes.of(path) == *hash;
+        self.files.iter().find(|(path, hash)| !is_same(path, hash)).map(|(path, _)| path.clone())
     }
 
     /// Files that were read, with their hashes.

@@ -64,6 +64,21 @@ pub(super) fn killed<T>(at: usize, work: impl FnOnce() -> T) -> bool {
     killed.get()
 }
 
+/// What `work` returns where the call of this number fails, and no other; whether there was such a call.
+pub(super) fn failing<T>(at: usize, work: impl FnOnce() -> T) -> (T, bool) {
+    let (mut number, failed) = (0, std::rc::Rc::new(Cell::new(false)));
+    let seen = failed.clone();
+    let before = move || {
+        number += 1;
+        if number - 1 != at {
+            return Ok(());
+        }
+        seen.set(true);
+        Err(io::Error::other("failed"))
+    };
+    (with(before, work), failed.get())
+}
+
 /// What `work` returns on a file system that cannot exchange two folders.
 pub(super) fn without_exchange<T>(work: impl FnOnce() -> T) -> T {
     EXCHANGE.set(false);

@@ -1,6 +1,6 @@
 //! Runs that are killed before any of their calls to the file system, and runs beside each other: every call is tried, none by its time.
 
-use super::calls::{killed, with, without_exchange};
+use super::calls::{failing, killed, with, without_exchange};
 use super::*;
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -92,8 +92,8 @@ impl World {
             return None;
         }
         assert!(found == of(&OLD, "1") || found == of(&NEW, "2"), "{what}: {found:?}");
-        let manifest = Manifest::in_folder(&self.place).unwrap();
-        assert!(found.keys().all(|name| manifest.owns(&self.place, name)), "{what}");
+        let manifest = Manifest::in_folder(&self.place).unwrap().unwrap();
+        assert!(found.keys().all(|name| manifest.owns(&self.place, name).unwrap()), "{what}");
         assert_eq!(found.len(), manifest.files.len(), "{what}");
         Some(found == of(&NEW, "2"))
     }
@@ -106,7 +106,7 @@ impl World {
     /// What is true as soon as a process is dead.
     #[track_caller]
     fn is_whole_or_says_so(&self, what: &str) {
-        if !self.moves() || Manifest::in_folder(&self.place).is_some() {
+        if !self.moves() || Manifest::in_folder(&self.place).unwrap().is_some() {
             // Obsolete files and empty folders go after their list.
             self.report(what);
         }
@@ -166,6 +166,30 @@ fn killed_at_any_call_a_run_leaves_the_old_report_or_the_new_one() {
             world.run().unwrap();
             assert!(world.is_clear(&what), "{what}");
             if !dead {
+                break;
+            }
+            calls += 1;
+        }
+        assert!(calls > 20, "{way:?}: {calls} calls");
+    }
+}
+
+/// That the system cannot look at a file is not that there is none.
+#[test]
+fn a_call_that_fails_is_told_or_makes_no_difference() {
+    for way in WAYS {
+        let mut calls = 0;
+        loop {
+            let (world, what) = (World::new(way), format!("{way:?}, call {calls} fails"));
+            let (outcome, failed) = failing(calls, || world.run().map(drop));
+            if outcome.is_ok() {
+                assert_eq!(world.report(&what), Some(true), "{what}");
+            } else {
+                world.is_whole_or_says_so(&what);
+            }
+            world.run().unwrap();
+            assert!(world.is_clear(&what), "{what}");
+            if !failed {
                 break;
             }
             calls += 1;
