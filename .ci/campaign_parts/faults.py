@@ -121,10 +121,18 @@ def injected(context, call, what):
     return [context.tracer, "-f", "-qq", "-o", "/dev/null", "-e", f"trace={call}", "-e", f"inject={call}:{what}"]
 
 
+def told(context):
+    """The point that --at names, in the words of a case: which calls there are, and so their numbers, differs a little from run to run."""
+    found = re.match(r"(.+?): (?:killed at (\w+) number (\d+)|(\w+) fails with (\w+), number (\d+\+?))", context.at or "")
+    if not found:
+        return None
+    name, killed, number, failing, error, when = found.groups()
+    return (name, killed, number) if killed else (name, failing, when, error)
+
+
 def kill(rng, context, folder, number):
     """The process is killed at one call that writes."""
-    deadly = [point for point in context.points if point[3]]
-    name, call, count, _ = deadly[number % len(deadly)]
+    name, call, count = told(context) or [point for point in context.points if point[3]][number % sum(point[3] for point in context.points)][:3]
     words = begin(context, name, folder)
     before = visible(folder / "work" / "out")
     outcome = run(context, words, folder, tracer=injected(context, call, f"signal=KILL:when={count}"))
@@ -137,7 +145,10 @@ def failure(rng, context, folder, number):
     """One call fails, or all from one on; or a limit is reached."""
     name = rng.choice(sorted(SETUPS))
     how, env, limits, tracer = "", {}, [], []
-    if context.tracer and rng.random() < 0.7:
+    if told(context):
+        name, call, count, error = told(context)
+        how, tracer = f"{call} fails with {error}, number {count}", injected(context, call, f"error={error}:when={count}")
+    elif context.tracer and rng.random() < 0.7:
         name, call, count, _ = context.points[number % len(context.points)]
         error = "ENOMEM" if call in MEMORY else rng.choice(ERRORS.get(call, OTHER_ERRORS))
         # A call that is interrupted is made again, for ever if it is interrupted for ever.

@@ -119,8 +119,9 @@ impl Drop for Staging {
 /// cannot be removed stays.
 fn remove(folder: &Path, lock: &mut Option<File>) {
     let is_lock = |name: &std::ffi::OsStr| name == LOCK || name == UNLOCKED;
+    let Ok(entries) = disk::entries(folder) else { return };
     let mut empty = true;
-    for entry in disk::entries(folder).into_iter().flatten().filter(|entry| !is_lock(&entry.file_name())) {
+    for entry in entries.into_iter().filter(|entry| !is_lock(&entry.file_name())) {
         let is_folder = entry.file_type().is_ok_and(|found| found.is_dir());
         let removed =
             if is_folder { disk::remove_dir_all(&entry.path()) } else { disk::remove_file(&entry.path()) };

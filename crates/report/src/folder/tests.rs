@@ -218,15 +218,17 @@ fn what_only_has_the_name_of_a_staging_folder_stays() {
 /// A report that was half moved is replaced by the next run that names its folder, and by no other; what is in it is hadar's all the same.
 #[test]
 fn a_report_half_moved_is_replaced_by_the_run_that_names_it() {
-    let home = tempfile::tempdir().unwrap();
-    let folder = Folder::new(home.path(), Strangers::KeepBesides);
-    fs::write(home.path().join("mine"), "mine").unwrap();
-    write(&folder, &["a.csv", "b.csv"], "1").unwrap();
     let whole = |folder: &Path| Manifest::in_folder(folder).unwrap().is_some();
-    let half = (0..).find(|call| {
-        calls::killed(*call, || write(&folder, &["a.csv", "c.csv"], "2")) && !whole(home.path())
+    let half = (0..).find_map(|call| {
+        let home = tempfile::tempdir().unwrap();
+        let folder = Folder::new(home.path(), Strangers::KeepBesides);
+        fs::write(home.path().join("mine"), "mine").unwrap();
+        write(&folder, &["a.csv", "b.csv"], "1").unwrap();
+        let dead = calls::killed(call, || write(&folder, &["a.csv", "c.csv"], "2"));
+        assert!(dead, "no call after which the report is half moved");
+        (!whole(home.path())).then_some((home, folder))
     });
-    assert!(half.is_some());
+    let (home, folder) = half.unwrap();
     write(&Folder::new(home.path().join("below"), Strangers::Refuse), &["x.csv"], "1").unwrap();
     folder.check().unwrap();
     assert!(!whole(home.path()), "nothing that is found is acted upon");
