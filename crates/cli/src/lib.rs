@@ -4,6 +4,9 @@
 //! their arguments from [`evidence`], and prints, writes and shows progress through [`Global`], so that each flag and message is
 //! defined once.
 
+// Linked for what it replaces: its own documentation.
+use hadar_elementary as _;
+
 mod command;
 mod evidence_program;
 

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Packages and storeys from the ground up; each uses only those before it.
-const PACKAGES: [(&str, &str); 10] = [
+const PACKAGES: [(&str, &str); 11] = [
     ("hadar", "."),
     ("hadar-formats", "crates/formats"),
     ("hadar-estimate", "crates/estimate"),
@@ -18,6 +18,7 @@ const PACKAGES: [(&str, &str); 10] = [
     ("hadar-study", "crates/study"),
     ("hadar-report", "crates/report"),
     ("hadar-serve", "crates/serve"),
+    ("hadar-elementary", "crates/elementary"),
     ("hadar-cli", "crates/cli"),
     ("hadar-evidence", "crates/evidence"),
 ];
