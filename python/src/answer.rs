@@ -17,7 +17,7 @@ use hadar_report::{
 };
 use hadar_scenario::{DistanceKind, RangingScenario, Rule, Scenario, day};
 use hadar_study::air_ranging::{AirPlan, AirRangingStudy};
-use hadar_study::budget::{self, Limits};
+use hadar_study::budget::{self, Limits, Takes};
 use hadar_study::range::{RangePlan, RangeStudy};
 use hadar_study::{
     Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Warning, Watch,
@@ -106,6 +106,11 @@ impl Common {
         Ok(library)
     }
 
+    /// Refuses what takes more than is allowed.
+    fn admit(&self, takes: Takes) -> Result<()> {
+        self.limits()?.admit(takes, rayon::current_num_threads())
+    }
+
     /// Answers without the interpreter; files are noted as they are read.
     fn answer(
         &self,
@@ -136,7 +141,7 @@ impl Common {
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
         let study = Study::new_skipping(&scenario, &reading.library()?, self.skipping())?;
-        self.limits()?.admit(study.takes(), rayon::current_num_threads())?;
+        self.admit(study.takes())?;
         Ok(study)
     }
 }
@@ -281,6 +286,7 @@ pub(crate) fn rule(
         let mut rule_read = question.read(Rule::from_file, Rule::from_toml)?;
         rule_read.skip_uncovered(common.skip_uncovered);
         let study = RuleStudy::new(&rule_read, &reading.library()?)?;
+        common.admit(study.takes())?;
         let (extent, skipping, seed) = (Extent::Everything, common.skipping(), common.seed);
         let mut answer =
             study.answer(&RuleAsked { extent, skipping, seed, on, ..RuleAsked::default() }, &|_, _| ())?;
@@ -318,6 +324,7 @@ pub(crate) fn range_(
             }
             RangingScenario::Stereo(scenario) => {
                 let study = RangeStudy::new(&scenario, &reading.library()?)?;
+                common.admit(study.takes())?;
                 let (seed, skipping) = (common.seed, common.skipping());
                 let plan = RangePlan { trials, seed, skipping, ..RangePlan::default() };
                 let mut result = study.range(&plan, None, &|_, _| ())?;

@@ -203,7 +203,6 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
 /// The command of a report, by its words.
 fn read_again(words: &[String]) -> Option<verify::Again> {
     let (Cli { command }, given) = parsed_from::<Cli>(&line(), words).ok()?;
-    let is_rule = matches!(command, Command::Rule(_));
     let makes_reports = match &command {
         Command::Rule(args) => !args.verifies(),
         Command::Size(_)
@@ -219,7 +218,7 @@ fn read_again(words: &[String]) -> Option<verify::Again> {
         _ => false,
     };
     let run = Box::new(move |global: &Global| dispatch(&command, global));
-    Some(verify::Again { makes_reports, is_rule, given, run })
+    Some(verify::Again { makes_reports, given, run })
 }
 
 /// Does what a command says, where all is prepared.

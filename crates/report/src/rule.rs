@@ -28,6 +28,9 @@ use hadar_study::{CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAns
 const HARDWARE: [Quantity; 5] =
     [Quantity::Exposure, Quantity::Pixel, Quantity::FNumber, Quantity::Noise, Quantity::Frames];
 
+/// The rule's own file in a report of it, as it was read.
+pub const AS_READ: &str = "rule_as_read.toml";
+
 /// A rule's answer as JSON.
 #[derive(Debug, serde::Serialize)]
 pub struct Output<'a> {
@@ -51,6 +54,8 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
     bundle.add(record::NAME, data);
     bundle.add("certificate.intoto.json", record::text(&statement)?);
     bundle.add_asked("rule.toml", study.rule().to_toml());
+    // What is filled in has no source: only the rule itself, word by word, says where its figures are from.
+    bundle.add(AS_READ, study.rule().text());
     bundle.add_table("cameras.csv", cameras(answer))?;
     bundle.add_table("worst_cases.csv", worst_cases(answer))?;
     let companions: Vec<&Companion> = answer

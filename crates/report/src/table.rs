@@ -1,6 +1,7 @@
 //! Tables as CSV, with the unit in every header, and as Markdown.
 
 use hadar::error::{Error, Result};
+use hadar::words::visible;
 use std::borrow::Cow;
 
 /// A column: its name, and its cell in a row.
@@ -70,7 +71,7 @@ impl Table {
     }
 
     /// The table as CSV text. A text that a spreadsheet would compute (`=1+1`, `@SUM(A1)`, `-2+3`) has an apostrophe before it, by which
-    /// it is taken for text; numbers are as they are.
+    /// it is taken for text; numbers are as they are. Letters that are not seen are written out ([`visible`]).
     ///
     /// # Errors
     /// A row whose length is not the header's.
@@ -93,16 +94,16 @@ fn is_formula(cell: &str) -> bool {
     let cell = cell.trim_start_matches('\'');
     let signed = cell.starts_with(['+', '-']) && cell != "-";
     let first = cell.split(' ').next().unwrap_or_default().trim_end_matches([';', ',']);
-    let harmless = first.parse::<f64>().is_ok()
+    let harmless = first.parse::<f64>().is_ok_and(f64::is_finite)
         && !cell.chars().skip(1).any(|letter| "*/^&=<>|!(\"'@".contains(letter))
         && !cell.contains(" +");
     cell.starts_with(['=', '@', '\t', '\r', '\n', '\u{FF1D}', '\u{FF0B}', '\u{FF0D}', '\u{FF20}'])
         || signed && !harmless
 }
 
-/// A cell as it is written, which no spreadsheet computes.
+/// A cell as it is written, which no spreadsheet computes and in which all letters are seen.
 fn inert(cell: &str) -> Cow<'_, str> {
-    if is_formula(cell) { format!("'{cell}").into() } else { cell.into() }
+    if is_formula(cell) { format!("'{}", visible(cell)).into() } else { visible(cell) }
 }
 
 /// A cell as it was before it was written.
@@ -195,6 +196,7 @@ mod tests {
             ("-20 to 50 degC", "-20 to 50 degC"),
             ("-1 +cmd|' /C calc'!A0", "'-1 +cmd|' /C calc'!A0"),
             ("-A1", "'-A1"),
+            ("-inf degC", "'-inf degC"),
             ("-", "-"),
             ("skin@wet", "skin@wet"),
             ("'tis", "'tis"),
@@ -203,6 +205,7 @@ mod tests {
             assert_eq!(inert(cell), written);
             assert_eq!(as_given(&inert(cell)), cell);
         }
+        assert_eq!(inert("=gold\u{202e}x"), "'=gold\\u{202e}x");
         let mut table = Table::new(["=name", "x"]);
         table.push(vec!["@a".into(), number(-1.0)]);
         assert_eq!(table.to_csv().unwrap(), "'=name,x\n'@a,-1\n");

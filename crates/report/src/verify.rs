@@ -4,7 +4,8 @@
 //! in its folder, and what it writes elsewhere is compared. Nothing of the report is believed: its list only says what to compare.
 
 use crate::folder::inside::{Inside, if_there};
-use crate::manifest::{self, Input, Manifest, Provenance, VERSION, sha256_of};
+use crate::manifest::{self, Input, Manifest, Provenance, VERSION, sha256, sha256_of};
+use crate::rule::AS_READ;
 use hadar::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -16,7 +17,7 @@ pub use crate::words::verify::text;
 pub use verified::{Difference, Verified};
 
 /// Files that ask again what a report answers.
-const ASKED: [&str; 2] = ["scenario.toml", "rule.toml"];
+const ASKED: [&str; 3] = ["scenario.toml", AS_READ, "rule.toml"];
 /// The longest of them, bytes.
 const LONGEST_ASKED: u64 = 1 << 24;
 
@@ -26,6 +27,8 @@ pub struct Stored {
     manifest: Manifest,
     /// What it answers, as a file that asks it again.
     pub asked: Option<String>,
+    /// SHA-256 of that file where it is the one that was read, word by word.
+    pub asked_as_read: Option<String>,
 }
 
 impl Stored {
@@ -47,7 +50,9 @@ impl Stored {
             read.map_err(|error| Error::file("read the report", &folder.join(name), error.kind()))?;
             Ok(text)
         });
-        Ok(Self { asked: asked.transpose()?, manifest })
+        let asked = asked.transpose()?;
+        let asked_as_read = asked.as_ref().filter(|_| listed == Some(AS_READ));
+        Ok(Self { asked_as_read: asked_as_read.map(|text| sha256(text.as_bytes())), asked, manifest })
     }
 
     /// Who made it of what, as it says.

@@ -130,6 +130,12 @@ impl Rule {
         self.clauses.iter_mut().for_each(|clause| clause.scenario.alternatives.skip_uncovered |= skip);
     }
 
+    /// Its file as it was read.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.scenario.source.text
+    }
+
     /// Its figures as its file has them.
     #[must_use]
     pub fn figures(&self) -> Vec<Figure> {

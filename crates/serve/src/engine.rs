@@ -258,6 +258,7 @@ impl Engine {
                 "{bands} bands of {alternatives} alternatives are more than this page computes"
             )));
         }
+        self.limits.admit(study.takes(), rayon::current_num_threads())?;
         Ok(study)
     }
 

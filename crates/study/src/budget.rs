@@ -1,7 +1,7 @@
 //! A budget for a question: how long it may take and how much memory, what that does to it, and what it will take at least.
 //!
 //! Two things hold a question to its [`Limits`]. Before the work, what it takes at least is computed from its scenario
-//! ([`Study::takes`], `memory` for cubes), and what exceeds a limit is refused. During the work one thread looks at
+//! (`takes` of every study, `memory` for cubes), and what exceeds a limit is refused. During the work one thread looks at
 //! the clock and at the memory of the process, and stops the question at its next [`stop::check`](hadar::stop::check) where either
 //! has passed its limit. The forecast is a lower bound, since how many boxes a proof needs, or a classifier needs epochs, is known
 //! only afterwards: the rest is the watching thread's.
@@ -23,6 +23,9 @@ const LOOK: Duration = Duration::from_millis(20);
 const SECONDS_A_VALUE: f64 = 2e-10;
 /// Evaluations of a scene that a search for the closest state takes at least.
 const EVALUATIONS: f64 = 100.0;
+/// Seconds that a core of a fast machine takes at least for one sample of a cube, rendered, taken apart or matched: a fiftieth of what a
+/// street of 480 x 640 x 54 takes.
+const SECONDS_A_SAMPLE: f64 = 2e-8;
 /// Spectra of doubles that every material is kept as: at nodes and bands, before and behind the path.
 const SPECTRA_OF_A_MATERIAL: u64 = 2;
 /// Units of memory, bytes.
@@ -52,6 +55,24 @@ pub struct Takes {
     pub memory_bytes: u64,
     /// Time of one core, s.
     pub core_s: f64,
+}
+
+impl Takes {
+    /// What a cube takes of which every sample is looked at; its memory is asked for where it is taken.
+    pub(crate) fn of_samples([rows, columns, bands]: [usize; 3]) -> Self {
+        let core_s = SECONDS_A_SAMPLE * rows as f64 * columns as f64 * bands as f64;
+        Self { core_s, ..Self::default() }
+    }
+}
+
+/// One after the other.
+impl std::iter::Sum for Takes {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, one| Self {
+            memory_bytes: sum.memory_bytes.max(one.memory_bytes),
+            core_s: sum.core_s + one.core_s,
+        })
+    }
 }
 
 /// Reads a limit of time: `90 s`, `5 min`.
@@ -107,7 +128,7 @@ impl Limits {
             );
             return Err(Error::malformed(
                 found,
-                "allow more, or ask for fewer bands, alternatives or surroundings",
+                "allow more, or ask for fewer bands, alternatives, surroundings or pixels",
             ));
         }
         if let Some(memory) = self.memory_bytes.filter(|memory| takes.memory_bytes > *memory) {

@@ -7,6 +7,7 @@ pub use results::{ClusterRow, LibraryFound, TruthOfClusters};
 use super::Warning;
 use super::decompose::Truth;
 use super::heat_cube::{Measured, Said};
+use crate::budget::Takes;
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_estimate::decompose::{NO_MATERIAL, Setting};
@@ -27,6 +28,13 @@ pub struct LibraryStudy {
 }
 
 impl LibraryStudy {
+    /// What it takes at least.
+    #[must_use]
+    pub fn takes(&self) -> Takes {
+        let shape = self.measured.cube.shape();
+        Takes::of_samples([shape.rows(), shape.columns(), shape.bands()])
+    }
+
     /// Looks up everything that `scenario` names, materials of the surroundings in `library`, and opens its cube.
     ///
     /// # Errors

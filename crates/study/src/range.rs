@@ -30,6 +30,7 @@ use self::looked_up::SECTIONS;
 use self::signals::SignalMap;
 use self::subject::{Resolved, Truth, nothing_left, nothing_to_see};
 use super::{Warning, memory};
+use crate::budget::Takes;
 use hadar::cube::{Cube, Shape};
 use hadar::demand::{self, Ledger, Skipping, Thing};
 use hadar::error::Result;
@@ -94,6 +95,19 @@ struct Informed {
 }
 
 impl RangeStudy {
+    /// What it takes at least.
+    #[must_use]
+    pub fn takes(&self) -> Takes {
+        let bands = self.bands.as_ref().map_or(1, Bands::len);
+        match &self.subject {
+            Resolved::Scene(scene) => Takes::of_samples([scene.rig.rows, scene.rig.columns, bands]),
+            Resolved::Cube(cube) => {
+                let shape = cube.left.shape();
+                Takes::of_samples([shape.rows(), shape.columns(), shape.bands()])
+            }
+        }
+    }
+
     /// The scenario.
     #[must_use]
     pub fn scenario(&self) -> &RangeScenario {

@@ -7,6 +7,7 @@
 use super::range::{Overfull, camera_noise};
 use super::stage::{self, Staged};
 use super::{Warning, bands, camera, camera_bands};
+use crate::budget::Takes;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
@@ -132,6 +133,12 @@ pub struct Picture {
 }
 
 impl RenderStudy {
+    /// What it takes at least.
+    #[must_use]
+    pub fn takes(&self) -> Takes {
+        Takes::of_samples([self.rig.rows, self.rig.columns, self.bands.len()])
+    }
+
     /// Looks up everything that `scenario` names, materials in `library`.
     ///
     /// # Errors

@@ -42,6 +42,7 @@ use self::depth::DepthClause;
 use self::resolution::Resolution;
 use self::temperature::TemperatureClause;
 use super::{Study, Warning};
+use crate::budget::Takes;
 use crate::condition::hardest_first;
 use crate::grade::Grade;
 use hadar::demand::{self, Ledger, Work};
@@ -69,6 +70,16 @@ enum Kind {
 }
 
 impl RuleStudy {
+    /// What it takes at least.
+    #[must_use]
+    pub fn takes(&self) -> Takes {
+        let apart = self.clauses.iter().filter_map(|clause| match clause {
+            Kind::Apart(apart) => Some(apart),
+            _ => None,
+        });
+        apart.flat_map(|apart| &apart.candidates).flat_map(|one| &one.near).map(Study::takes).sum()
+    }
+
     /// Looks up everything that `rule` names, materials in `library`.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ impl From<By> for Method {
 pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
     let scenario = DecomposeScenario::from_written(&global.written(&args.scenario)?)?;
     let study = DecomposeStudy::new(&scenario, &global.library()?)?;
-    global.inputs_are_safe()?;
+    global.admit(study.takes())?;
     let scratch = match study.wants_files() {
         true => Some(global.scratch()?.map_or_else(Scratch::temporary, Ok)?),
         false => None,

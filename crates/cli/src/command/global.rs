@@ -17,7 +17,7 @@ use hadar_report::json;
 use hadar_report::manifest::{Input, Provenance, answer_json, sha256};
 use hadar_report::text::{self, with_settings};
 use hadar_scenario::{Scenario, Setting, Written};
-use hadar_study::budget::{self, Limits};
+use hadar_study::budget::{self, Limits, Takes};
 use hadar_study::warning::Warning;
 use hadar_study::{Condition, OwnCameras, Study};
 use serde_json::Value;
@@ -274,6 +274,12 @@ impl Global {
         Folder::new(path, if self.force { Strangers::KeepBesides } else { Strangers::Refuse })
     }
 
+    /// Makes sure, before the work, that it can be done within the limits, and its report written.
+    pub(super) fn admit(&self, takes: Takes) -> Result<()> {
+        self.limits.admit(takes, rayon::current_num_threads())?;
+        self.inputs_are_safe()
+    }
+
     /// Makes sure, before the work, that what was read so far is not where the report will be.
     pub(super) fn inputs_are_safe(&self) -> Result<()> {
         match &self.out {
@@ -354,8 +360,7 @@ impl Global {
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
         let study = Study::new_skipping(&scenario, &self.library()?, self.skipping())?;
-        self.limits.admit(study.takes(), rayon::current_num_threads())?;
-        self.inputs_are_safe()?;
+        self.admit(study.takes())?;
         Ok(study)
     }
 

@@ -19,7 +19,7 @@ pub(super) fn run(args: &LibraryArgs, global: &Global) -> Result<ExitCode> {
     LibraryScenario::check_path(&args.scenario)?;
     let scenario = LibraryScenario::from_written(&global.written(&args.scenario)?)?;
     let study = LibraryStudy::new(&scenario, &global.library()?)?;
-    global.inputs_are_safe()?;
+    global.admit(study.takes())?;
     let bar = global.progress("rows");
     let mut result = study.library(global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();

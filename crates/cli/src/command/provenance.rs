@@ -3,6 +3,7 @@
 use hadar::error::Result;
 use hadar::inputs;
 use hadar_report::manifest::Provenance;
+use hadar_report::rule::AS_READ;
 
 /// Commit of the program's source, from its build.
 pub(super) const COMMIT: &str = env!("HADAR_COMMIT");
@@ -13,8 +14,16 @@ const SILENT_WITH_VALUE: [&str; 7] =
     ["--out", "--threads", "--shard", "--recompute", "--inputs", "--time-limit", "--memory-limit"];
 
 /// Names that most reports take. All of them are known only when the work is done, and are looked at then.
-pub(super) const USUAL_NAMES: [&str; 7] =
-    ["answer.txt", "report.html", "scenario.toml", "rule.toml", "pairs.csv", "warnings.csv", "README.md"];
+pub(super) const USUAL_NAMES: [&str; 8] = [
+    "answer.txt",
+    "report.html",
+    "scenario.toml",
+    "rule.toml",
+    AS_READ,
+    "pairs.csv",
+    "warnings.csv",
+    "README.md",
+];
 
 /// That of this process, with what it has read so far, without the words that are of other scenarios.
 pub(super) fn of_this_run(seed: u64, of_others: &[String]) -> Result<Provenance> {

@@ -66,7 +66,7 @@ fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> R
 
 fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Result<u8> {
     let study = RangeStudy::new(scenario, &global.library()?)?;
-    global.inputs_are_safe()?;
+    global.admit(study.takes())?;
     let plan = RangePlan {
         trials: args.trials,
         seed: global.seed,

@@ -49,7 +49,7 @@ pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
     };
     let scenario = RenderScenario::from_written(&global.written(&args.scenario)?)?;
     let study = RenderStudy::new(&scenario, &global.library()?)?;
-    global.inputs_are_safe()?;
+    global.admit(study.takes())?;
     let bar = global.progress("rows");
     let plan = RenderPlan { seed: (!args.no_noise).then_some(global.seed) };
     let result = study.render(plan, &|done, total| bar.set(done, total))?;

@@ -96,7 +96,7 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     }
     let library = global.library()?;
     let study = RuleStudy::new(&rule_read, &library)?;
-    global.inputs_are_safe()?;
+    global.admit(study.takes())?;
     if args.stand_in {
         return stand_in(&study, &library, args.on, global);
     }
@@ -149,11 +149,6 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let Some(path) = of(&of(&before, "rule"), "path").as_str().map(PathBuf::from) else {
         return Err(told("this is no certificate of a rule".into()));
     };
-    if path == Path::new(STDIN) {
-        let instead = "check the rule.toml beside it: hadar rule rule.toml";
-        let found = Error::malformed("its rule was read from standard input, and is no file", instead);
-        return Err(found.in_file(certificate));
-    }
     let set: Vec<Set> = serde_json::from_value(match of(&of(&before, "rule"), "set") {
         Value::Null => Value::Array(Vec::new()),
         set => set,
@@ -163,6 +158,11 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let listed: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
     let path = found_again(path, certificate, listed.first(), global);
+    if path == Path::new(STDIN) {
+        let instead = "put its rule_as_read.toml beside it again";
+        let found = Error::malformed("its rule was read from standard input, and is no file", instead);
+        return Err(found.in_file(certificate));
+    }
     let home = path.parent().unwrap_or(Path::new(""));
     for input in listed.iter().filter(|input| !input.path.starts_with("built-in: ")) {
         let file = home.join(&input.path);
@@ -217,14 +217,19 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>, glo
     if let Some(inputs) = &global.inputs {
         return inputs.join(path);
     }
-    let is_it = |folder: &Path| {
-        let hash = sha256_of_file(&folder.join(&path)).ok().flatten();
+    let is_rule = |file: &Path| {
+        let hash = sha256_of_file(file).ok().flatten();
         hash.is_some() && rule_read.is_some_and(|input| input.sha256 == hash)
     };
+    let is_it = |folder: &Path| is_rule(&folder.join(&path));
     let absolute = std::path::absolute(certificate).ok();
-    let near = absolute.as_deref().and_then(Path::parent).and_then(|folder| nearest_folder(folder, is_it));
+    let own = absolute.as_deref().and_then(Path::parent);
+    let near = own.and_then(|folder| nearest_folder(folder, is_it));
     let here = || std::env::current_dir().ok().and_then(|folder| nearest_folder(&folder, is_it));
-    near.or_else(here).map_or_else(|| path.clone(), |folder| folder.join(&path))
+    let found = near.or_else(here).map(|folder| folder.join(&path));
+    // Away from it, as it was read.
+    let beside = || own.map(|folder| folder.join(rule::AS_READ)).filter(|copy| is_rule(copy));
+    found.or_else(beside).unwrap_or(path)
 }
 
 /// How exact a stand-in must be.

@@ -29,8 +29,6 @@ type Run = Box<dyn Fn(&Global) -> Result<ExitCode>>;
 pub(super) struct Again {
     /// Whether it is one that makes reports.
     pub(super) makes_reports: bool,
-    /// Whether it is of a rule.
-    pub(super) is_rule: bool,
     pub(super) given: Global,
     pub(super) run: Run,
 }
@@ -53,12 +51,13 @@ pub(super) fn run(
     let was = stored.provenance().inputs.first().and_then(|input| input.sha256.clone());
     let asked = scenario.as_deref().and_then(|path| sha256_of_file(path).ok().flatten());
     let asked = asked.filter(|is| args.inputs.is_some() || Some(is) == was.as_ref());
+    // What the report has word by word is what it says that it has read, wherever else that is as it was.
+    let own = stored.asked_as_read.clone();
+    let asked = if own.is_some() && own != was { own } else { asked.or(own) };
     let scratch = Scratch::temporary()?;
     let made = scratch.place().join("report");
-    // The copy of a rule has no sources: it has figures that nobody wrote. Where the rule itself is as it was, it is asked again.
-    let is_rule = again.is_rule && asked.is_some() && asked == was;
-    let copy = stored.asked.clone().zip(scenario).filter(|_| !is_rule);
-    let remade = Arc::new(Remade::new(copy.map(|(text, path)| (path, text)), stored.provenance().clone()));
+    let copy = stored.asked.clone().zip(scenario).map(|(text, path)| (path, text));
+    let remade = Arc::new(Remade::new(copy, stored.provenance().clone()));
     let given = again.given.made_again(&made, Arc::clone(&remade), global);
     let (outcome, _) = inputs_of(|| (again.run)(&given));
     outcome?;

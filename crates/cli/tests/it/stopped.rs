@@ -78,6 +78,14 @@ fn a_limit_that_is_exceeded_ends_a_command_with_nothing_written() {
     folder.file("many.toml", &many);
     let found = folder.run(&["size", "many.toml", "--time-limit", "1 us"]);
     assert_eq!(found.code, 1, "{}", found.stderr);
+    for (command, example) in [("range", "street.toml"), ("render", "night_street.toml")] {
+        let path = hadar_testing::repository().join("examples").join(example);
+        let (path, large) = (path.to_str().unwrap(), "scene.size=[4000, 4000]");
+        let found = folder.run(&[command, path, "--set", large, "--time-limit", "1 s", "--threads", "1"]);
+        let foreseen =
+            found.stderr.contains("this takes") && found.stderr.contains("the limit of time is 1 s");
+        assert!(found.code == 1 && foreseen, "{}", found.stderr);
+    }
     // What is within its limits is the same with and without them.
     folder.file("small.toml", SCENARIO);
     let [plain, within] = [&[][..], &["--time-limit", "1 h", "--memory-limit", "100 GB"]]

@@ -13,7 +13,7 @@ const COMMANDS: &[&[&str]] = &[
     &["identify", "a.toml", "--matrix"],
     &["identify", "a.toml", "--seed", "3", "--by", "local"],
     &["simulate", "a.toml", "--spectra", "40"],
-    &["range", "examples/street.toml"],
+    &["range", "examples/street.toml", "--set", "scene.size=[48, 64]"],
     &["materials", "plot", "skin"],
     &["sweep", "a.toml", "--vary", "target.distance=5 m,6 m", "--columns", "verdict"],
     &["rule", "examples/stand_in.toml"],
@@ -67,7 +67,29 @@ fn the_report_of_every_command_is_made_again_byte_by_byte() {
     assert_eq!((&said["verified"], &said["inputs"]), (&true.into(), &4.into()), "{said}");
     // Away from its inputs a report has its own scenario.
     fs::rename(folder.path().join("work/report-0"), folder.path().join("alone")).unwrap();
+    let rule = COMMANDS.iter().position(|command| command[1].starts_with("examples/rule")).unwrap();
+    fs::rename(folder.path().join(format!("work/report-{rule}")), folder.path().join("rule")).unwrap();
     fs::remove_dir_all(folder.path().join("work")).unwrap();
+    // A rule has it with its sources, and so its hash.
+    let said = folder.json(&["verify", "rule"]);
+    assert_eq!((&said["verified"], &said["inputs"]), (&true.into(), &1.into()), "{said}");
+    let outcome = folder.run(&["rule", "--verify", "rule/certificate.json"]);
+    assert!(outcome.code == 0, "{}", outcome.stderr);
+    // Nor is another one taken for it because the list of the report was changed as well.
+    let [copy, list] = ["rule/rule_as_read.toml", "rule/hadar.json"].map(|name| folder.path().join(name));
+    let (before, listed) = (fs::read_to_string(&copy).unwrap(), fs::read_to_string(&list).unwrap());
+    let after = before.clone() + "# 1\n";
+    fs::write(&copy, &after).unwrap();
+    assert_eq!(folder.run(&["verify", "rule"]).code, 1);
+    let mut forged: serde_json::Value = serde_json::from_str(&listed).unwrap();
+    let files = forged["files"].as_array_mut().unwrap();
+    let own = files.iter_mut().find(|file| file["name"] == "rule_as_read.toml").unwrap();
+    own["sha256"] = hadar_report::manifest::sha256(after.as_bytes()).into();
+    fs::write(&list, serde_json::to_string_pretty(&forged).unwrap() + "\n").unwrap();
+    assert_eq!(folder.run(&["verify", "rule"]).code, 1);
+    fs::write(folder.path().join("rule.toml"), &before).unwrap();
+    assert_eq!(folder.run(&["verify", "rule", "--inputs", "."]).code, 1);
+    assert_eq!(folder.run(&["rule", "--verify", "rule/certificate.json"]).code, 1);
     let said = folder.json(&["verify", "alone"]);
     assert_eq!((&said["verified"], &said["inputs"]), (&true.into(), &3.into()), "{said}");
 }

@@ -3,6 +3,7 @@
 use super::categories::parts;
 use super::truth::Truth;
 use crate::Warning;
+use crate::budget::Takes;
 use crate::heat_cube::{Measured, Said, columns};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
@@ -44,6 +45,13 @@ pub struct DecomposeStudy {
 }
 
 impl DecomposeStudy {
+    /// What it takes at least.
+    #[must_use]
+    pub fn takes(&self) -> Takes {
+        let shape = self.cube.shape();
+        Takes::of_samples([shape.rows(), shape.columns(), shape.bands()])
+    }
+
     /// Looks up everything that `scenario` names, materials in `library`, and opens its cube.
     ///
     /// # Errors
