@@ -183,11 +183,16 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
         }
     }
     let set = set.into_iter().map(|Set { key, value }| Setting { key, value, by: "the certificate" });
-    let mut rule_read = Rule::from_written(
-        &Written::from_file(&path)?
-            .with(set)
-            .with_cameras(OwnCameras::from_files(&global.cameras)?.stated.into()),
-    )?;
+    let mut written = Written::from_file(&path)?
+        .with(set)
+        .with_cameras(OwnCameras::from_files(&global.cameras)?.stated.into());
+    // The copy that a report has of it stands for the file that was read, under that one's name.
+    let name = listed.first().map(|input| input.path.clone());
+    let name = name.filter(|_| path.ends_with(rule::AS_READ));
+    if let Some(name) = &name {
+        written.path = Some(path.with_file_name(Path::new(name).file_name().unwrap_or_default()));
+    }
+    let mut rule_read = Rule::from_written(&written)?;
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");
@@ -195,7 +200,12 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let answer =
         study.answer(&RuleAsked { on, accepted, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
     bar.finish();
-    let now = rule::record(&study, &answer, &global.provenance()?)?;
+    let mut provenance = global.provenance()?;
+    let copy = provenance.inputs.iter_mut().find(|input| input.path == rule::AS_READ);
+    if let Some((copy, name)) = copy.zip(name) {
+        copy.path = name;
+    }
+    let now = rule::record(&study, &answer, &provenance)?;
     let off = rule::agreement(&before, &now).map_err(|error| error.in_file(certificate))?;
     #[derive(serde::Serialize)]
     struct Output {
@@ -227,8 +237,9 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>, glo
     let near = own.and_then(|folder| nearest_folder(folder, is_it));
     let here = || std::env::current_dir().ok().and_then(|folder| nearest_folder(&folder, is_it));
     let found = near.or_else(here).map(|folder| folder.join(&path));
-    // Away from it, as it was read.
-    let beside = || own.map(|folder| folder.join(rule::AS_READ)).filter(|copy| is_rule(copy));
+    // Where there is none of its name, as it was read.
+    let copy = own.map(|folder| folder.join(rule::AS_READ)).filter(|_| !path.exists());
+    let beside = || copy.filter(|copy| is_rule(copy));
     found.or_else(beside).unwrap_or(path)
 }
 

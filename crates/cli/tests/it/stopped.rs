@@ -80,8 +80,19 @@ fn a_limit_that_is_exceeded_ends_a_command_with_nothing_written() {
     assert_eq!(found.code, 1, "{}", found.stderr);
     for (command, example) in [("range", "street.toml"), ("render", "night_street.toml")] {
         let path = hadar_testing::repository().join("examples").join(example);
-        let (path, large) = (path.to_str().unwrap(), "scene.size=[4000, 4000]");
-        let found = folder.run(&[command, path, "--set", large, "--time-limit", "1 s", "--threads", "1"]);
+        let (path, large) = (path.to_str().unwrap(), "scene.size=[1200, 1600]");
+        let found = folder.run(&[
+            command,
+            path,
+            "--set",
+            large,
+            "--time-limit",
+            "1 s",
+            "--threads",
+            "1",
+            "--out",
+            "out",
+        ]);
         let foreseen =
             found.stderr.contains("this takes") && found.stderr.contains("the limit of time is 1 s");
         assert!(found.code == 1 && foreseen, "{}", found.stderr);
