@@ -450,10 +450,13 @@ fn moved(
     Ok(())
 }
 
-/// Clears what dead runs have left beside a folder. Where the parent is still to be made, runs have begun above it.
+/// Folders above a report in which a run that had to make the last of them may have begun.
+const BEGUN_ABOVE: usize = 4;
+
+/// Clears what dead runs have left beside a folder, or above it: runs begin in the nearest folder that is there.
 fn clear_beside(place: &Path) {
-    if let Some(home) = place.parent().and_then(nearest_folder) {
-        clear(&home, Left::Unfinished);
+    for home in place.ancestors().skip(1).filter(|home| home.is_dir()).take(BEGUN_ABOVE) {
+        clear(home, Left::Unfinished);
     }
 }
 
