@@ -194,7 +194,7 @@ def verdict(outcome, words, how):
     loader = outcome.code in (126, 127) or "error while loading shared libraries" in outcome.stderr
     by_signal = outcome.code == -signal.SIGXFSZ and "files of at most" in how
     # A program that is not loaded yet.
-    unloaded = outcome.code in (-signal.SIGSEGV, -signal.SIGKILL) and not outcome.stderr and ("address space" in how or "a stack of" in how)
+    unloaded = outcome.code in (-signal.SIGSEGV, -signal.SIGKILL) and not outcome.stderr and ("address space" in how or "a stack of" in how or re.search(r"mmap fails with ENOMEM, number \d\+?$", how))
     if outcome.aborted or loader or by_signal or unloaded:
         return []
     silent = "write fails" in how and how.endswith("+") or "files of at most" in how
