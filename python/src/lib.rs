@@ -3,6 +3,9 @@
 //! Numbers come as NumPy arrays and are worked on where they lie, scenarios as files, text or dicts. The interpreter is free
 //! meanwhile. Errors are those of the command, as exceptions.
 
+// Linked for what it replaces: its own documentation.
+use hadar_elementary as _;
+
 mod answer;
 mod array;
 mod decompose;
