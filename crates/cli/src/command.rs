@@ -205,6 +205,8 @@ fn read_again(words: &[String]) -> Option<verify::Again> {
     let (Cli { command }, given) = parsed_from::<Cli>(&line(), words).ok()?;
     let makes_reports = match &command {
         Command::Rule(args) => !args.verifies(),
+        // It would write where the report says.
+        Command::Simulate(args) => !args.saves_models(),
         Command::Size(_)
         | Command::Identify(_)
         | Command::Range(_)
@@ -212,7 +214,6 @@ fn read_again(words: &[String]) -> Option<verify::Again> {
         | Command::Library(_)
         | Command::Calibrate(_)
         | Command::Render(_)
-        | Command::Simulate(_)
         | Command::Sweep(_)
         | Command::Materials(_) => true,
         _ => false,

@@ -96,6 +96,7 @@ impl Stored {
             command: self.provenance().command_line(),
             differences,
             strangers,
+            question_compared: self.asked.is_none() || asked.is_some(),
         })
     }
 
@@ -151,7 +152,8 @@ impl Stored {
         }
         // The list itself, where all that it lists is the same: not a byte of it may be another.
         let same = to.iter().all(|difference| matches!(difference, Difference::Program { .. }));
-        if same && self.manifest.hadar == VERSION {
+        if same {
+            let again = Manifest { hadar: self.manifest.hadar.clone(), ..again.clone() };
             let mut text = String::new();
             let read = inside.file(manifest::NAME).and_then(|mut file| file.read_to_string(&mut text));
             read.map_err(failed)?;

@@ -81,6 +81,13 @@ pub(super) struct SimulateArgs {
     check: bool,
 }
 
+impl SimulateArgs {
+    /// Whether it writes files beside its report.
+    pub(super) fn saves_models(&self) -> bool {
+        self.save_models.is_some()
+    }
+}
+
 /// Flags of classifiers, which mean nothing where the Bayes test decides.
 const JUDGING: [&str; 6] = ["classifiers", "sweep", "save_models", "model", "skip_spectra", "thermometry"];
 

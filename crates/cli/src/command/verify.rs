@@ -49,14 +49,17 @@ pub(super) fn run(
         .map_err(|error| Error::file("give the command from", &base, error.kind()))?;
     // As it is, not as the report says.
     let was = stored.provenance().inputs.first().and_then(|input| input.sha256.clone());
-    let asked = scenario.as_deref().and_then(|path| sha256_of_file(path).ok().flatten());
-    let asked = asked.filter(|is| args.inputs.is_some() || Some(is) == was.as_ref());
+    let nearby = scenario.as_deref().and_then(|path| sha256_of_file(path).ok().flatten());
+    let asked = nearby.clone().filter(|is| args.inputs.is_some() || Some(is) == was.as_ref());
     // What the report has word by word is what it says that it has read, wherever else that is as it was.
     let own = stored.asked_as_read.clone();
     let asked = if own.is_some() && own != was { own } else { asked.or(own) };
     let scratch = Scratch::temporary()?;
     let made = scratch.place().join("report");
+    // Where the file itself is as it was, it is asked: the copy may be that of another question.
+    let is_itself = scenario.is_some() && nearby.is_some() && nearby == was;
     let copy = stored.asked.clone().zip(scenario).map(|(text, path)| (path, text));
+    let copy = copy.filter(|_| !is_itself);
     let remade = Arc::new(Remade::new(copy, stored.provenance().clone()));
     let given = again.given.made_again(&made, Arc::clone(&remade), global);
     let (outcome, _) = inputs_of(|| (again.run)(&given));
@@ -79,6 +82,9 @@ fn checked(provenance: &Provenance, read_again: &dyn Fn(&[String]) -> Option<Aga
         }
         Some(again) if !again.makes_reports => {
             Err(refuse(format!("its command, {said}, cannot be given again from here")))
+        }
+        Some(again) if again.given.seed != provenance.seed => {
+            Err(refuse(format!("its seed, {}, is not that of its command, {said}", provenance.seed)))
         }
         Some(again) => Ok(again),
     }

@@ -140,6 +140,33 @@ fn nothing_that_is_changed_goes_unseen() {
         fs::write(&list, &written).unwrap();
     }
     assert_eq!(verified().code, 0);
+    // A copy of another question, and all that follows from it, under the name and hash of the one near by.
+    let other = folder.path().join("work/other.toml");
+    let own = fs::read_to_string(folder.path().join("work/a.toml")).unwrap();
+    fs::write(&other, own.clone() + "# other\n[sensitivity]\nemissivity_error = 0.01\n").unwrap();
+    let forged = folder.path().join("work/forged");
+    made(
+        &folder,
+        &["size", "other.toml", "--library", "mine", "--set", "alternatives.materials=[\"own\"]"],
+        &forged,
+    );
+    let hash = |text: &str| hadar_report::manifest::sha256(text.as_bytes());
+    let lies = |text: String| {
+        let other = fs::read_to_string(&other).unwrap();
+        text.replace(&hash(&other), &hash(&own)).replace("other.toml", "a.toml")
+    };
+    let page = lies(fs::read_to_string(forged.join("report.html")).unwrap());
+    let was = hash(&fs::read_to_string(forged.join("report.html")).unwrap());
+    let text = lies(fs::read_to_string(forged.join("hadar.json")).unwrap()).replace(&was, &hash(&page));
+    fs::write(forged.join("report.html"), page).unwrap();
+    fs::write(forged.join("hadar.json"), text).unwrap();
+    let outcome = folder.run(&["verify", forged.to_str().unwrap(), "--inputs", &home]);
+    assert!(
+        outcome.code == 1 && outcome.stdout.starts_with("Not verified"),
+        "{}{}",
+        outcome.stdout,
+        outcome.stderr
+    );
     // What the list says of the program, of the command and of what it rests on.
     for (key, value, part) in [
         ("seed", serde_json::json!(2), ""),
@@ -151,6 +178,11 @@ fn nothing_that_is_changed_goes_unseen() {
         ),
         ("command", serde_json::json!(["hadar", "serve", "--port", "1"]), "cannot be given again"),
         ("command", serde_json::json!(["hadar", "rule", "--verify", "x"]), "cannot be given again"),
+        (
+            "command",
+            serde_json::json!(["hadar", "simulate", "a.toml", "--save-models", "x"]),
+            "cannot be given again",
+        ),
         ("command", serde_json::json!(["sh", "-c", "touch x"]), "is none of this program"),
         ("command", serde_json::json!([]), "is none of this program"),
         ("inputs", serde_json::json!([]), "input a.toml: its SHA-256 was none"),

@@ -57,6 +57,8 @@ pub struct Verified {
     pub verified: bool,
     /// Files that were compared.
     pub files: usize,
+    /// Whether the file of the question was compared: without it its name and hash are what the report says.
+    pub question_compared: bool,
     /// Inputs that were compared, the file of the question among them if it was found.
     pub inputs: usize,
     /// The command that was given again.

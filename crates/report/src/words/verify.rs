@@ -28,6 +28,9 @@ pub fn text(verified: &Verified) -> String {
     if let Some(more) = verified.differences.len().checked_sub(TOLD).filter(|more| *more > 0) {
         let _ = writeln!(text, "  and {more} more");
     }
+    if !verified.question_compared {
+        text += "The file of the question is not here: its name and SHA-256 are what the report says, and the report's own copy was asked.\n";
+    }
     let _ = writeln!(text, "The command that was given again: {}", verified.command);
     if !verified.strangers.is_empty() {
         let _ = writeln!(text, "Not of the report, and not looked at: {}", verified.strangers.join(", "));
