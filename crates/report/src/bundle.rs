@@ -127,7 +127,11 @@ impl Bundle {
                 self.files.push((format!("{}.svg", plot.name), Content::Svg(figure)));
             }
             self.files.push((format!("{}.png", plot.name), Content::Png(figure)));
-            self.add(format!("{}.csv", plot.name), plot.table.to_csv()?);
+            // The table of which it is a picture may be there already.
+            let name = format!("{}.csv", plot.name);
+            if !self.tables.iter().any(|(own, _)| *own == name) {
+                self.add(name, plot.table.to_csv()?);
+            }
             self.figures.push((plot.name.clone().into_owned(), plot.figure.clone()));
         }
         Ok(())

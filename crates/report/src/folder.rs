@@ -242,6 +242,10 @@ impl Folder {
         let content = self.content(&place)?;
         let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
         self.check_inputs(inputs, &names)?;
+        if let Some(twice) = names.iter().enumerate().find(|(at, name)| names[..*at].contains(name)) {
+            let found = format!("it has two files `{}`; report this as a bug", twice.1);
+            return Err(Error::file("write the report", &self.named, found));
+        }
         // Found out before the first one is moved.
         self.check_ways(&place, &names)?;
         let hashes = files.iter().map(|(name, held)| Ok((name.as_str(), held.sha256()?)));
