@@ -234,9 +234,6 @@ pub fn parsed(text: &str) -> Result<Value> {
     Ok(value)
 }
 
-/// Where the rule was is not what it says: it may be found under another name of the same folder.
-const ELSEWHERE: &str = "rule.path";
-
 fn compare(a: &Value, b: &Value, place: &str, largest: &mut f64) -> Result<()> {
     let differs = || {
         let place = if place.is_empty() { "the certificate" } else { place };
@@ -257,9 +254,7 @@ fn compare(a: &Value, b: &Value, place: &str, largest: &mut f64) -> Result<()> {
                         "the certificate was changed, or made by another program",
                     ));
                 }
-                if place != ELSEWHERE {
-                    compare(&of(a), &of(b), &place, largest)?;
-                }
+                compare(&of(a), &of(b), &place, largest)?;
             }
             Ok(())
         }
