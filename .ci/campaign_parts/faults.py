@@ -132,7 +132,8 @@ def told(context):
 
 def kill(rng, context, folder, number):
     """The process is killed at one call that writes."""
-    name, call, count = told(context) or [point for point in context.points if point[3]][number % sum(point[3] for point in context.points)][:3]
+    deadly = [point for point in context.points if point[3]]
+    name, call, count = told(context) or deadly[number % len(deadly)][:3]
     words = begin(context, name, folder)
     before = visible(folder / "work" / "out")
     outcome = run(context, words, folder, tracer=injected(context, call, f"signal=KILL:when={count}"))

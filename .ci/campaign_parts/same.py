@@ -24,38 +24,34 @@ def case(rng, context, folder, number):
     """One command several times; the first is what the others are held against."""
     order = sorted(range(len(ASKED)), key=lambda index: (index * 7919 + context.seed) % 10_007)
     words, reads = ASKED[order[number % len(order)]]
-    ways = [("a", "1", None), ("b/of more depth/é", "2", None), ("c", "7", None), ("older", "2", OLDER)]
-    ways += [(f"p/{processor}", "1", processor) for processor in PROCESSORS if context.emulator]
+    ways = [("a", "1", {}, []), ("b/of more depth/é", "2", {}, []), ("c", "7", {}, []), ("older library", "2", OLDER, [])]
+    ways += [(f"emulated {name}", "1", {}, [context.emulator, "-cpu", name]) for name in PROCESSORS if context.emulator]
     faults, first, outcome, quick = [], None, None, False
-    for place, threads, processor in ways:
-        emulated = isinstance(processor, str)
-        if emulated and not quick:
+    for place, threads, environment, emulator in ways:
+        if emulator and not quick:
             continue
-        found, outcome, wrong = answered(context, folder / place, words, reads, threads, processor)
+        found, outcome, wrong = answered(context, folder / place, words, reads, threads, environment, emulator)
         faults += wrong
         if first is None:
             first, quick = found, outcome.seconds < EMULATED_UP_TO
-        differing = oracle.changed({name: first.get(name) for name in found} if emulated else first, found)
+        differing = oracle.changed({name: first.get(name) for name in found} if emulator else first, found)
         if differing:
-            how = f"emulated {processor}" if emulated else f"{threads} threads, folder {place}"
-            faults.append((oracle.DIFFERENT, f"{how}: {', '.join(differing)[:300]}"))
+            faults.append((oracle.DIFFERENT, f"{threads} threads, {place}: {', '.join(differing)[:300]}"))
     return faults, f"hadar {' '.join(words)}", outcome
 
 
-def answered(context, place, words, reads, threads, processor):
-    """All that a question says and writes, by name, and the last run."""
+def answered(context, place, words, reads, threads, environment, emulator):
+    """All that a question says and writes, by name, and the last run; under an emulator in one form of two."""
     work, temporary = place / "work", place / "tmp"
     work.mkdir(parents=True)
     temporary.mkdir()
     for name in reads:
         shutil.copy(context.pool / name, work / name)
-    emulated, more = isinstance(processor, str), processor if isinstance(processor, dict) else {}
-    tracer = [context.emulator, "-cpu", processor] if emulated else []
     found, faults, outcome = {}, [], None
-    for form in [["--json"]] if emulated else ([], ["--json"]):
+    for form in [["--json"]] if emulator else ([], ["--json"]):
         asked = [*words, "--threads", threads, *form, *([] if "--out" in words else ["--out", "out"])]
-        outcome = oracle.run([context.hadar, *asked], work, {"TMPDIR": str(temporary), **more}, tracer=tracer, limits=EMULATED if emulated else [])
-        if not emulated:
+        outcome = oracle.run([context.hadar, *asked], work, {"TMPDIR": str(temporary), **environment}, tracer=emulator, limits=EMULATED if emulator else [])
+        if not emulator:
             faults += oracle.ended(outcome, asked)
         found[f"stdout {' '.join(form)}"] = outcome.stdout
         for path in sorted((work / "out").rglob("*")):

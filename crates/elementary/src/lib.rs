@@ -5,9 +5,9 @@
 //! that links this crate has these functions of `libm` instead, in its own code and in that of everything it is built of (FFT,
 //! distributions, matrices): a name that a program defines itself is not looked up in a shared library.
 //!
-//! Errors stay below 1 ulp (of the C library: 0.6 ulp), and rounding, square root, remainder and fused multiply-add are exact anywhere. On
-//! other systems than Linux nothing is replaced: their libraries are the same for all processors that they run on, or not this crate's to
-//! replace. Programs link it, libraries do not: whose program it is decides.
+//! Errors of 20 000 random arguments each, against 140 bits: at most 0.9 ulp, atan2 and cosh 1.3, sinh 1.6, tanh 1.9. Rounding, square
+//! root, remainder and fused multiply-add are exact anywhere. On other systems than Linux nothing is
+//! replaced: what differs there is not known. Programs link it, libraries do not: whose program it is decides.
 #![cfg_attr(not(target_os = "linux"), allow(unused))]
 
 macro_rules! replace {

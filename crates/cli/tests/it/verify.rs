@@ -92,6 +92,8 @@ fn the_report_of_every_command_is_made_again_byte_by_byte() {
     assert_eq!(folder.run(&["rule", "--verify", "rule/certificate.json"]).code, 1);
     let said = folder.json(&["verify", "alone"]);
     assert_eq!((&said["verified"], &said["inputs"]), (&true.into(), &3.into()), "{said}");
+    assert_eq!(said["question_compared"], false);
+    assert!(folder.run(&["verify", "alone"]).stdout.contains("the file of the question is not here"));
 }
 
 /// Whatever file of a report is changed, alone or with its hash in the list, and whatever it rests on.

@@ -12,8 +12,13 @@ const TOLD: usize = 20;
 pub fn text(verified: &Verified) -> String {
     let (files, inputs) = (verified.files, verified.inputs);
     let mut text = if verified.verified {
+        // Without that file its name and hash are only what the report says.
+        let but = match verified.question_compared {
+            true => "",
+            false => "; the file of the question is not here, only the report's own copy of it",
+        };
         format!(
-            "Verified: all {files} files were made again, byte by byte, of {inputs} inputs that are as they were.\n"
+            "Verified: all {files} files were made again, byte by byte, of {inputs} inputs that are as they were{but}.\n"
         )
     } else {
         let wrong = verified.differences.iter().filter(|one| !matches!(one, Difference::Program { .. }));
@@ -27,9 +32,6 @@ pub fn text(verified: &Verified) -> String {
     }
     if let Some(more) = verified.differences.len().checked_sub(TOLD).filter(|more| *more > 0) {
         let _ = writeln!(text, "  and {more} more");
-    }
-    if !verified.question_compared {
-        text += "The file of the question is not here: its name and SHA-256 are what the report says, and the report's own copy was asked.\n";
     }
     let _ = writeln!(text, "The command that was given again: {}", verified.command);
     if !verified.strangers.is_empty() {
