@@ -185,6 +185,28 @@ fn no_number_of_photons_is_too_small_or_too_large() {
     }
 }
 
+/// Surroundings δ warmer than a grey target, their temperature unknown too: what tells them apart is of first order in δ, so
+/// σ_T δ has a limit. Tolerance: δ = 1e-5 K itself, over some 100 K.
+#[test]
+fn surroundings_as_warm_as_the_target_cost_all_but_the_last_of_its_precision() {
+    let rows = [(800.0, 1.0), (1200.0, 1.5)];
+    let (bands, surroundings) = scene(&rows);
+    let unknowns = unknown(&[Nuisance::Temperature, Nuisance::EnvironmentTemperature]);
+    let mut solver = PrecisionSolver::new(&bands, &surroundings, unknowns);
+    let mut scaled = |warmer_k: f64| {
+        let mut state = surroundings.state(310.0, &[0.4]).unwrap();
+        state.environment_k[0] = 310.0 + warmer_k;
+        let found = solver.bound(&[0.6, 0.6], &state, &noisy(2), T).unwrap();
+        assert!(found.relative_error < 1e-9, "{warmer_k:e}: {found:?}");
+        found.sigma * (state.environment_k[0] - 310.0)
+    };
+    let limit = scaled(1e-5);
+    for warmer_k in [1e-7, 1e-9, 1e-11] {
+        let found = scaled(warmer_k);
+        assert!((found / limit - 1.0).abs() < 1e-6, "{warmer_k:e}: {found:e} is not {limit:e}");
+    }
+}
+
 /// A factor of the information and the covariance that follows from it whiten alike.
 #[test]
 fn both_factors_measure_the_same_ellipsoid() {
