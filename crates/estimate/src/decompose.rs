@@ -6,6 +6,7 @@
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
 //! * [`widen`]: what an error that all bands and pixels have in common adds to the deviations;
+//! * [`judge()`]: what all pixels together say of the model, and of each [`Cause`] why it may not hold;
 //! * [`Method`], [`decompose_by`]: methods that it is compared with; [`decompose_by_rows`]: maps that are too large to be kept; [`inverse_error`]: by how much one of them errs;
 //! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
 //! * [`distil()`]: what of the light on a surface is the sky's; [`texture_information()`]: what cube and textures tell of a place;
@@ -18,11 +19,13 @@
 //!
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 
+mod cause;
 mod distil;
 mod fit;
 mod grey_body;
 mod inverse;
 mod inverse_error;
+mod judge;
 mod kernel;
 mod library_error;
 mod maps;
@@ -37,8 +40,10 @@ mod tangent;
 mod texture_information;
 mod together;
 
+pub use cause::Cause;
 pub use distil::{Distilled, Residue, Sky, distil};
 pub use inverse_error::{InverseError, inverse_error};
+pub use judge::{Judged, Together, judge, p_deviations};
 pub use library_error::LibraryError;
 pub use maps::{Maps, Options};
 pub use method::{Method, decompose, decompose_by, decompose_by_rows};

@@ -1,6 +1,7 @@
 //! A heat cube decomposed: names and files looked up, the maps, and what they are worth where the truth is known.
 
 mod categories;
+mod judged;
 mod kept;
 mod looked_up;
 mod ranks;
@@ -10,6 +11,7 @@ mod truth;
 mod vision;
 mod worth;
 
+pub use judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
 pub use kept::{Block, Keep, Kept, MapFiles};
 pub use looked_up::DecomposeStudy;
 pub use ranks::{Count, ranked};
@@ -19,6 +21,7 @@ pub use segmented::{CategoryRow, ObjectRow, Segmented};
 pub(super) use truth::{There, Truth};
 pub use vision::{DistilledTexture, Vision, hues_deg};
 
+use self::judged::Asked;
 use self::results::{Counted, rows, summary};
 use self::worth::Held;
 use super::{Warning, memory};
@@ -92,9 +95,16 @@ impl DecomposeStudy {
         };
         let (mut counted, mut whole) = (Counted::default(), Block::default());
         let mut held = self.truth.as_ref().map(|truth| (truth, Held::new(self, method)));
+        let mut asked: Option<Asked> = None;
         let mut take = |first: usize, mut maps: Maps| {
-            if let Some(together) = self.together.as_ref().filter(|_| method.has_likelihood()) {
-                widen(&setting, &mut maps, together)
+            let all = (height >= shape.rows()).then_some(&maps);
+            let asked = match &mut asked {
+                Some(asked) => &*asked,
+                none => none.insert(Asked::of(self, method, &setting, &options, all)?),
+            };
+            let (together, causes) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
+            if method.has_likelihood() && !(together.is_empty() && causes.is_empty()) {
+                widen(&setting, &mut maps, together, &causes)
                     .map_err(|error| error.at(self.scenario.place("cube.noise")))?;
             }
             counted.take(&maps);
@@ -129,7 +139,8 @@ impl DecomposeStudy {
             .map_err(|error| self.at_cube(error))?;
         let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
         let answer = (truth, vision, segmented);
-        Ok(summary(self, method, (&counted, found), answer, warnings, kept))
+        let model = asked.unwrap_or_default().found(self, method, &options, &counted);
+        Ok(summary(self, method, (&counted, found, model), answer, warnings, kept))
     }
 
     /// Refuses what the scenario asks for and the method has not.

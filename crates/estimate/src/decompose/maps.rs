@@ -14,9 +14,6 @@ use hadar::error::{Error, Result};
 use hadar::parallel;
 use std::ops::Range;
 
-/// Rows whose mean the bounds are laid out for.
-const SAMPLED_ROWS: usize = 16;
-
 /// How a cube is decomposed, besides its [`Setting`].
 #[derive(Debug, Clone, Default)]
 pub struct Options {
@@ -91,9 +88,8 @@ fn whole<S: Sample>(
     options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
     let model = Model::new(setting)?;
     let per_unit = 1.0 / setting.units_per_count;
-    let mean = mean_counts(&model, cube, per_unit)?;
     let signed = is_signed(&model);
-    let task = Task::new(model, setting, options, &mean)?;
+    let task = Task::new(model, setting, options)?;
     let by_rows = ByRows { cube, signed, done };
     let pixel =
         |room: &mut Room, sample: &[S], same: Option<Pixel>, spared: &mut Spared, kept: &mut KeptRow| {
@@ -202,7 +198,7 @@ fn negative(value: f64, (row, column, band): (usize, usize, usize)) -> Error {
 }
 
 impl Task {
-    fn new(model: Model, setting: &Setting<'_>, options: &Options, mean: &[f64]) -> Result<Self> {
+    fn new(model: Model, setting: &Setting<'_>, options: &Options) -> Result<Self> {
         let materials = setting.library.len();
         let prior = match options.prior.len() {
             0 => vec![1.0; materials],
@@ -228,27 +224,10 @@ impl Task {
         }
         let most = prior.iter().copied().fold(0.0, f64::max);
         let handicap = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
-        let screen = (!model.gain).then(|| Screen::new(&model, &kinds, mean));
+        let screen = (!model.gain).then(|| Screen::new(&model, &kinds));
         let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
         Ok(Self { errors, model, screen, kinds, alike, handicap, skip: options.skipping.skips() })
     }
-}
-
-/// Mean counts of some rows of the cube, padded.
-fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> Result<Vec<f64>> {
-    let shape = cube.shape();
-    let (mut sum, mut count, mut buffer) = (vec![0.0; model.width], 0.0, Vec::new());
-    for row in (0..shape.rows()).step_by(shape.rows().div_ceil(SAMPLED_ROWS)) {
-        for sample in cube.read(row..row + 1, &mut buffer)?.chunks(shape.bands()) {
-            let counts = || model.used.iter().map(|&band| sample[band].into());
-            if counts().all(f64::is_finite) {
-                counts().zip(&mut sum).for_each(|(n, sum)| *sum += n);
-                count += 1.0;
-            }
-        }
-    }
-    sum.iter_mut().for_each(|sum| *sum *= per_unit / f64::max(count, 1.0));
-    Ok(sum)
 }
 
 impl Maps {

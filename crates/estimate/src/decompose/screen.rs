@@ -2,7 +2,7 @@
 //!
 //! All spectra that a material can send lie near a space of few dimensions: what its lighting changes, and the curve of its
 //! emission over temperature, which a handful of directions holds to a small part of the noise. In counts divided by √v, v the
-//! variances of the cube's mean spectrum, the distance of a pixel's counts to that space (less what the space leaves out of the
+//! variances of a blackbody in the middle of the range, the distance of a pixel's counts to that space (less what the space leaves out of the
 //! curve, ρ) bounds every fit of the material from below, at the cost of a few products a band:
 //!
 //! D ≥ Σ (n′ − N′)²/max(n′, N′) ≥ f ‖z − model‖² ≥ f (√(‖z‖² − ‖Qᵀz‖²) − ρ)²,  f = minᵥ v/n′ / (1 + δ).
@@ -79,12 +79,14 @@ pub(super) struct Screened {
 const ROUNDING: f64 = 2e-14;
 
 impl Screen {
-    /// For materials `kinds` of the model and a cube whose mean counts are `mean` (padded as the model).
-    pub(super) fn new(model: &Model, kinds: &[usize], mean: &[f64]) -> Self {
+    /// For materials `kinds` of the model. It is laid out for a blackbody in the middle of the range of temperatures, not for what the cube
+    /// holds: no pixel changes how another one is rounded.
+    pub(super) fn new(model: &Model, kinds: &[usize]) -> Self {
         let width = model.width;
         let mut whitening = Aligned::zeros(width);
         let mut reference = Aligned::zeros(width);
-        for (w, &mean) in mean.iter().enumerate() {
+        let [low, high] = model.range_k;
+        for (w, &mean) in model.blackbody(0.5 * (low + high)).iter().enumerate() {
             whitening[w] = 1.0 / (mean.max(0.0) + model.var_added[w]).max(1.0).sqrt();
             reference[w] = mean.max(0.0);
         }

@@ -26,6 +26,8 @@ pub(super) struct Tangents<'a> {
     pub(super) lights: Vec<Vec<f64>>,
     /// Counts that each material scatters of each of the surroundings at V = 1: `[material][surroundings][band]`.
     scattered: Vec<Vec<Vec<f64>>>,
+    /// Whether a light is given in counts of the same camera.
+    counted: Vec<bool>,
     /// Counts for each unit of incident light in a band, κ(1 − e): `[material][band]`.
     pub(super) reflected: Vec<Vec<f64>>,
     /// Counts for each unit of radiance in a band, κ.
@@ -84,12 +86,23 @@ impl<'a> Tangents<'a> {
             scattered.push(setting.surroundings.iter().zip(&lights).map(of).collect());
             reflected.push(mean.iter().zip(&kappa).map(|(r, k)| r * k).collect());
         }
-        Ok(Self { setting: *setting, used, lights, scattered, reflected, counts_per_radiance: kappa })
+        let counted = setting.surroundings.iter().map(|light| matches!(light, Light::Counts(_))).collect();
+        Ok(Self { setting: *setting, used, lights, scattered, counted, reflected, counts_per_radiance: kappa })
     }
 
     /// The library.
     pub(super) fn materials(&self) -> usize {
         self.setting.library.len()
+    }
+
+    /// Counts that material `m` scatters of light `k` at V = 1.
+    pub(super) fn scattered_of(&self, m: usize, k: usize) -> &[f64] {
+        self.scattered.get(m).and_then(|own| own.get(k)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether light `k` is given in counts of the same camera.
+    pub(super) fn is_counted(&self, k: usize) -> bool {
+        self.counted.get(k).copied().unwrap_or(false)
     }
 
     /// Columns of a pixel of material `m`; false where it has no temperature or lighting.

@@ -4,25 +4,34 @@
 //! bands, it is off by z Σ_w g_w s_w/σ_w, whose square is added to its variance. Bands do not average it down, as they do noise: blackbodies
 //! that are warmer than they are said to be make everything as much too cold.
 //!
+//! A cause whose amount θ̂ was found ([`super::judge`]) moves it by θ̂ Σ_w g_w d_w, d its slope in deviations of the noise; that is put in as
+//! if it were a deviation, as what is found is but one of what may be.
+//!
 //! Units: counts for s and σ; K. Assumption: to first order. Source: [`hadar::calibration::blackbody`], where such errors are from.
 
+use super::cause::{Cause, Effect};
 use super::maps::Maps;
 use super::model::Setting;
 use super::pixel::NO_MATERIAL;
-use super::tangent::{Tangent, Tangents};
+use super::tangent::{Tangent, Tangents, dot};
 use hadar::error::{Error, Result, check};
 use rayon::prelude::*;
 
-/// Widens the deviations of the temperatures by an error of deviation `together` in each band (counts), the same number of deviations in
-/// all bands and pixels.
+/// Widens the deviations of the temperatures by an error of deviation `together` in each band (counts; none if empty), the same number of
+/// deviations in all bands and pixels, and by the largest of what the amounts of some causes do to each.
 ///
 /// # Errors
 /// Maps of another setting, another number of bands, a deviation below 0, an unknown gain.
-pub fn widen(setting: &Setting<'_>, maps: &mut Maps, together: &[f64]) -> Result<()> {
+pub fn widen(
+    setting: &Setting<'_>,
+    maps: &mut Maps,
+    together: &[f64],
+    causes: &[(Cause, f64)],
+) -> Result<()> {
     let (bands, lights) = (setting.bands.len(), setting.surroundings.len());
     let pixels = maps.material.len();
     for (what, found, expected) in [
-        ("bands that are off together", together.len(), bands),
+        ("bands that are off together", together.len(), if together.is_empty() { 0 } else { bands }),
         ("temperatures of the maps", maps.temperature_k.len(), pixels),
         ("deviations of the maps", maps.temperature_sigma_k.len(), pixels),
         ("lighting factors", maps.lighting.len(), pixels * lights),
@@ -34,8 +43,10 @@ pub fn widen(setting: &Setting<'_>, maps: &mut Maps, together: &[f64]) -> Result
     check::each(together, |s| s >= 0.0, |s| check::non_negative("deviation of a band", s, "counts"))?;
     let tangents = Tangents::new(setting)?;
     let row = tangents.of_temperature();
+    let effects: Vec<(Effect, f64)> =
+        causes.iter().map(|(cause, amount)| (Effect::new(cause, setting, &tangents), *amount)).collect();
     let Maps { material, temperature_k, temperature_sigma_k, lighting, .. } = maps;
-    let one = |(tangent, lit): &mut (Tangent, Vec<f64>), (i, sigma_k): (usize, &mut f32)| {
+    let one = |(tangent, lit, slope): &mut (Tangent, Vec<f64>, Vec<f64>), (i, sigma_k): (usize, &mut f32)| {
         hadar::stop::check();
         if material[i] == NO_MATERIAL || !sigma_k.is_finite() {
             return;
@@ -49,10 +60,15 @@ pub fn widen(setting: &Setting<'_>, maps: &mut Maps, together: &[f64]) -> Result
         }
         let Some(g) = tangent.row(&row) else { return };
         let shares = g.iter().zip(&tangents.used).zip(&tangent.sigma);
-        let off: f64 = shares.map(|((g, band), sigma)| g * together[*band] / sigma).sum();
-        *sigma_k = f64::from(*sigma_k).hypot(off) as f32;
+        let off: f64 =
+            shares.map(|((g, band), sigma)| g * together.get(*band).copied().unwrap_or(0.0) / sigma).sum();
+        let moved = effects.iter().map(|(effect, amount)| {
+            effect.slope(&tangents, (usize::from(material[i]), lit), tangent, slope);
+            (dot(&g, slope) * amount).abs()
+        });
+        *sigma_k = f64::from(*sigma_k).hypot(off).hypot(moved.fold(0.0, f64::max)) as f32;
     };
-    temperature_sigma_k.par_iter_mut().enumerate().for_each_init(|| (Tangent::default(), Vec::new()), one);
+    temperature_sigma_k.par_iter_mut().enumerate().for_each_init(<(Tangent, Vec<f64>, Vec<f64>)>::default, one);
     Ok(())
 }
 
@@ -97,7 +113,7 @@ mod tests {
         let maps = decompose(&setting, &Options::default(), &cube, &|_| ()).unwrap();
         let mut wider = maps.clone();
         let off: Vec<f64> = slope(310.0).iter().map(|d| 0.07 * d).collect();
-        widen(&setting, &mut wider, &off).unwrap();
+        widen(&setting, &mut wider, &off, &[]).unwrap();
         let added = |i: usize| {
             let [before, after] = [&maps, &wider].map(|maps| f64::from(maps.temperature_sigma_k[i]));
             (after * after - before * before).sqrt()
@@ -108,6 +124,6 @@ mod tests {
         let sums =
             n.iter().zip(&d).zip(&off).fold([0.0, 0.0], |[a, b], ((n, d), s)| [a + d * s / n, b + d * d / n]);
         assert!((added(0) / (sums[0] / sums[1]) - 1.0).abs() < 1e-3);
-        assert!(widen(&setting, &mut wider, &[0.0]).is_err());
+        assert!(widen(&setting, &mut wider, &[0.0], &[]).is_err());
     }
 }

@@ -1,5 +1,6 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
+pub(crate) mod judged;
 mod segmented;
 
 use crate::table::number;
@@ -10,7 +11,7 @@ use crate::text::numbers::degrees;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar_scenario::decompose::CubeUnit;
-use hadar_study::decompose::{CORRELATION_CM1, Decomposed, TruthFound};
+use hadar_study::decompose::{CORRELATION_CM1, Decomposed, ModelVerdict, TruthFound};
 use std::fmt::Write as _;
 
 /// Materials that are listed.
@@ -20,6 +21,7 @@ const LISTED: usize = 12;
 #[must_use]
 pub fn text(result: &Decomposed) -> String {
     let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
+    out.push_str(&judged::text(&result.model));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
         out.push_str(&segmented::text(segmentation));
@@ -72,6 +74,14 @@ fn sentence(result: &Decomposed) -> String {
             false => format!("{} pixels as one blackbody each: no material is told.", whole(seen as u64)),
         };
     }
+    if result.model.verdict == ModelVerdict::Rejected {
+        return format!(
+            "The cube does not follow its model: {} pixels ({}) would have one material of {} left if it held; none is decided.",
+            of(result.decided_if_model_holds, seen),
+            share(result.decided_if_model_holds as f64 / seen.max(1) as f64),
+            result.materials.len()
+        );
+    }
     let mut out = match result.decided {
         0 => format!("No pixel of {} is decided", whole(seen as u64)),
         decided => format!(
@@ -96,10 +106,12 @@ fn found(result: &Decomposed) -> String {
     }
     let shown = &result.found[..result.found.len().min(LISTED)];
     let width = shown.iter().map(|row| row.material.chars().count()).max().unwrap_or(0).max(8);
+    // Under its condition, that is, while the model is rejected.
+    let decided = if result.model.verdict == ModelVerdict::Rejected { "if held" } else { "decided" };
     let mut table = Columns::new([
         left("", width),
         right("pixels", 9),
-        right("decided", 9),
+        right(decided, 9),
         right("median (degC)", 14),
         right("tenths (degC)", 18),
         right("sigma (K)", 10),
@@ -110,7 +122,7 @@ fn found(result: &Decomposed) -> String {
         table.row([
             row.material.clone(),
             whole(row.pixels as u64),
-            says(whole(row.decided as u64)),
+            says(whole(row.decided_if_model_holds as u64)),
             degrees(row.temperature_median_k),
             format!("{low} to {high}"),
             says(significant(row.temperature_sigma_median_k, 2)),

@@ -1,6 +1,7 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
+use super::judged::{ModelJudged, ModelVerdict, fits};
 use super::kept::Kept;
 use super::ranks::ranked;
 use super::segmented::Segmented;
@@ -31,10 +32,14 @@ pub struct Decomposed {
     pub materials: Vec<String>,
     /// All pixels.
     pub pixels: usize,
-    /// Pixels with one candidate.
+    /// Pixels with one candidate; none while the cube does not follow its model.
     pub decided: usize,
+    /// Pixels that are decided if the model holds.
+    pub decided_if_model_holds: usize,
     /// Pixels with several candidates, or of which nothing is known.
     pub undecided: usize,
+    /// Whether the cube follows its model, and what may be otherwise than told.
+    pub model: ModelJudged,
     /// Pixels that were left out, a sample of which is missing.
     pub skipped: usize,
     /// Of each material that was found.
@@ -69,8 +74,10 @@ pub struct MaterialRow {
     pub material: String,
     /// Pixels of which it is the most probable material.
     pub pixels: usize,
-    /// Those of them that have no other candidate.
+    /// Those of them that have no other candidate; none while the cube does not follow its model.
     pub decided: usize,
+    /// Those of them that are decided if the model holds.
+    pub decided_if_model_holds: usize,
     /// Median of their temperatures, K.
     pub temperature_median_k: f64,
     /// Between a tenth and nine tenths of them, K.
@@ -110,6 +117,8 @@ pub(super) struct Counted {
     flags: [usize; 8],
     /// Pixels of each material that was found, and those of them that are decided.
     materials: BTreeMap<u16, [usize; 2]>,
+    /// Pixels with a p-value that some material fits, the sum of these, and pixels that none fits.
+    p_values: (usize, f64, usize),
     spared: Spared,
     spatial: Option<Spatial>,
 }
@@ -125,10 +134,23 @@ impl Counted {
             let [pixels, decided] = self.materials.entry(*material).or_default();
             *pixels += 1;
             *decided += usize::from(is_decided);
+            match fits(maps, i) {
+                Some(true) => {
+                    self.p_values.0 += 1;
+                    self.p_values.1 += f64::from(maps.p_value[i]);
+                }
+                Some(false) => self.p_values.2 += 1,
+                None => {}
+            }
         }
         self.pixels += maps.material.len();
         self.spared = self.spared + maps.spared;
         self.spatial = maps.spatial;
+    }
+
+    /// Pixels that some material fits, the sum of their p-values, and pixels that none fits.
+    pub(super) fn p_values(&self) -> (usize, f64, usize) {
+        self.p_values
     }
 
     fn has(&self, flag: u8) -> usize {
@@ -218,6 +240,7 @@ pub(super) fn rows(
                 material: material.clone(),
                 pixels,
                 decided,
+                decided_if_model_holds: decided,
                 temperature_median_k: kelvin(place, 0),
                 temperature_tenths_k: [kelvin(place, 1), kelvin(place, 2)],
                 temperature_sigma_median_k: kelvin(names + place, 0),
@@ -232,12 +255,21 @@ pub(super) fn rows(
 pub(super) fn summary(
     study: &DecomposeStudy,
     method: Method,
-    (counted, found): (&Counted, Vec<MaterialRow>),
+    (counted, mut found, model): (&Counted, Vec<MaterialRow>, ModelJudged),
     (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
     mut warnings: Vec<Warning>,
     kept: Kept,
 ) -> Decomposed {
-    let (pixels, decided, skipped) = (counted.pixels, counted.decided, counted.has(flag::SKIPPED));
+    let (pixels, skipped) = (counted.pixels, counted.has(flag::SKIPPED));
+    let mut decided = counted.decided;
+    if model.verdict == ModelVerdict::Rejected {
+        decided = 0;
+        found.iter_mut().for_each(|row| row.decided = 0);
+        warnings.push(Warning::ModelRejected {
+            if_it_holds: counted.decided,
+            causes: model.causes.iter().filter(|row| row.may_be).cloned().collect(),
+        });
+    }
     let classes = study.classes.iter().map(|(class, members)| ClassRow {
         class: class.clone(),
         spectra: members.len(),
@@ -258,6 +290,8 @@ pub(super) fn summary(
         materials: study.names.clone(),
         pixels,
         decided,
+        decided_if_model_holds: counted.decided,
+        model,
         undecided: pixels - decided - skipped,
         skipped,
         found,

@@ -1,5 +1,6 @@
 //! Every warning by a row: what it is of, its data, its code. Its words are a block of `hadar_report::words::warnings`.
 
+use crate::decompose::CauseRow;
 use crate::proviso::Proviso;
 use crate::rule::NotInForce;
 use crate::warning::WorstBlackbody;
@@ -93,6 +94,8 @@ warnings! {
     PixelsSkipped { pixels: usize, of: usize } = "pixels-skipped";
     /// Pixels that no material explains.
     LibraryDoesNotFit { pixels: usize, of: usize } = "library-does-not-fit";
+    /// A cube that does not follow the model it is decomposed with.
+    ModelRejected { if_it_holds: usize, causes: Vec<CauseRow> } = "model-rejected";
     /// A library without errors.
     LibraryTakenAsExact = "library-taken-as-exact";
 

@@ -1,6 +1,7 @@
 //! Cubes and what is estimated from them: emissivities, materials, objects.
 
 use super::block::{short, words};
+use crate::words::decompose::judged::cause;
 use hadar::words::significant;
 
 words! {
@@ -67,6 +68,19 @@ words! {
             unit and the light.",
         LibraryDoesNotFit { pixels, of } => {
             format!("{pixels} of {of} pixels are explained by no material of the library (p below 1e-4)")
+        },
+    }
+    ModelRejected {
+        meaning: "The pixels of a cube together do not follow the model they are decomposed with, though each may \
+            fit by itself: what is said of them holds only if the model does.",
+        remedy: "Look at the causes under `model`: correct the gain, the bands or the light that is named; leave a bad \
+            band out with cube.bad_bands; add what is missing to the library or the surroundings.",
+        ModelRejected { if_it_holds, causes } => {
+            let most = causes.first().map_or_else(
+                || "no single cause that is known explains it".to_owned(),
+                |row| format!("most of it would be explained by {}", cause(row)),
+            );
+            format!("the cube does not follow its model: {if_it_holds} pixels would be decided if it held; {most}")
         },
     }
     LibraryTakenAsExact {

@@ -1,0 +1,323 @@
+//! Whether a cube follows the model that it is decomposed with, and what may be otherwise than it was told.
+//!
+//! All pixels together are asked ([`hadar_estimate::decompose::judge`]): their p-values, the residual that they have in common in
+//! each band, and along each [`Cause`]. A model is rejected where one of them is so far from nothing that of a thousand right cubes a few
+//! are at most: p-values [`P_LIMIT`] deviations below their mean, a band or a cause [`LIMIT`] deviations from 0; or where most pixels
+//! fit nothing. What is said of its pixels then holds only if the model does, and the deviations of temperatures hold what the
+//! causes that explain most would do.
+//!
+//! Assumptions: those of the sums. Not judged are methods that leave light out, and libraries with stated errors: these are the same in
+//! all pixels of a material.
+
+use super::DecomposeStudy;
+use super::results::Counted;
+use hadar::atmosphere::Atmosphere;
+use hadar::cube::{Cube, MemoryCube, Rows, Sample, Shape};
+use hadar::error::Result;
+use hadar::planck::photon_radiance_and_slope_into;
+use hadar_estimate::decompose::{
+    Cause, Judged, Light, Maps, Method, Options, Setting, Together, decompose_by, flag, judge, p_deviations,
+};
+use hadar_scenario::decompose::LightSource;
+use serde::Serialize;
+
+/// Deviations of the mean p-value from which on a model is rejected: three of a hundred thousand right ones are.
+const P_LIMIT: f64 = 4.0;
+/// Deviations of a band or a cause: seven of a million of each.
+const LIMIT: f64 = 4.5;
+/// Share of the pixels that fit nothing from which on the model is rejected by that alone.
+const UNFIT: f64 = 0.5;
+/// Pixels that are asked in rows and columns, evenly, where a cube has more.
+const ASKED: usize = 1 << 14;
+/// Share of what the best cause explains from which on another one may be it as well.
+const MAY_BE: f64 = 0.5;
+/// Temperature of the standard atmosphere at the ground, K.
+const AIR_K: f64 = 288.15;
+/// A temperature of a light that may be missing where none is found, K.
+const MISSING_K: f64 = 293.15;
+
+/// What all pixels together say of the model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModelJudged {
+    /// Whether the cube follows it: `not-rejected`, `rejected`, or `not-judged`.
+    pub verdict: ModelVerdict,
+    /// Pixels with a p-value.
+    pub pixels: usize,
+    /// Mean of their p-values from 1e-4 on: a half for a right model.
+    pub p_value_mean: Option<f64>,
+    /// Deviations by which that is below a half.
+    pub p_value_deviations: Option<f64>,
+    /// Share of the pixels that no material fits.
+    pub unfit: Option<f64>,
+    /// Pixels with one candidate that fit, of which bands and causes are told.
+    pub pixels_asked: usize,
+    /// Mean χ² of a degree of freedom of these pixels: 1 for a right model.
+    pub chi_square_reduced: Option<f64>,
+    /// What these pixels have in common in each band, in rising wavenumber.
+    pub bands: Vec<BandResidual>,
+    /// What may be otherwise than told, what explains most first.
+    pub causes: Vec<CauseRow>,
+}
+
+/// Whether a cube follows its model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelVerdict {
+    /// Nothing speaks against it.
+    NotRejected,
+    /// The pixels together do not follow it.
+    Rejected,
+    /// It was not asked.
+    NotJudged,
+}
+
+/// What pixels have in common in a band.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BandResidual {
+    /// Its place, from 0, in rising wavenumber.
+    pub band: usize,
+    /// Mean wavenumber, cm⁻¹.
+    pub wavenumber_cm1: f64,
+    /// Mean residual of a pixel, in deviations of its noise.
+    pub residual: f64,
+    /// The same in deviations of the mean.
+    pub deviations: f64,
+}
+
+/// Something that may be otherwise than told, and what it would explain.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CauseRow {
+    /// `gain`, `wavelength-shift`, `light-scale`, `light-tilt`, `light-temperature`, `lighting-total`, `light-missing`, `air`, `band` or
+    /// `noise`.
+    pub cause: &'static str,
+    /// Which of the surroundings, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<usize>,
+    /// Which band, from 0 in rising wavenumber.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub band: Option<usize>,
+    /// By how much, were it that alone.
+    pub estimate: f64,
+    /// Its deviation.
+    pub sigma: f64,
+    /// `cm^-1`, `K`, `m`, or nothing for a share.
+    pub unit: &'static str,
+    /// By how much χ² of the pixels asked falls by it.
+    pub gain_chi_square: f64,
+    /// Whether it explains at least half as much as the best: intervals hold what it would do.
+    pub may_be: bool,
+}
+
+/// What was asked of some pixels, and what is to be put into the deviations.
+#[derive(Debug, Default)]
+pub(super) struct Asked {
+    causes: Vec<Cause>,
+    judged: Option<Judged>,
+}
+
+impl Asked {
+    /// Asks the pixels of whole maps, or some of the cube that are decomposed for that.
+    pub(super) fn of(
+        study: &DecomposeStudy,
+        method: Method,
+        setting: &Setting<'_>,
+        options: &Options,
+        whole: Option<&Maps>,
+    ) -> Result<Self> {
+        if method != Method::Ml || setting.gain || options.library_error.is_some() {
+            return Ok(Self::default());
+        }
+        let shape = study.cube.shape();
+        let mut asked = Self { causes: causes(study, setting), judged: None };
+        asked.judged = Some(match whole.filter(|_| shape.rows() * shape.columns() <= ASKED) {
+            Some(maps) => judge(setting, &asked.causes, maps, &study.cube)?,
+            None => {
+                let some = match &study.cube {
+                    Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref())?)),
+                    Cube::F64(rows) => Cube::F64(Box::new(some(rows.as_ref())?)),
+                };
+                let options = Options { spatial: None, ..options.clone() };
+                let maps = decompose_by(method, setting, &options, &some, &|_| ())?;
+                judge(setting, &asked.causes, &maps, &some)?
+            }
+        });
+        Ok(asked)
+    }
+
+    /// The sums that causes are told from: of pixels that fit, unless most do not.
+    fn sums(&self) -> Option<&Together> {
+        let judged = self.judged.as_ref()?;
+        let most_fit = 2 * judged.fitting.pixels >= judged.all.pixels;
+        Some(if most_fit { &judged.fitting } else { &judged.all })
+    }
+
+    /// Whether bands or causes reject the model.
+    fn rejects(&self) -> bool {
+        let Some(sums) = self.sums() else { return false };
+        let judged = self.judged.as_ref();
+        judged.is_some_and(|judged| {
+            judged.all.pixels > 0 && (judged.fitting.pixels as f64) < (1.0 - UNFIT) * judged.all.pixels as f64
+                || judged.fitting.p_deviations() > P_LIMIT
+        }) || sums.residual.iter().any(|[sum, var]| *sum * *sum > LIMIT * LIMIT * var && *var > 0.0)
+            || (0..self.causes.len()).any(|i| sums.alone(i).is_some_and(|(_, gain)| gain > LIMIT * LIMIT))
+    }
+
+    /// The causes that the deviations have to hold, with how much of each; none while nothing speaks against the model.
+    pub(super) fn to_hold(&self) -> Vec<(Cause, f64)> {
+        let Some(sums) = self.sums().filter(|_| self.rejects()) else { return Vec::new() };
+        let gain = |i: usize| sums.alone(i).map_or(0.0, |(_, gain)| gain);
+        let best = (0..self.causes.len()).map(gain).fold(0.0, f64::max);
+        let may_be = |i: &usize| gain(*i) >= f64::max(MAY_BE * best, LIMIT * LIMIT);
+        let of = |i: usize| Some((self.causes.get(i)?.clone(), sums.alone(i)?.0));
+        (0..self.causes.len()).filter(may_be).filter_map(of).collect()
+    }
+
+    /// What is said of the model.
+    pub(super) fn found(
+        &self,
+        study: &DecomposeStudy,
+        method: Method,
+        options: &Options,
+        counted: &Counted,
+    ) -> ModelJudged {
+        let is_judged = method == Method::Ml && options.library_error.is_none();
+        let (pixels, p_sum, unfit) = counted.p_values();
+        let p_z = p_deviations(p_sum, pixels);
+        let unfit_share = unfit as f64 / (pixels + unfit).max(1) as f64;
+        let rejected = p_z > P_LIMIT || unfit_share > UNFIT || self.rejects();
+        let sums = self.sums();
+        let wide = study.bands.weigh(study.bands.nodes_cm1());
+        let widths = study.bands.widths_cm1();
+        let bands = sums.zip(self.judged.as_ref()).map_or_else(Vec::new, |(sums, judged)| {
+            let of = |(band, [sum, var]): (&usize, &[f64; 2])| BandResidual {
+                band: *band,
+                wavenumber_cm1: wide[*band] / widths[*band],
+                residual: sum / sums.pixels.max(1) as f64,
+                deviations: if *var > 0.0 { sum / var.sqrt() } else { 0.0 },
+            };
+            judged.bands.iter().zip(&sums.residual).map(of).collect()
+        });
+        let some = |x: f64| (is_judged && pixels + unfit > 0).then_some(x);
+        ModelJudged {
+            verdict: match (is_judged && pixels + unfit > 0, rejected) {
+                (false, _) => ModelVerdict::NotJudged,
+                (true, true) => ModelVerdict::Rejected,
+                (true, false) => ModelVerdict::NotRejected,
+            },
+            pixels,
+            p_value_mean: some(p_sum / pixels as f64).filter(|p| p.is_finite()),
+            p_value_deviations: some(p_z),
+            unfit: some(unfit_share),
+            pixels_asked: sums.map_or(0, |sums| sums.pixels),
+            chi_square_reduced: sums
+                .filter(|sums| sums.freedom > 0.0)
+                .map(|sums| sums.chi_square / sums.freedom),
+            bands,
+            causes: sums.map_or_else(Vec::new, |sums| self.rows(sums)),
+        }
+    }
+
+    fn rows(&self, sums: &Together) -> Vec<CauseRow> {
+        let mut rows: Vec<CauseRow> = (0..self.causes.len())
+            .filter_map(|i| {
+                let (estimate, gain) = sums.alone(i)?;
+                let (cause, light, band, unit) = said(self.causes.get(i)?);
+                let sigma = if gain > 0.0 { (estimate / gain.sqrt()).abs() } else { f64::INFINITY };
+                Some(CauseRow { cause, light, band, estimate, sigma, unit, gain_chi_square: gain, may_be: false })
+            })
+            .collect();
+        // Deviations of all noise larger by a factor: what the likelihood gains by it, twice.
+        let ratio = sums.chi_square / sums.freedom;
+        if ratio > 0.0 && ratio.is_finite() {
+            rows.push(CauseRow {
+                cause: "noise",
+                light: None,
+                band: None,
+                estimate: ratio.sqrt() - 1.0,
+                sigma: (0.5 / sums.freedom).sqrt() * ratio.sqrt(),
+                unit: "",
+                gain_chi_square: sums.freedom * (ratio - 1.0 - ratio.ln()),
+                may_be: false,
+            });
+        }
+        rows.sort_by(|a, b| b.gain_chi_square.total_cmp(&a.gain_chi_square));
+        let best = rows.first().map_or(0.0, |row| row.gain_chi_square);
+        for row in &mut rows {
+            row.may_be = row.gain_chi_square >= f64::max(MAY_BE * best, LIMIT * LIMIT);
+        }
+        rows
+    }
+}
+
+fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
+    match cause {
+        Cause::Gain => ("gain", None, None, ""),
+        Cause::WavelengthShift => ("wavelength-shift", None, None, "cm^-1"),
+        Cause::LightScale(light) => ("light-scale", Some(*light), None, ""),
+        Cause::LightTilt(light) => ("light-tilt", Some(*light), None, ""),
+        Cause::LightTemperature { light, .. } => ("light-temperature", Some(*light), None, "K"),
+        Cause::LightingTotal => ("lighting-total", None, None, ""),
+        Cause::LightMissing { .. } => ("light-missing", None, None, ""),
+        Cause::Air { .. } => ("air", None, None, "m"),
+        Cause::Band(band) => ("band", None, Some(*band), ""),
+    }
+}
+
+/// What may be otherwise than told in a study.
+fn causes(study: &DecomposeStudy, setting: &Setting<'_>) -> Vec<Cause> {
+    let nodes = study.bands.nodes_cm1();
+    let mut all = vec![Cause::Gain, Cause::WavelengthShift];
+    let mut hottest_k = f64::NAN;
+    for (light, source) in study.scenario.environment.iter().enumerate() {
+        all.extend([Cause::LightScale(light), Cause::LightTilt(light)]);
+        if let (LightSource::Surface { temperature_k, .. }, Some(Light::Radiance(radiance))) =
+            (source, setting.surroundings.get(light))
+        {
+            hottest_k = hottest_k.max(*temperature_k);
+            let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+            photon_radiance_and_slope_into(nodes, *temperature_k, &mut value, &mut slope);
+            let each = radiance.iter().zip(value.iter().zip(&slope));
+            let slope = each.map(|(s, (b, d))| if *b > 0.0 { s / b * d } else { 0.0 }).collect();
+            all.push(Cause::LightTemperature { light, slope });
+        }
+    }
+    if setting.lighting_total.is_some() {
+        all.push(Cause::LightingTotal);
+    }
+    let temperature_k = if hottest_k.is_nan() { MISSING_K } else { hottest_k };
+    all.push(Cause::LightMissing { temperature_k });
+    // Where the table of the air does not reach the bands, it cannot be told.
+    if let Some(depth_per_m) =
+        Atmosphere::embedded("us-standard").and_then(|air| air.optical_depth(nodes, 1.0)).ok()
+    {
+        all.push(Cause::Air { depth_per_m, temperature_k: AIR_K });
+    }
+    let is_used = |band: &usize| !setting.bad_bands.contains(band);
+    all.extend((0..study.bands.len()).filter(is_used).map(Cause::Band));
+    all
+}
+
+/// Some pixels of a cube, evenly in rows and columns.
+fn some<S: Sample>(cube: &dyn Rows<S>) -> Result<MemoryCube<S>> {
+    let shape = cube.shape();
+    let stride = ((shape.rows() * shape.columns()) as f64 / ASKED as f64).sqrt().ceil().max(1.0) as usize;
+    let [down, across] = [stride.min(shape.rows()), stride.min(shape.columns())];
+    let (mut samples, mut buffer, mut rows, mut columns) = (Vec::new(), Vec::new(), 0, 0);
+    for row in (0..shape.rows()).step_by(down) {
+        let own = cube.read(row..row + 1, &mut buffer)?;
+        columns = 0;
+        for pixel in own.chunks(shape.bands()).step_by(across) {
+            samples.extend_from_slice(pixel);
+            columns += 1;
+        }
+        rows += 1;
+    }
+    MemoryCube::new(Shape::new(rows, columns, shape.bands())?, samples)
+}
+
+/// Whether a pixel has a p-value that counts here: `None` without one, else whether some material fits.
+pub(super) fn fits(maps: &Maps, i: usize) -> Option<bool> {
+    let flags = maps.flags.get(i).copied().unwrap_or(flag::SKIPPED);
+    let told = flags & (flag::SKIPPED | flag::NO_INFORMATION) == 0 && !maps.p_value.get(i)?.is_nan();
+    told.then_some(flags & flag::NO_FIT == 0)
+}
