@@ -47,6 +47,9 @@ pub fn bundle(result: &Decomposed, room: Option<&Path>) -> Result<Bundle> {
             }
         }
     }
+    if !result.bad.map.is_empty() {
+        bundle.add("bad_pixels.npy", npy_map(&size, &result.bad.map)?);
+    }
     let shown = Shown::of(result.shape);
     let pixels = result.kept.every(shown.stride, result.shape)?;
     if let Some(found) = &result.segmentation {

@@ -12,7 +12,7 @@ use hadar::error::Result;
 use hadar_formats::cube::{mat_file, npy_map};
 use hadar_scenario::DecomposeScenario;
 use hadar_scenario::decompose::{
-    CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+    Bad, CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
 use hadar_study::render::{Picture, Rendered};
 use std::path::PathBuf;
@@ -146,6 +146,8 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat) -> Decom
             unit: CubeUnit::Camera,
             noise: None,
             bad_bands: Vec::new(),
+            bad_pixels: None,
+            bad: Bad::default(),
         },
         bands: Some(result.scenario.bands.clone()),
         camera: Some(result.scenario.camera.clone()),

@@ -86,6 +86,20 @@ pub struct HeatCube {
     pub noise: Option<CubeNoise>,
     /// Bands that are left out, counted from 0 in the order of the cube.
     pub bad_bands: Vec<usize>,
+    /// A map of pixels that are left out: all that are not 0.
+    pub bad_pixels: Option<PathBuf>,
+    /// What is done with bands and pixels that are found to be bad.
+    pub bad: Bad,
+}
+
+/// What is done with bands and pixels that are found to be bad (`cube.bad`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Bad {
+    /// They are left out.
+    #[default]
+    LeaveOut,
+    /// They are taken like all others; those that are named are left out.
+    Keep,
 }
 
 /// What is said of the noise of a cube, in its unit.

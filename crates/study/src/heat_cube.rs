@@ -1,10 +1,12 @@
 //! A heat cube with what is around it, its bands and its noise looked up: what every question about a cube begins with.
 
+use super::cube_bad::{self, BadFound};
 use super::cube_bands::{InOrder, axes_in_doubt};
 use super::cube_noise::{NoiseOfBands, of_bands};
+use super::cube_rows;
 use super::cube_unit::check_light;
 use super::{Warning, bands, camera, camera_bands};
-use hadar::cube::{Cube, Rows, Sample};
+use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::grid::Grid;
 use hadar::instrument::View;
@@ -16,7 +18,7 @@ use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
-use hadar_scenario::decompose::{CubeUnit, HeatCube, LightSource};
+use hadar_scenario::decompose::{Bad, CubeUnit, HeatCube, LightSource};
 use hadar_scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use std::path::Path;
 
@@ -31,6 +33,10 @@ pub(super) struct Said<'a> {
     pub(super) camera: Option<&'a CameraSpec>,
     pub(super) environment: &'a [LightSource],
     pub(super) source: &'a Source,
+    /// Temperatures that a surface may have, K.
+    pub(super) temperature_k: [f64; 2],
+    /// Whether the scale of the counts is unknown.
+    pub(super) gain: bool,
 }
 
 /// A cube that is open, and what its samples are.
@@ -39,8 +45,10 @@ pub(super) struct Measured {
     pub(super) cube: Cube,
     /// What its file was read as.
     pub(super) read: Found,
-    /// Bands that are left out, as the scenario and the file say, in rising wavenumber.
+    /// Bands that are left out, as the scenario and the file say or as they were found, in rising wavenumber.
     pub(super) bad_bands: Vec<usize>,
+    /// What was found to be bad; samples of such pixels are missing in the cube.
+    pub(super) bad: BadFound,
     pub(super) warnings: Vec<Warning>,
     pub(super) bands: Bands,
     pub(super) lights: Vec<Light>,
@@ -95,7 +103,7 @@ impl Said<'_> {
             camera_bands::check(camera, spec, &asked, &bands, &|key| self.source.place(key))?;
             bands = camera.received(&bands);
         }
-        let bad_bands = self.bad_bands(&opened, bands.len()).map_err(at("cube.bad_bands"))?;
+        let mut bad_bands = self.bad_bands(&opened, bands.len()).map_err(at("cube.bad_bands"))?;
         let widths = bands.widths_cm1();
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
@@ -113,16 +121,26 @@ impl Said<'_> {
             together: noise.together.map(|sigma| opened.rising(&sigma)),
         };
         let InOrder { cube, found: read, .. } = opened;
+        let lit = self
+            .environment
+            .iter()
+            .enumerate()
+            .map(|(k, source)| sent(source, &bands, library).map_err(at(&format!("environment[{k}]"))));
+        let lit = lit.collect::<Result<Vec<_>>>()?;
+        let most = brightest(&bands, self.temperature_k[1], &lit);
         let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
-        let (counts_per_radiance, var_added) = match self.cube.unit {
+        let (counts_per_radiance, var_added): (Vec<f64>, Vec<f64>) = match self.cube.unit {
             CubeUnit::CountsPerPhotonRadiance(counts) => {
                 (widths.iter().map(|width| counts / width).collect(), (0..bands.len()).map(added).collect())
             }
             CubeUnit::Radiance => {
                 // A variance so much larger than that of the photons that the noise alone counts.
                 let least = (0..bands.len()).map(added).fold(f64::INFINITY, f64::min);
-                units_per_count = least / (PER_VARIANCE * largest(&cube)?.max(least.sqrt()));
                 let joules = |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
+                let largest =
+                    centres.iter().zip(&widths).zip(&most).map(|((nu, w), sum)| joules(nu) * sum / w);
+                // Of what surfaces and lights can send, not of what the cube holds: no sample changes what another one is worth.
+                units_per_count = least / (PER_VARIANCE * largest.fold(least.sqrt(), f64::max));
                 let scale = |(nu, width): (&f64, &f64)| joules(nu) / (units_per_count * width);
                 let var = (0..bands.len()).map(|band| added(band) / units_per_count / units_per_count);
                 (centres.iter().zip(&widths).map(scale).collect(), var.collect())
@@ -136,10 +154,40 @@ impl Said<'_> {
                 (vec![counting.counts_per_radiance; bands.len()], var.collect())
             }
         };
-        let lights = self.environment.iter().enumerate().map(|(k, light)| {
-            let key = format!("environment[{k}]");
-            lit(light, &cube, &bands, library, units_per_count).map_err(at(&key))
-        });
+        let shape = cube.shape();
+        let named = self.cube.bad_pixels.as_ref().map(|path| cube_bad::named(path, shape));
+        let named = named.transpose().map_err(at("cube.bad_pixels"))?.unwrap_or_default();
+        let counts = |sums: Vec<f64>| sums.iter().zip(&counts_per_radiance).map(|(s, k)| s * k).collect();
+        let mut coldest = vec![0.0; bands.nodes_cm1().len()];
+        planck::photon_radiance_into(bands.nodes_cm1(), self.temperature_k[0], &mut coldest);
+        let (least, most): (Vec<f64>, Vec<f64>) = (counts(bands.weigh(&coldest)), counts(most));
+        let readings = cube_bad::Readings {
+            bad_bands: &bad_bands,
+            units_per_count,
+            var_added: &var_added,
+            least: &least,
+            most: &most,
+            keeps: self.cube.bad == Bad::Keep,
+            gain: self.gain,
+        };
+        let bad = readings.find(&cube, &named).map_err(at("cube.data"))?;
+        warnings.extend(bad.warnings(shape));
+        bad_bands.extend(bad.bands.iter().map(|bad| bad.band));
+        bad_bands.sort_unstable();
+        let cube = cube_bad::without(cube, &bad.map);
+        let lights =
+            self.environment.iter().zip(lit).enumerate().map(|(k, (source, lit))| match (source, lit) {
+                (LightSource::Rows(rows), _) => {
+                    let (light, left_out) = counted(&cube, *rows, &bad_bands, units_per_count)
+                        .map_err(at(&format!("environment[{k}]")))?;
+                    if left_out > 0 {
+                        let pixels = (rows[1] - rows[0]) * shape.columns();
+                        warnings.push(Warning::RowsUneven { environment: k, pixels: left_out, of: pixels });
+                    }
+                    Ok(light)
+                }
+                (_, lit) => Ok(Light::Radiance(lit.unwrap_or_default())),
+            });
         let lights = lights.collect::<Result<Vec<_>>>()?;
         let together =
             noise.together.map(|sigma| sigma.into_iter().map(|sigma| sigma / units_per_count).collect());
@@ -147,6 +195,7 @@ impl Said<'_> {
             cube,
             read,
             bad_bands,
+            bad,
             warnings,
             bands,
             lights,
@@ -194,30 +243,43 @@ pub(super) fn columns(path: &Path) -> Result<Vec<Column>> {
     read().map_err(|error| error.in_file(path))
 }
 
-/// The spectrum of one of the surroundings.
-fn lit(light: &LightSource, cube: &Cube, bands: &Bands, library: &Library, unit: f64) -> Result<Light> {
+/// The spectrum of one of the surroundings at the nodes; nothing where the cube itself shows it.
+fn sent(light: &LightSource, bands: &Bands, library: &Library) -> Result<Option<Vec<f64>>> {
     let nodes = bands.nodes_cm1();
     match light {
         LightSource::Surface { material, temperature_k } => {
             let mut radiance = vec![0.0; nodes.len()];
             planck::photon_radiance_into(nodes, *temperature_k, &mut radiance);
             let emissivity = match material {
-                None => return Ok(Light::Radiance(radiance)),
+                None => return Ok(Some(radiance)),
                 Some(MaterialRef::Name(name)) => library.get(name)?.emissivity(nodes)?,
                 Some(MaterialRef::File(path)) => hadar_formats::spectra::material(path)?.emissivity(nodes)?,
             };
             radiance.iter_mut().zip(&emissivity).for_each(|(radiance, e)| *radiance *= e);
-            Ok(Light::Radiance(radiance))
+            Ok(Some(radiance))
         }
-        LightSource::Spectrum { path, column } => Ok(Light::Radiance(spectrum(path, column, nodes)?)),
-        LightSource::Rows([first, last]) => {
-            let counts = match cube {
-                Cube::F32(rows) => mean_of(rows.as_ref(), *first, *last),
-                Cube::F64(rows) => mean_of(rows.as_ref(), *first, *last),
-            }?;
-            Ok(Light::Counts(counts.iter().map(|n| n / unit).collect()))
-        }
+        LightSource::Spectrum { path, column } => spectrum(path, column, nodes).map(Some),
+        LightSource::Rows(_) => Ok(None),
     }
+}
+
+/// The most that a blackbody at a temperature or a light sends in each band, photons s⁻¹ m⁻² sr⁻¹.
+fn brightest(bands: &Bands, temperature_k: f64, lit: &[Option<Vec<f64>>]) -> Vec<f64> {
+    let mut radiance = vec![0.0; bands.nodes_cm1().len()];
+    planck::photon_radiance_into(bands.nodes_cm1(), temperature_k, &mut radiance);
+    for light in lit.iter().flatten() {
+        radiance.iter_mut().zip(light).for_each(|(most, light)| *most = most.max(*light));
+    }
+    bands.weigh(&radiance)
+}
+
+/// Mean counts of rows of the cube, and how many of their pixels are not like the others.
+fn counted(cube: &Cube, rows: [usize; 2], bad_bands: &[usize], unit: f64) -> Result<(Light, usize)> {
+    let (mean, left_out) = match cube {
+        Cube::F32(cube) => cube_rows::mean_of(cube.as_ref(), rows, bad_bands),
+        Cube::F64(cube) => cube_rows::mean_of(cube.as_ref(), rows, bad_bands),
+    }?;
+    Ok((Light::Counts(mean.iter().map(|n| n / unit).collect()), left_out))
 }
 
 /// A column of a table of photon radiances at the nodes.
@@ -251,43 +313,4 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
         Ok(value)
     };
     nodes_cm1.iter().map(at).collect()
-}
-
-fn mean_of<S: Sample>(cube: &dyn Rows<S>, first: usize, last: usize) -> Result<Vec<f64>> {
-    let shape = cube.shape();
-    if last > shape.rows() {
-        let found = format!("rows {first} to {last} of a cube of {}", shape.rows());
-        return Err(Error::malformed(found, format!("write rows up to {}", shape.rows())));
-    }
-    let (mut sum, mut count, mut buffer) = (vec![0.0; shape.bands()], 0.0, Vec::new());
-    for row in first..last {
-        for pixel in cube.read(row..row + 1, &mut buffer)?.chunks(shape.bands()) {
-            if pixel.iter().all(|sample| (*sample).into().is_finite()) {
-                pixel.iter().zip(&mut sum).for_each(|(sample, sum)| *sum += (*sample).into());
-                count += 1.0;
-            }
-        }
-    }
-    if count == 0.0 {
-        return Err(Error::malformed("these rows hold no pixel with all its samples", "name other rows"));
-    }
-    sum.iter_mut().for_each(|sum| *sum /= count);
-    Ok(sum)
-}
-
-/// The largest sample of a cube.
-fn largest(cube: &Cube) -> Result<f64> {
-    fn of<S: Sample>(cube: &dyn Rows<S>) -> Result<f64> {
-        let mut buffer = Vec::new();
-        (0..cube.shape().rows()).try_fold(0.0, |most, row| {
-            let samples = cube.read(row..row + 1, &mut buffer)?;
-            let finite =
-                samples.iter().map(|sample| (*sample).into()).filter(|sample: &f64| sample.is_finite());
-            Ok(finite.fold(most, f64::max))
-        })
-    }
-    match cube {
-        Cube::F32(rows) => of(rows.as_ref()),
-        Cube::F64(rows) => of(rows.as_ref()),
-    }
 }

@@ -46,6 +46,8 @@ impl LibraryStudy {
             camera: scenario.camera.as_ref(),
             environment: &scenario.environment,
             source: &scenario.source,
+            temperature_k: scenario.unknown.temperature_k,
+            gain: false,
         };
         let measured = said.measured(library)?;
         let shape = measured.cube.shape();

@@ -7,6 +7,7 @@ use hadar_estimate::decompose::Method;
 use hadar_report::decompose;
 use hadar_report::folder::Scratch;
 use hadar_scenario::DecomposeScenario;
+use hadar_scenario::decompose::Bad;
 use hadar_study::decompose::{DecomposeStudy, Keep};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -18,6 +19,27 @@ pub(super) struct DecomposeArgs {
     /// How pixels are taken apart
     #[arg(long, value_enum, default_value_t = By::Ml)]
     method: By,
+    /// What is done with pixels and bands that are found to be bad: cube.bad of the scenario
+    #[arg(long, value_enum)]
+    bad: Option<FoundBad>,
+}
+
+/// What is done with what is found to be bad, as a flag.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum FoundBad {
+    /// They are left out
+    LeaveOut,
+    /// They are taken like all others
+    Keep,
+}
+
+impl From<FoundBad> for Bad {
+    fn from(bad: FoundBad) -> Self {
+        match bad {
+            FoundBad::LeaveOut => Self::LeaveOut,
+            FoundBad::Keep => Self::Keep,
+        }
+    }
 }
 
 /// Methods, as a flag.
@@ -45,7 +67,8 @@ impl From<By> for Method {
 }
 
 pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = DecomposeScenario::from_written(&global.written(&args.scenario)?)?;
+    let mut scenario = DecomposeScenario::from_written(&global.written(&args.scenario)?)?;
+    scenario.cube.bad = args.bad.map_or(scenario.cube.bad, Bad::from);
     let study = DecomposeStudy::new(&scenario, &global.library()?)?;
     global.admit(study.takes())?;
     let scratch = match study.wants_files() {

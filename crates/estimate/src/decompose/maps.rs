@@ -231,13 +231,14 @@ impl Task {
 }
 
 impl Maps {
-    /// Whether pixel i, counted row after row, has one material left that fits.
+    /// Whether pixel i, counted row after row, has one material left that fits, at a temperature within its range: at an end of it another
+    /// material might fit better beyond.
     #[must_use]
     pub fn is_decided(&self, i: usize) -> bool {
         let flags = self.flags.get(i).copied().unwrap_or(flag::SKIPPED);
         self.candidates.get(i) == Some(&1)
             && self.material.get(i).is_some_and(|material| *material != NO_MATERIAL)
-            && flags & flag::NO_FIT == 0
+            && flags & (flag::NO_FIT | flag::TEMPERATURE_AT_LIMIT) == 0
     }
 
     /// The materials, [`NO_MATERIAL`] also where none of the library fits.

@@ -87,7 +87,15 @@ impl<'a> Tangents<'a> {
             reflected.push(mean.iter().zip(&kappa).map(|(r, k)| r * k).collect());
         }
         let counted = setting.surroundings.iter().map(|light| matches!(light, Light::Counts(_))).collect();
-        Ok(Self { setting: *setting, used, lights, scattered, counted, reflected, counts_per_radiance: kappa })
+        Ok(Self {
+            setting: *setting,
+            used,
+            lights,
+            scattered,
+            counted,
+            reflected,
+            counts_per_radiance: kappa,
+        })
     }
 
     /// The library.

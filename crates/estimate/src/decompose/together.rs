@@ -68,7 +68,10 @@ pub fn widen(
         });
         *sigma_k = f64::from(*sigma_k).hypot(off).hypot(moved.fold(0.0, f64::max)) as f32;
     };
-    temperature_sigma_k.par_iter_mut().enumerate().for_each_init(<(Tangent, Vec<f64>, Vec<f64>)>::default, one);
+    temperature_sigma_k
+        .par_iter_mut()
+        .enumerate()
+        .for_each_init(<(Tangent, Vec<f64>, Vec<f64>)>::default, one);
     Ok(())
 }
 

@@ -155,7 +155,7 @@ fn flags(result: &Decomposed) -> String {
             }
             flag::NO_FIT => "no material of the library fits (p below 1e-4)",
             flag::UNDECIDED => "several materials are left by 95 %",
-            flag::SKIPPED => "left out: a sample is missing",
+            flag::SKIPPED => "left out: a sample is missing, or the pixel is bad",
             flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
             _ => row.flag,
         };

@@ -10,7 +10,7 @@ use super::super::{BandsSpec, Source, camera, class};
 use super::category::{Told, categories, segmentation};
 use super::image::{spatial, vision};
 use super::{
-    CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+    Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
 use hadar::error::{Error, Result};
 use std::path::Path;
@@ -72,6 +72,9 @@ impl Default for PixelUnknown {
     }
 }
 
+/// What is done with what is found to be bad.
+pub(super) const BAD: [(&str, Bad); 2] = [("leave-out", Bad::LeaveOut), ("keep", Bad::Keep)];
+
 pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
     let section = entry.section()?;
     section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
@@ -114,6 +117,8 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
                 items.iter().map(|item| place(item, "53")).collect()
             })?
             .unwrap_or_default(),
+        bad_pixels: section.read("bad_pixels", file)?,
+        bad: section.choice("bad", &BAD)?.unwrap_or_default(),
     })
 }
 

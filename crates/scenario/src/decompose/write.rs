@@ -5,9 +5,10 @@ use super::super::paths::Paths;
 use super::super::{BandsSpec, CameraSpec, camera, class};
 use super::category::{categories_written, segmentation_written};
 use super::image::{spatial_written, vision_written};
+use super::read::BAD;
 use super::{
-    CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec, TruthSpec,
-    VisionSpec,
+    Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec,
+    TruthSpec, VisionSpec,
 };
 use hadar::units::Dimension;
 use toml::Value;
@@ -71,7 +72,12 @@ pub(crate) fn cube_written(
                 CubeNoise::File(path) => Value::from(paths.file(path)),
             }),
         )
-        .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
+        .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)))
+        .put_if("bad_pixels", cube.bad_pixels.as_ref().map(|path| paths.file(path)))
+        .put_if(
+            "bad",
+            BAD.iter().find(|(_, one)| *one == cube.bad && cube.bad != Bad::default()).map(|(name, _)| *name),
+        );
     let lights = environment.iter().map(|light| match light {
         LightSource::Spectrum { path, column } => {
             Entries::default().put("spectrum", paths.file(path)).put("column", column.clone())

@@ -68,6 +68,22 @@ const CUBE_KEYS: &[Key] = &[
         "Bands that are left out, counted from 0.",
         "which samples are used",
     ),
+    Key::row(
+        "bad_pixels",
+        Value::File,
+        Is("none"),
+        "\"bad_pixels.npy\"",
+        "A map of the cube's rows and columns: pixels that are not 0 in it are left out.",
+        "which samples are used",
+    ),
+    Key::row(
+        "bad",
+        Value::Choice(&["leave-out", "keep"]),
+        Is("\"leave-out\""),
+        "\"keep\"",
+        "What is done with pixels and bands that are found to be bad (dead, stuck, saturated, too bright); those that are named are left out in any case.",
+        "which samples are used",
+    ),
 ];
 /// `[cube]`.
 pub(crate) static CUBE: Table = Table::of("A heat cube in a file.", &[CUBE_KEYS]);

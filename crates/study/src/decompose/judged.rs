@@ -11,8 +11,9 @@
 
 use super::DecomposeStudy;
 use super::results::Counted;
+use crate::cube_bad::{LOOKED, some};
 use hadar::atmosphere::Atmosphere;
-use hadar::cube::{Cube, MemoryCube, Rows, Sample, Shape};
+use hadar::cube::Cube;
 use hadar::error::Result;
 use hadar::planck::photon_radiance_and_slope_into;
 use hadar_estimate::decompose::{
@@ -27,8 +28,6 @@ const P_LIMIT: f64 = 4.0;
 const LIMIT: f64 = 4.5;
 /// Share of the pixels that fit nothing from which on the model is rejected by that alone.
 const UNFIT: f64 = 0.5;
-/// Pixels that are asked in rows and columns, evenly, where a cube has more.
-const ASKED: usize = 1 << 14;
 /// Share of what the best cause explains from which on another one may be it as well.
 const MAY_BE: f64 = 0.5;
 /// Temperature of the standard atmosphere at the ground, K.
@@ -113,6 +112,7 @@ pub struct CauseRow {
 pub(super) struct Asked {
     causes: Vec<Cause>,
     judged: Option<Judged>,
+    most_decided: bool,
 }
 
 impl Asked {
@@ -128,25 +128,29 @@ impl Asked {
             return Ok(Self::default());
         }
         let shape = study.cube.shape();
-        let mut asked = Self { causes: causes(study, setting), judged: None };
-        asked.judged = Some(match whole.filter(|_| shape.rows() * shape.columns() <= ASKED) {
-            Some(maps) => judge(setting, &asked.causes, maps, &study.cube)?,
+        let mut asked = Self { causes: causes(study, setting), ..Self::default() };
+        let pixels = |maps: &Maps| (0..maps.material.len()).filter(|i| fits(maps, *i).is_some()).count();
+        let (judged, asked_of) = match whole.filter(|_| shape.rows() * shape.columns() <= LOOKED) {
+            Some(maps) => (judge(setting, &asked.causes, maps, &study.cube)?, pixels(maps)),
             None => {
                 let some = match &study.cube {
-                    Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref())?)),
-                    Cube::F64(rows) => Cube::F64(Box::new(some(rows.as_ref())?)),
+                    Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref(), LOOKED)?)),
+                    Cube::F64(rows) => Cube::F64(Box::new(some(rows.as_ref(), LOOKED)?)),
                 };
                 let options = Options { spatial: None, ..options.clone() };
                 let maps = decompose_by(method, setting, &options, &some, &|_| ())?;
-                judge(setting, &asked.causes, &maps, &some)?
+                (judge(setting, &asked.causes, &maps, &some)?, pixels(&maps))
             }
-        });
+        };
+        asked.most_decided = 2 * judged.all.pixels > asked_of;
+        asked.judged = Some(judged);
         Ok(asked)
     }
 
-    /// The sums that causes are told from: of pixels that fit, unless most do not.
+    /// The sums that causes are told from: of pixels that fit, unless most do not. Nothing where few pixels are decided: those few are
+    /// the ones that their noise made clear, which is a cause of its own.
     fn sums(&self) -> Option<&Together> {
-        let judged = self.judged.as_ref()?;
+        let judged = self.judged.as_ref().filter(|_| self.most_decided)?;
         let most_fit = 2 * judged.fitting.pixels >= judged.all.pixels;
         Some(if most_fit { &judged.fitting } else { &judged.all })
     }
@@ -223,7 +227,16 @@ impl Asked {
                 let (estimate, gain) = sums.alone(i)?;
                 let (cause, light, band, unit) = said(self.causes.get(i)?);
                 let sigma = if gain > 0.0 { (estimate / gain.sqrt()).abs() } else { f64::INFINITY };
-                Some(CauseRow { cause, light, band, estimate, sigma, unit, gain_chi_square: gain, may_be: false })
+                Some(CauseRow {
+                    cause,
+                    light,
+                    band,
+                    estimate,
+                    sigma,
+                    unit,
+                    gain_chi_square: gain,
+                    may_be: false,
+                })
             })
             .collect();
         // Deviations of all noise larger by a factor: what the likelihood gains by it, twice.
@@ -287,32 +300,11 @@ fn causes(study: &DecomposeStudy, setting: &Setting<'_>) -> Vec<Cause> {
     let temperature_k = if hottest_k.is_nan() { MISSING_K } else { hottest_k };
     all.push(Cause::LightMissing { temperature_k });
     // Where the table of the air does not reach the bands, it cannot be told.
-    if let Some(depth_per_m) =
-        Atmosphere::embedded("us-standard").and_then(|air| air.optical_depth(nodes, 1.0)).ok()
-    {
-        all.push(Cause::Air { depth_per_m, temperature_k: AIR_K });
-    }
+    let depth = Atmosphere::embedded("us-standard").and_then(|air| air.optical_depth(nodes, 1.0));
+    all.extend(depth.map(|depth_per_m| Cause::Air { depth_per_m, temperature_k: AIR_K }));
     let is_used = |band: &usize| !setting.bad_bands.contains(band);
     all.extend((0..study.bands.len()).filter(is_used).map(Cause::Band));
     all
-}
-
-/// Some pixels of a cube, evenly in rows and columns.
-fn some<S: Sample>(cube: &dyn Rows<S>) -> Result<MemoryCube<S>> {
-    let shape = cube.shape();
-    let stride = ((shape.rows() * shape.columns()) as f64 / ASKED as f64).sqrt().ceil().max(1.0) as usize;
-    let [down, across] = [stride.min(shape.rows()), stride.min(shape.columns())];
-    let (mut samples, mut buffer, mut rows, mut columns) = (Vec::new(), Vec::new(), 0, 0);
-    for row in (0..shape.rows()).step_by(down) {
-        let own = cube.read(row..row + 1, &mut buffer)?;
-        columns = 0;
-        for pixel in own.chunks(shape.bands()).step_by(across) {
-            samples.extend_from_slice(pixel);
-            columns += 1;
-        }
-        rows += 1;
-    }
-    MemoryCube::new(Shape::new(rows, columns, shape.bands())?, samples)
 }
 
 /// Whether a pixel has a p-value that counts here: `None` without one, else whether some material fits.

@@ -4,6 +4,7 @@ use super::categories::parts;
 use super::truth::Truth;
 use crate::Warning;
 use crate::budget::Takes;
+use crate::cube_bad::BadFound;
 use crate::heat_cube::{Measured, Said, columns};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
@@ -23,6 +24,8 @@ pub struct DecomposeStudy {
     pub(super) read: Found,
     /// Bands that are left out, in rising wavenumber.
     pub(super) bad_bands: Vec<usize>,
+    /// What was found to be bad.
+    pub(super) bad: BadFound,
     pub(super) bands: Bands,
     /// Names of the materials, and their emissivities at the nodes of the bands.
     pub(super) names: Vec<String>,
@@ -64,10 +67,12 @@ impl DecomposeStudy {
             camera: scenario.camera.as_ref(),
             environment: &scenario.environment,
             source: &scenario.source,
+            temperature_k: scenario.unknown.temperature_k,
+            gain: scenario.unknown.gain,
         };
         let at = |key: &str| said.at(key);
         let measured = said.measured(library)?;
-        let Measured { cube, read, bad_bands, mut warnings, bands, lights, .. } = measured;
+        let Measured { cube, read, bad_bands, bad, mut warnings, bands, lights, .. } = measured;
         let Measured { counts_per_radiance, var_added, together, units_per_count, .. } = measured;
         let materials =
             materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
@@ -138,6 +143,7 @@ impl DecomposeStudy {
             cube,
             read,
             bad_bands,
+            bad,
             bands,
             names,
             library: emissivities,

@@ -8,6 +8,7 @@ use super::segmented::Segmented;
 use super::vision::{DRAWN, Vision, apart};
 pub use super::worth::TruthFound;
 use crate::Warning;
+use crate::cube_bad::BadFound;
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::error::Result;
@@ -40,8 +41,10 @@ pub struct Decomposed {
     pub undecided: usize,
     /// Whether the cube follows its model, and what may be otherwise than told.
     pub model: ModelJudged,
-    /// Pixels that were left out, a sample of which is missing.
+    /// Pixels that were left out: a sample of them is missing, or they were named or found to be bad.
     pub skipped: usize,
+    /// What was named or found to be bad.
+    pub bad: BadFound,
     /// Of each material that was found.
     pub found: Vec<MaterialRow>,
     /// Of each class of the library; empty without classes.
@@ -163,7 +166,7 @@ impl Counted {
     }
 
     /// How many pixels have each flag, and what the reader must know of them.
-    fn flags(&self, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+    fn flags(&self, warnings: &mut Vec<Warning>, bad: &BadFound) -> Vec<FlagCount> {
         let (pixels, skipped) = (self.pixels, self.has(flag::SKIPPED));
         let flags: Vec<FlagCount> = flag::NAMES
             .iter()
@@ -173,8 +176,10 @@ impl Counted {
         if self.spared.unfinished > 0 {
             warnings.push(Warning::UnconvergedFits { fits: self.spared.unfinished as usize });
         }
-        if skipped > 0 {
-            warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
+        // Those that were found to be bad are told with their reason.
+        let told: usize = bad.pixels.iter().filter(|bad| bad.why != "missing").map(|bad| bad.pixels).sum();
+        if skipped > told {
+            warnings.push(Warning::PixelsSkipped { pixels: skipped - told, of: pixels });
         }
         if let Some(Spatial { changed, settled, .. }) = self.spatial {
             warnings.push(Warning::SpatialPrior { changed, pixels, settled });
@@ -188,10 +193,10 @@ impl Counted {
 }
 
 /// How many pixels of maps have each flag, and what the reader must know of them.
-pub(crate) fn flags(maps: &Maps, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+pub(crate) fn flags(maps: &Maps, bad: &BadFound, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
     let mut counted = Counted::default();
     counted.take(maps);
-    counted.flags(warnings)
+    counted.flags(warnings, bad)
 }
 
 /// Shares of the temperatures of a material, and of their deviations, that are said.
@@ -275,7 +280,7 @@ pub(super) fn summary(
         spectra: members.len(),
         pixels: members.iter().map(|member| counted.of(*member)[0]).sum(),
     });
-    let flags = counted.flags(&mut warnings);
+    let flags = counted.flags(&mut warnings, &study.bad);
     if let Some(found) = &segmentation {
         let guessed = found.objects.iter().filter(|object| 2 * object.decided < object.pixels).count();
         if guessed > 0 {
@@ -294,6 +299,7 @@ pub(super) fn summary(
         model,
         undecided: pixels - decided - skipped,
         skipped,
+        bad: study.bad.clone(),
         found,
         classes: classes.collect(),
         flags,

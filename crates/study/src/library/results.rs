@@ -177,7 +177,7 @@ pub(super) fn summary(
             weight += pixels * one.emissivity[*band].powi(2);
         }
     }
-    let skipped = flags(&maps, &mut warnings);
+    let skipped = flags(&maps, &measured.bad, &mut warnings);
     LibraryFound {
         scenario: scenario.clone(),
         read: measured.read.clone(),

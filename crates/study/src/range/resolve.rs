@@ -3,6 +3,7 @@
 use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use super::watched::Watch;
+use crate::cube_bad::without_dead;
 use crate::cube_bands::{InOrder, axes_in_doubt};
 use crate::cube_unit::check_counts;
 use crate::{bands, camera, camera_bands, stage};
@@ -169,14 +170,16 @@ fn cube(
             Some(Depth::Map(depth_map(&depth, shape).map_err(at("cube.depth"))?))
         }
     };
-    let (left, watch) = Watch::over(left);
-    let mut watches = vec![watch];
-    let right = right.map(|right| {
-        let (right, watch) = Watch::over(right);
-        watches.push(watch);
-        right
-    });
     let photons_per_unit = spec.photons_per_unit.unwrap_or(1.0);
+    let mut watches = Vec::new();
+    // What is dead is seen by the watch, and by nobody else.
+    let mut watched = |key: &'static str, view: Cube| {
+        let (view, watch) = Watch::over(view);
+        watches.push(watch);
+        without_dead(view, photons_per_unit).map_err(at(key))
+    };
+    let left = watched("cube.left", left)?;
+    let right = right.map(|right| watched("cube.right", right)).transpose()?;
     Ok(Measured { left, read, warnings, right, watches, noise, photons_per_unit, depth })
 }
 

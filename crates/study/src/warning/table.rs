@@ -92,6 +92,12 @@ warnings! {
     WindowsMissing { windows: usize, of: usize } = "windows-missing";
     /// Pixels with a missing sample.
     PixelsSkipped { pixels: usize, of: usize } = "pixels-skipped";
+    /// Rows that stand for surroundings and are not all alike.
+    RowsUneven { environment: usize, pixels: usize, of: usize } = "rows-uneven";
+    /// Bands that are left out as they were found to be bad.
+    BandsFoundBad { bands: Vec<usize>, why: &'static str } = "bands-found-bad";
+    /// Pixels that are left out as they were found to be bad.
+    PixelsFoundBad { pixels: usize, of: usize, why: &'static str } = "pixels-found-bad";
     /// Pixels that no material explains.
     LibraryDoesNotFit { pixels: usize, of: usize } = "library-does-not-fit";
     /// A cube that does not follow the model it is decomposed with.

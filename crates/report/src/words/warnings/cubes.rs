@@ -62,6 +62,27 @@ words! {
             format!("{pixels} of {of} pixels have a sample that is no number; they were left out")
         },
     }
+    RowsUneven {
+        meaning: "Rows of a cube stand for surroundings, and some of their pixels are not like the others: they are not in the mean.",
+        remedy: "Nothing; or name rows that show one and the same thing.",
+        RowsUneven { environment, pixels, of } => format!(
+            "{pixels} of {of} pixels of the rows of environment[{environment}] are not like the others; they were left out of the mean"
+        ),
+    }
+    BandsFoundBad {
+        meaning: "Bands of a cube have no readings: missing in most pixels, or one and the same value in all of them.",
+        remedy: "Nothing, or name them in cube.bad_bands; write cube.bad = \"keep\" to take them like all others.",
+        BandsFoundBad { bands, why } => {
+            let named: Vec<String> = bands.iter().take(12).map(usize::to_string).collect();
+            let more = if bands.len() > 12 { format!(" and {} more", bands.len() - 12) } else { String::new() };
+            format!("bands {}{more} (from 0, in rising wavenumber) are {why}: they were left out", named.join(", "))
+        },
+    }
+    PixelsFoundBad {
+        meaning: "Pixels of a cube are dead, stuck at one value, cut off, or brighter than anything in the range can be.",
+        remedy: "Nothing; write cube.bad = \"keep\" to take them like all others; a wider unknown.temperature where what is there is hotter.",
+        PixelsFoundBad { pixels, of, why } => format!("{pixels} of {of} pixels are {why}: they were left out (bad_pixels.npy)"),
+    }
     LibraryDoesNotFit {
         meaning: "Pixels of a cube are explained by no material of the library.",
         remedy: "Add materials, state how wrong the library is with library.emissivity_error, or check the \

@@ -1,0 +1,439 @@
+//! Bad pixels and bands of a cube: named by the user, or found by what no detector that works could read.
+//!
+//! | code | name | a pixel |
+//! |---|---|---|
+//! | 1 | missing | a sample of which is no number |
+//! | 2 | dead | all samples of which are 0, where even a surface at the lowest temperature would send [`FEWEST`] counts |
+//! | 3 | stuck | all samples of which are one value, which noise would do once in 10¹² pixels at most |
+//! | 4 | saturated | a sample of which is at the value where readings are cut off |
+//! | 5 | too-bright | a sample of which is more than [`BEYOND`] times what a blackbody at the highest temperature, or any light, sends |
+//! | 6 | named | that stands in `cube.bad_pixels` |
+//!
+//! A band is bad where it is missing in most pixels, or one value in all that were looked at while noise would move it. Readings are
+//! cut off at the largest value that [`PILED`] of the samples looked at have, if ten times as many have it as the next one and fewer are above.
+//!
+//! Nothing here depends on the neighbours of a pixel: spoiling one changes no other one. Samples of bad pixels are handed on as
+//! missing ones, for every command alike. Only pixels looked at ([`LOOKED`], evenly) say what a band and a limit is.
+
+use super::Warning;
+use hadar::cube::{Cube, MemoryCube, Rows, Sample, Shape};
+use hadar::error::{Error, Result};
+use hadar::parallel;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+
+/// Pixels that are looked at for bands and limits, evenly in rows and columns.
+pub(super) const LOOKED: usize = 1 << 14;
+/// Fewer pixels say nothing of a band.
+const SAYING: usize = 16;
+/// Counts of which 0 is no reading: e⁻³⁰.
+const FEWEST: f64 = 30.0;
+/// Probability that noise makes all samples of a pixel the same.
+const BY_CHANCE: f64 = 1e-12;
+/// Times the most that can be sent.
+const BEYOND: f64 = 4.0;
+/// Counts of a pixel beside which another of the same picture does not hold none at all: a twentieth of them would be missed by e⁻³⁰.
+const BRIGHT: f64 = 600.0;
+/// Least emissivity that a surface is taken to have on the average over the bands.
+const LEAST_EMISSIVITY: f64 = 0.02;
+/// Samples at one value that are no chance, and how many more than at the next value.
+const PILED: usize = 20;
+const PILED_OVER_NEXT: usize = 10;
+/// Of so many pixels one may have another value in a band that is stuck: a single pixel does not say what a band is.
+const OTHERS: usize = 16;
+
+/// Names of the codes, from 1.
+pub const NAMES: [&str; 6] = ["missing", "dead", "stuck", "saturated", "too-bright", "named"];
+
+/// Bad pixels and bands of a cube.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct BadFound {
+    /// How many pixels are bad, by why.
+    pub pixels: Vec<BadPixels>,
+    /// Bands that were found to be bad, besides those named.
+    pub bands: Vec<BadBand>,
+    /// The code of every pixel, 0 for good ones; empty where all are.
+    #[serde(skip)]
+    pub map: Vec<u8>,
+}
+
+impl BadFound {
+    /// What the reader must know of it; pixels that miss a sample are told where they are counted.
+    pub(super) fn warnings(&self, shape: Shape) -> Vec<Warning> {
+        let of = shape.rows() * shape.columns();
+        let bands = ["missing", "stuck"].into_iter().filter_map(|why| {
+            let bands: Vec<usize> =
+                self.bands.iter().filter(|bad| bad.why == why).map(|bad| bad.band).collect();
+            (!bands.is_empty()).then_some(Warning::BandsFoundBad { bands, why })
+        });
+        let found = self.pixels.iter().filter(|bad| bad.why != "missing" && bad.why != "named");
+        bands
+            .chain(found.map(|bad| Warning::PixelsFoundBad { pixels: bad.pixels, of, why: bad.why }))
+            .collect()
+    }
+}
+
+/// Pixels that are bad for one reason.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BadPixels {
+    /// `missing`, `dead`, `stuck`, `saturated`, `too-bright` or `named`.
+    pub why: &'static str,
+    /// Its number in `bad_pixels.npy`.
+    pub code: u8,
+    /// Pixels.
+    pub pixels: usize,
+}
+
+/// A band that was found to be bad.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BadBand {
+    /// Its place, from 0, in rising wavenumber.
+    pub band: usize,
+    /// `missing` or `stuck`.
+    pub why: &'static str,
+}
+
+/// What is known of readings, all in the unit of the cube and for each band.
+pub(super) struct Readings<'a> {
+    /// Bands that are left out already.
+    pub(super) bad_bands: &'a [usize],
+    /// What one count is.
+    pub(super) units_per_count: f64,
+    /// Variance of the electronic noise, counts².
+    pub(super) var_added: &'a [f64],
+    /// Counts of a blackbody at the lowest temperature.
+    pub(super) least: &'a [f64],
+    /// Counts of a blackbody at the highest temperature, or of the brightest light.
+    pub(super) most: &'a [f64],
+    /// Whether only what is missing or named is bad.
+    pub(super) keeps: bool,
+    /// Whether the scale of the counts is unknown: nothing is too bright then, nor too dark.
+    pub(super) gain: bool,
+}
+
+impl Readings<'_> {
+    /// Finds bad bands and pixels; `named` are those the user names.
+    pub(super) fn find(&self, cube: &Cube, named: &[bool]) -> Result<BadFound> {
+        match cube {
+            Cube::F32(rows) => self.find_in(rows.as_ref(), named),
+            Cube::F64(rows) => self.find_in(rows.as_ref(), named),
+        }
+    }
+
+    fn find_in<S: Sample>(&self, cube: &dyn Rows<S>, named: &[bool]) -> Result<BadFound> {
+        let shape = cube.shape();
+        let looked = some(cube, LOOKED)?;
+        let bands = if self.keeps { Vec::new() } else { self.bands(&looked) };
+        let is_used =
+            |band: &usize| !self.bad_bands.contains(band) && bands.iter().all(|bad| bad.band != *band);
+        let used: Vec<usize> = (0..shape.bands()).filter(is_used).collect();
+        let cut_off = cut_off(&looked, &used);
+        let of_row = |buffer: &mut Vec<S>, row: usize| -> Result<Vec<u8>> {
+            let samples = cube.read(row..row + 1, buffer)?;
+            let pixels = samples.chunks(shape.bands()).enumerate();
+            Ok(pixels
+                .map(|(column, pixel)| {
+                    hadar::stop::check();
+                    let is_named = named.get(row * shape.columns() + column).copied().unwrap_or(false);
+                    if is_named { 6 } else { self.code(pixel, &used, cut_off) }
+                })
+                .collect())
+        };
+        let map = parallel::try_map_with(shape.rows(), Vec::new, of_row)?.concat();
+        let mut counts: BTreeMap<u8, usize> = BTreeMap::new();
+        map.iter().filter(|code| **code > 0).for_each(|code| *counts.entry(*code).or_default() += 1);
+        let of = |(code, pixels): (&u8, &usize)| {
+            let why = NAMES.get(usize::from(*code) - 1)?;
+            Some(BadPixels { why, code: *code, pixels: *pixels })
+        };
+        let pixels: Vec<BadPixels> = counts.iter().filter_map(of).collect();
+        Ok(BadFound { bands, map: if pixels.is_empty() { Vec::new() } else { map }, pixels })
+    }
+
+    fn code<S: Sample>(&self, pixel: &[S], used: &[usize], cut_off: Option<f64>) -> u8 {
+        let value = |band: &usize| -> f64 { pixel[*band].into() };
+        if used.iter().any(|band| !value(band).is_finite()) {
+            return 1;
+        }
+        if self.keeps {
+            return 0;
+        }
+        let Some(first) = used.first().map(value) else { return 0 };
+        if used.iter().all(|band| value(band) == first) {
+            let least: f64 = used.iter().map(|band| self.least[*band]).sum();
+            let noise: f64 = used.iter().map(|band| self.var_added(*band)).sum();
+            if first == 0.0 {
+                return if LEAST_EMISSIVITY * least > FEWEST || noise > 0.0 { 2 } else { 0 };
+            }
+            // The most probable value of counts of mean n has the probability 1/√(2πn).
+            let counts = (first / self.units_per_count).abs();
+            let same = |band: &usize| {
+                let var = counts + self.var_added(*band);
+                (1.0 / (std::f64::consts::TAU * var).sqrt()).min(1.0).ln()
+            };
+            let chance: f64 = used.iter().skip(1).map(same).sum();
+            return if chance < BY_CHANCE.ln() { 3 } else { 0 };
+        }
+        if cut_off.is_some_and(|most| used.iter().any(|band| value(band) >= most)) {
+            return 4;
+        }
+        let too_bright = |band: &usize| {
+            let sigma = (self.most[*band] + self.var_added(*band)).sqrt();
+            value(band) / self.units_per_count > BEYOND * self.most[*band] + 10.0 * sigma + FEWEST
+        };
+        if !self.gain && used.iter().any(too_bright) { 5 } else { 0 }
+    }
+
+    fn var_added(&self, band: usize) -> f64 {
+        self.var_added.get(band).copied().unwrap_or(0.0)
+    }
+
+    /// Bands that no pixel looked at has a reading of.
+    fn bands<S: Sample>(&self, looked: &MemoryCube<S>) -> Vec<BadBand> {
+        let bands = looked.shape().bands();
+        let pixels = looked.samples().len() / bands;
+        let mut found = Vec::new();
+        for band in (0..bands).filter(|band| !self.bad_bands.contains(band)) {
+            let values = || looked.samples().chunks(bands).map(|pixel| -> f64 { pixel[band].into() });
+            let missing = values().filter(|value| !value.is_finite()).count();
+            let mut known: Vec<f64> = values().filter(|value| value.is_finite()).collect();
+            known.sort_by(f64::total_cmp);
+            let median = known.get(known.len() / 2).copied().unwrap_or(f64::NAN);
+            let others = known.iter().filter(|value| **value != median).count();
+            let moves = self.var_added(band) > 0.0 || LEAST_EMISSIVITY * self.least[band] > FEWEST;
+            let why = match () {
+                () if pixels < SAYING => None,
+                () if 2 * missing > pixels => Some("missing"),
+                () if moves && OTHERS * others <= known.len() => Some("stuck"),
+                () => None,
+            };
+            found.extend(why.map(|why| BadBand { band, why }));
+        }
+        // All of them alike is a cube without noise, or nothing at all.
+        let used = bands - self.bad_bands.iter().filter(|band| **band < bands).count();
+        if found.len() >= used { Vec::new() } else { found }
+    }
+}
+
+/// The value at which readings are cut off, if they are.
+fn cut_off<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<f64> {
+    let bands = looked.shape().bands();
+    let all = looked.samples().chunks(bands).flat_map(|pixel| used.iter().map(|band| pixel[*band].into()));
+    let mut values: Vec<f64> = all.filter(|value: &f64| value.is_finite()).collect();
+    values.sort_by(|a, b| b.total_cmp(a));
+    // From the largest down, how many have each: a few beyond the limit are pixels that are bad in another way.
+    let mut beyond = 0;
+    let mut same = values.chunk_by(|a, b| a == b);
+    while let Some(one) = same.next() {
+        if one.len() >= PILED {
+            let next = same.next()?;
+            return (one.len() >= PILED_OVER_NEXT * next.len()).then(|| one[0]);
+        }
+        beyond += one.len();
+        if beyond >= PILED {
+            return None;
+        }
+    }
+    None
+}
+
+/// Some pixels of a cube, `most` at most, evenly in rows and columns.
+pub(super) fn some<S: Sample>(cube: &dyn Rows<S>, most: usize) -> Result<MemoryCube<S>> {
+    let shape = cube.shape();
+    let stride = ((shape.rows() * shape.columns()) as f64 / most as f64).sqrt().ceil().max(1.0) as usize;
+    let [down, across] = [stride.min(shape.rows()), stride.min(shape.columns())];
+    let (mut samples, mut buffer, mut rows, mut columns) = (Vec::new(), Vec::new(), 0, 0);
+    for row in (0..shape.rows()).step_by(down) {
+        let own = cube.read(row..row + 1, &mut buffer)?;
+        columns = 0;
+        for pixel in own.chunks(shape.bands()).step_by(across) {
+            samples.extend_from_slice(pixel);
+            columns += 1;
+        }
+        rows += 1;
+    }
+    MemoryCube::new(Shape::new(rows, columns, shape.bands())?, samples)
+}
+
+/// Which pixels a map in a file names: all that are not 0.
+pub(super) fn named(path: &Path, shape: Shape) -> Result<Vec<bool>> {
+    fn of<S: Sample>(map: &dyn Rows<S>) -> Result<Vec<bool>> {
+        let mut buffer = Vec::new();
+        let samples = map.read(0..map.shape().rows(), &mut buffer)?;
+        Ok(samples.iter().map(|one| (*one).into() != 0.0).collect())
+    }
+    let map = hadar_formats::cube::open(path, None)?;
+    let [found, wanted] = [map.shape(), shape].map(|shape| [shape.rows(), shape.columns()]);
+    if found != wanted || map.shape().bands() != 1 {
+        let found = format!(
+            "the map is {} x {} x {}, the cube {} x {} pixels",
+            found[0],
+            found[1],
+            map.shape().bands(),
+            wanted[0],
+            wanted[1]
+        );
+        return Err(Error::malformed(found, "give one value for each pixel, 0 for good ones").in_file(path));
+    }
+    match &map {
+        Cube::F32(rows) => of(rows.as_ref()),
+        Cube::F64(rows) => of(rows.as_ref()),
+    }
+}
+
+/// The cube with the samples of its dead pixels missing, where nothing is known of it but how many counts a unit is: pixels that are 0
+/// in all bands while the median of those looked at holds [`BRIGHT`] counts.
+pub(super) fn without_dead(cube: Cube, counts_per_unit: f64) -> Result<Cube> {
+    fn is_bright<S: Sample>(cube: &dyn Rows<S>, counts_per_unit: f64) -> Result<bool> {
+        let looked = some(cube, LOOKED)?;
+        let pixels = looked.samples().chunks(looked.shape().bands());
+        let mut sums: Vec<f64> = pixels.map(|pixel| pixel.iter().map(|one| (*one).into()).sum()).collect();
+        let middle = sums.len() / 2;
+        let median = *sums.select_nth_unstable_by(middle, f64::total_cmp).1;
+        Ok(median * counts_per_unit >= BRIGHT)
+    }
+    Ok(match cube {
+        Cube::F32(cube) if is_bright(cube.as_ref(), counts_per_unit)? => Cube::F32(Box::new(WithoutDead(cube))),
+        Cube::F64(cube) if is_bright(cube.as_ref(), counts_per_unit)? => Cube::F64(Box::new(WithoutDead(cube))),
+        other => other,
+    })
+}
+
+/// A cube whose dead pixels have no samples.
+#[derive(Debug)]
+struct WithoutDead<S>(Box<dyn Rows<S>>);
+
+impl<S: Sample> Rows<S> for WithoutDead<S> {
+    fn shape(&self) -> Shape {
+        self.0.shape()
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        let bands = self.shape().bands();
+        let mut own = Vec::new();
+        let samples = self.0.read(rows, &mut own)?;
+        buffer.clear();
+        buffer.extend_from_slice(samples);
+        for pixel in buffer.chunks_mut(bands).filter(|pixel| pixel.iter().all(|one| (*one).into() == 0.0)) {
+            pixel.fill(S::of(f64::NAN));
+        }
+        Ok(buffer)
+    }
+}
+
+/// A cube whose bad pixels have no samples.
+#[derive(Debug)]
+struct WithoutBad<S> {
+    cube: Box<dyn Rows<S>>,
+    map: Vec<u8>,
+}
+
+/// The cube with the samples of bad pixels missing.
+pub(super) fn without(cube: Cube, map: &[u8]) -> Cube {
+    if map.iter().all(|code| *code == 0) {
+        return cube;
+    }
+    let map = map.to_vec();
+    match cube {
+        Cube::F32(cube) => Cube::F32(Box::new(WithoutBad { cube, map })),
+        Cube::F64(cube) => Cube::F64(Box::new(WithoutBad { cube, map })),
+    }
+}
+
+impl<S: Sample> Rows<S> for WithoutBad<S> {
+    fn shape(&self) -> Shape {
+        self.cube.shape()
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        let shape = self.shape();
+        let mut own = Vec::new();
+        let samples = self.cube.read(rows.clone(), &mut own)?;
+        buffer.clear();
+        buffer.extend_from_slice(samples);
+        let codes = self.map.iter().skip(rows.start.saturating_mul(shape.columns()));
+        for (pixel, _) in buffer.chunks_mut(shape.bands()).zip(codes).filter(|(_, code)| **code > 0) {
+            pixel.fill(S::of(f64::NAN));
+        }
+        Ok(buffer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const BANDS: usize = 6;
+
+    fn readings() -> Readings<'static> {
+        Readings {
+            bad_bands: &[],
+            units_per_count: 1.0,
+            var_added: &[],
+            least: &[2000.0; BANDS],
+            most: &[50_000.0; BANDS],
+            keeps: false,
+            gain: false,
+        }
+    }
+
+    fn cube(samples: Vec<f64>) -> Cube {
+        let shape = Shape::new(8, 9, BANDS).unwrap();
+        Cube::F64(Box::new(MemoryCube::new(shape, samples).unwrap()))
+    }
+
+    fn good() -> Vec<f64> {
+        (0..72 * BANDS).map(|i| 5000.0 + (i * 7919 % 613) as f64).collect()
+    }
+
+    proptest! {
+        /// Whatever is put into one pixel, no other one is found to be bad, and no band.
+        #[test]
+        fn a_spoilt_pixel_is_its_own(
+            at in 0_usize..72,
+            value in prop::sample::select(vec![0.0, f64::NAN, f64::INFINITY, 1e36, 1e20, 65535.0, 5000.0]),
+            whole in any::<bool>(),
+        ) {
+            let mut samples = good();
+            let first = at * BANDS;
+            let count = if whole { BANDS } else { 1 };
+            samples[first..first + count].fill(value);
+            let found = readings().find(&cube(samples), &[]).unwrap();
+            prop_assert!(found.bands.is_empty());
+            let bad: Vec<usize> = found.map.iter().enumerate().filter(|(_, code)| **code > 0).map(|(i, _)| i).collect();
+            prop_assert!(bad.iter().all(|i| *i == at), "{bad:?}");
+            if whole {
+                prop_assert_eq!(bad, vec![at]);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_bad_is_named() {
+        let mut samples = good();
+        for pixel in samples.chunks_mut(BANDS) {
+            pixel[2] = 777.0;
+            pixel[4] = f64::NAN;
+        }
+        samples[..BANDS].fill(0.0);
+        samples[BANDS..2 * BANDS].fill(4321.0);
+        samples[2 * BANDS] = 1e9;
+        let mut named = vec![false; 72];
+        named[70] = true;
+        let found = readings().find(&cube(samples), &named).unwrap();
+        assert_eq!(found.bands, [BadBand { band: 2, why: "stuck" }, BadBand { band: 4, why: "missing" }]);
+        assert_eq!(found.map[..3], [2, 3, 5]);
+        assert_eq!((found.map[70], found.map.iter().filter(|code| **code > 0).count()), (6, 4));
+    }
+
+    #[test]
+    fn readings_that_are_cut_off_are_found() {
+        let mut samples = good();
+        samples.iter_mut().for_each(|n| *n = n.min(5400.0));
+        let found = readings().find(&cube(samples), &[]).unwrap();
+        assert_eq!(found.pixels.iter().map(|one| one.why).collect::<Vec<_>>(), ["saturated"]);
+    }
+}
