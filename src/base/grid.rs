@@ -75,8 +75,14 @@ impl Grid {
     }
 }
 
+/// Cells of a line; a comma between two quotes is a part of its cell.
 fn cells(line: &str) -> impl Iterator<Item = &str> {
-    line.split(',').map(|cell| cell.trim().trim_matches('"').trim())
+    let mut is_quoted = false;
+    let parts = line.split(move |sign| {
+        is_quoted ^= sign == '"';
+        sign == ',' && !is_quoted
+    });
+    parts.map(|cell| cell.trim().trim_matches('"').trim())
 }
 
 fn check_header(header: &[String], line: &str) -> Result<()> {
@@ -128,5 +134,17 @@ pub fn number(cell: &str) -> Result<f64> {
                 "write a number such as 0.95 or delete the row",
             ))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comma_between_quotes_is_a_part_of_the_name() {
+        let grid = Grid::parse("wavenumber_cm1,\"road, texture 0\",car\n720,0.9,0.95\n").unwrap();
+        assert_eq!(grid.header, ["wavenumber_cm1", "road, texture 0", "car"]);
+        assert_eq!(grid.rows[0].1, [720.0, 0.9, 0.95]);
     }
 }

@@ -16,6 +16,7 @@ mod content;
 mod ecostress;
 mod envi;
 mod header;
+mod holes;
 mod jcamp;
 mod layout;
 mod names;

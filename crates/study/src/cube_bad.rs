@@ -295,8 +295,12 @@ pub(super) fn without_dead(cube: Cube, counts_per_unit: f64) -> Result<Cube> {
         Ok(median * counts_per_unit >= BRIGHT)
     }
     Ok(match cube {
-        Cube::F32(cube) if is_bright(cube.as_ref(), counts_per_unit)? => Cube::F32(Box::new(WithoutDead(cube))),
-        Cube::F64(cube) if is_bright(cube.as_ref(), counts_per_unit)? => Cube::F64(Box::new(WithoutDead(cube))),
+        Cube::F32(cube) if is_bright(cube.as_ref(), counts_per_unit)? => {
+            Cube::F32(Box::new(WithoutDead(cube)))
+        }
+        Cube::F64(cube) if is_bright(cube.as_ref(), counts_per_unit)? => {
+            Cube::F64(Box::new(WithoutDead(cube)))
+        }
         other => other,
     })
 }

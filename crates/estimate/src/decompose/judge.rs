@@ -7,7 +7,7 @@
 //! * Σᵢ ρᵢ_w has the variance Σᵢ kᵢ_w, kᵢ_w = 1 − ΣQᵢ_w²: the residual that pixels have in common in band w;
 //! * along a cause θ ([`super::cause`]), with dᵢ its slope without what temperature and lighting explain, the score is s = Σ dᵢ·ρᵢ and the
 //!   information J = Σ dᵢ·dᵢ. θ̂ = J⁻¹s is the estimate of θ together with all temperatures and lightings (one step of maximum
-//!   likelihood), s²/J what χ² gains by it.
+//!   likelihood), s²/J what χ² gains by it; a temperature moves by θ̂ (g·∂N/∂θ/σ)/|g| of its deviations, g its row.
 //!
 //! Pixels that fit nothing by themselves (p below [`NO_FIT`]) are left out of the first sums, as a material that is missing is no fault
 //! of the rest; the p of what is left is uniform from there on. In the second sums, for where most pixels fit nothing, they count
@@ -57,6 +57,8 @@ pub struct Together {
     pub score: Vec<f64>,
     /// J, row after row.
     pub information: Vec<f64>,
+    /// Σ of the squares of what a unit of each cause does to a temperature, in its deviations.
+    pub moved: Vec<f64>,
 }
 
 impl Together {
@@ -65,6 +67,7 @@ impl Together {
             residual: vec![[0.0; 2]; bands],
             score: vec![0.0; causes],
             information: vec![0.0; causes * causes],
+            moved: vec![0.0; causes],
             ..Self::default()
         }
     }
@@ -78,6 +81,7 @@ impl Together {
         pairs.for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, from)| *to += from));
         self.score.iter_mut().zip(&other.score).for_each(|(to, from)| *to += from);
         self.information.iter_mut().zip(&other.information).for_each(|(to, from)| *to += from);
+        self.moved.iter_mut().zip(&other.moved).for_each(|(to, from)| *to += from);
     }
 
     /// Estimate of a cause alone, and what χ² gains by it; nothing where the pixels do not tell.
@@ -86,6 +90,14 @@ impl Together {
         let information = *self.information.get(cause * (self.score.len() + 1))?;
         let score = *self.score.get(cause)?;
         (information > 0.0).then(|| (score / information, score * score / information))
+    }
+
+    /// By how many of its deviations a temperature moves where a cause is as it is estimated, rms over the pixels.
+    #[must_use]
+    pub fn temperature_moved(&self, cause: usize) -> f64 {
+        let estimate = self.alone(cause).map_or(0.0, |(estimate, _)| estimate.abs());
+        let square = self.moved.get(cause).copied().unwrap_or(0.0) / self.pixels.max(1) as f64;
+        estimate * square.sqrt()
     }
 
     /// Deviations of the mean p-value below that of a right model.
@@ -178,7 +190,7 @@ impl Judge<'_> {
             return;
         }
         let m = usize::from(material);
-        let Room { tangent, lit, rho, slopes } = room;
+        let Room { tangent, lit, rho, slopes, moved } = room;
         lit.clear();
         lit.extend(maps.lighting[i * self.lights..][..self.lights].iter().map(|v| f64::from(*v)));
         // What nothing scatters changes nothing.
@@ -199,8 +211,12 @@ impl Judge<'_> {
             return;
         }
         slopes.resize_with(self.effects.len(), Vec::new);
+        let row = tangent.row(&tangents.of_temperature()).unwrap_or_default();
+        let length = dot(&row, &row).sqrt();
+        moved.clear();
         for (effect, slope) in self.effects.iter().zip(slopes.iter_mut()) {
             effect.slope(tangents, (m, lit), tangent, slope);
+            moved.push(if length > 0.0 { dot(&row, slope) / length } else { 0.0 });
             tangent.take_out(slope);
         }
         let weight = ((freedom + FAR * (2.0 * freedom).sqrt()) / chi_square).min(1.0);
@@ -216,6 +232,7 @@ impl Judge<'_> {
             }
             for (a, one) in slopes.iter().enumerate() {
                 sums.score[a] += weight * dot(one, rho);
+                sums.moved[a] += moved[a] * moved[a];
                 for (b, other) in slopes.iter().enumerate() {
                     sums.information[a * slopes.len() + b] += weight * dot(one, other);
                 }
@@ -231,4 +248,8 @@ struct Room {
     lit: Vec<f64>,
     rho: Vec<f64>,
     slopes: Vec<Vec<f64>>,
+    moved: Vec<f64>,
 }
+
+#[cfg(test)]
+mod tests;

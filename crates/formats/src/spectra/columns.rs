@@ -2,6 +2,7 @@
 
 use super::content::{of_all, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
+use super::holes;
 use super::layout::{Sheet, is_index};
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result, check};
@@ -71,6 +72,13 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         };
         let share = if values.percent { " in percent" } else { "" };
         let mut warnings = Vec::new();
+        if let Some((low, high)) = table.range_cm1()
+            && table.rows().count() < sheet.grid.rows.len()
+        {
+            warnings.push(format!(
+                "rows of exactly 0 at the ends were taken for padding: it reaches from {low:.0} to {high:.0} cm^-1"
+            ));
+        }
         if let Some((_, high)) = sheet.ranges.get(*column)
             && values.percent
         {
@@ -332,7 +340,17 @@ impl<'a> Columns<'a> {
                 Err(error.for_key(key).on_line(*line))
             })
             .collect::<Result<Vec<_>>>()?;
-        Table::new(&rows)
+        let fractions: Vec<f64> =
+            self.grid.rows.iter().map(|(_, cells)| cells.get(column).copied().unwrap_or(f64::NAN)).collect();
+        let held = holes::without_padding(&fractions, if percent { 100.0 } else { 1.0 });
+        if let Some(hole) = holes::hole(&fractions, held.clone(), if percent { 100.0 } else { 1.0 }) {
+            let line = self.grid.rows.get(hole.start).map_or(0, |(line, _)| *line);
+            let found = format!("{} rows of exactly 0 between values that are not", hole.len());
+            let error =
+                Error::malformed(found, "leave rows out where nothing was measured, or write what is there");
+            return Err(error.for_key(key).on_line(line));
+        }
+        Table::new(rows.get(held).unwrap_or(&rows))
     }
 
     /// What a fraction must be, and what to write if it is percent.

@@ -51,6 +51,14 @@ pub(super) fn text(model: &ModelJudged) -> String {
             let _ = writeln!(out, "    {:>10}  {}", significant(row.gain_chi_square, 3), cause(row));
         }
         out.push_str("  the deviations of the temperatures hold what these would do\n");
+    } else if let Some(most) = shown.first() {
+        let moved = most.temperature_moved.unwrap_or(0.0);
+        let _ = writeln!(
+            out,
+            "  seen, and too little to matter: {}; temperatures move by {} of their deviations",
+            cause(most),
+            significant(moved, 1)
+        );
     }
     out.push('\n');
     out
