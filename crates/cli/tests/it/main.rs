@@ -12,6 +12,7 @@ mod classes;
 mod cli;
 mod cli_mistakes;
 mod companion;
+mod cube_judges;
 mod cubes;
 mod decompose;
 mod decompose_by_rows;
