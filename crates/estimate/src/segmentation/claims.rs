@@ -127,7 +127,8 @@ pub fn claims(
 
 /// What every pixel is by its own candidates, and what the shared ones may be a part of.
 fn own<'c>(possible: &[u64], common: &[u64], categories: &'c Categories) -> (Vec<Own>, Vec<&'c [Candidate]>) {
-    let (mut sets, mut shared): (Vec<(u64, Option<usize>)>, Vec<&[Candidate]>) = Default::default();
+    let mut sets: Vec<(u64, Option<usize>)> = Vec::new();
+    let mut shared: Vec<&[Candidate]> = Vec::new();
     let mut place = |set: u64| {
         if let Some((_, place)) = sets.iter().find(|(one, _)| *one == set) {
             return *place;
@@ -226,7 +227,7 @@ fn beside(i: usize, columns: usize, pixels: usize) -> [Option<usize>; 4] {
     [
         i.checked_sub(columns),
         (!i.is_multiple_of(columns)).then(|| i - 1),
-        ((i + 1) % columns != 0).then_some(i + 1),
+        (!(i + 1).is_multiple_of(columns)).then_some(i + 1),
         Some(i + columns).filter(|below| *below < pixels),
     ]
 }

@@ -2,7 +2,8 @@
 //!
 //! It cannot where one of its materials is among what 99 % of the posterior leave, or would be were its prior a half
 //! ([`hadar_estimate::decompose::possible`]); where nothing fits, nothing tells or a sample is missing, it cannot either. The bound on how
-//! many of its pixels are missed is that of the model: if it and the library hold, one in a hundred of the pixels, not of the objects.
+//! many of its pixels are missed is that of the model: if it and the library hold, one in a hundred of the pixels that it fills, not of the
+//! objects; a pixel of several surfaces is none of the model, and fits something else now and then.
 
 use super::DecomposeStudy;
 use hadar::error::Result;
@@ -22,8 +23,8 @@ pub struct SafetyRow {
     pub share: f64,
     /// Connected parts of them (by a side or a corner), of any size, the largest first.
     pub objects: Vec<NotExcluded>,
-    /// Share of the pixels of the category in which it is excluded all the same, at most, if the model and the library hold; a bound of
-    /// pixels, not of objects.
+    /// Share of the pixels filled by the category in which it is excluded all the same, at most, if the model and the library hold; a bound
+    /// of pixels, not of objects.
     pub bound_missed: f64,
     /// 1 where it cannot be excluded, `[row][column]`.
     #[serde(skip)]

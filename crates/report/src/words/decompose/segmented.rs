@@ -31,7 +31,7 @@ pub(super) fn safety(found: &Segmented) -> String {
         };
         let _ = writeln!(
             out,
-            "  If the model and the library hold, at most {} of the pixels of {} {name} are excluded: of pixels, not of objects.",
+            "  If the model and the library hold, at most {} of the pixels that {} {name} fills are excluded: of pixels, not of objects.",
             share(row.bound_missed),
             article.to_lowercase()
         );
