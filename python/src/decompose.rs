@@ -81,6 +81,7 @@ pub(crate) fn decompose<'py>(
             .map(|(relative, correlation_cm1)| LibraryError { relative, correlation_cm1 }),
         skipping: if skipping { Skipping::On } else { Skipping::Off },
         spatial,
+        ..Options::default()
     };
     let setting = Setting {
         bands: &bands,

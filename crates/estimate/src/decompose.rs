@@ -10,7 +10,7 @@
 //! * [`Method`], [`decompose_by`]: methods that it is compared with; [`decompose_by_rows`]: maps that are too large to be kept; [`inverse_error`]: by how much one of them errs;
 //! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
 //! * [`distil()`]: what of the light on a surface is the sky's; [`texture_information()`]: what cube and textures tell of a place;
-//! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
+//! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it; [`possible`]: the categories that it may be of.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
 //! truth may be a little way off; those of a prior over the image are its own ([`SpatialPrior`]).
@@ -32,6 +32,7 @@ mod maps;
 mod method;
 mod model;
 mod pixel;
+pub mod possible;
 mod screen;
 mod space;
 mod spatial;

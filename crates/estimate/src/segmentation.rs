@@ -5,6 +5,7 @@
 //! whether it is *enclosed* where it is a part of a category.
 //!
 //! * [`Categories`]: which material is where; [`Rule`], [`segment`]: a map of materials to a map of categories;
+//! * [`claims`], [`groups`]: the categories that pixels are told to be, where they are, and objects of what pixels may be;
 //! * [`Agreement`]: a map against the truth, category by category; [`ByBrightness`]: what brightness alone could say;
 //! * [`objects`]: the connected parts of each category.
 //!
@@ -15,7 +16,9 @@
 mod agreement;
 mod brightness;
 mod categories;
+mod claims;
 mod components;
+mod groups;
 mod object;
 mod raster;
 mod rectangle;
@@ -25,6 +28,8 @@ mod smoothing;
 pub use agreement::Agreement;
 pub use brightness::ByBrightness;
 pub use categories::{Categories, MOST_CATEGORIES, NO_CATEGORY, Part};
+pub use claims::{Claims, Told, claims};
+pub use groups::{Group, Groups, groups};
 pub use object::{Object, Objects, objects};
 pub use smoothing::smoothed;
 
@@ -49,7 +54,8 @@ pub enum Rule {
     Regions,
 }
 
-/// Categories of a map of materials `[row][column]`, not yet smoothed ([`smoothed`]).
+/// Categories of a map of materials `[row][column]`, not yet smoothed ([`smoothed`]). The materials are taken for true: of materials that are only
+/// the likeliest these are the likeliest categories, and no finding ([`claims`]).
 ///
 /// # Errors
 /// A map that is no rectangle of so many columns.

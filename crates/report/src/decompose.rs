@@ -54,9 +54,14 @@ pub fn bundle(result: &Decomposed, room: Option<&Path>) -> Result<Bundle> {
     let pixels = result.kept.every(shown.stride, result.shape)?;
     if let Some(found) = &result.segmentation {
         bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
+        bundle.add("likeliest_category.npy", npy_map(&size, &found.likeliest)?);
         bundle.add_table("categories.csv", segmented::categories(found))?;
         bundle.add_table("objects.csv", segmented::objects(found))?;
         bundle.add_plots(&[segmented::plot(found, &pixels, shown)])?;
+        for (row, name) in found.safety.iter().zip(segmented::files(found)) {
+            bundle.add(format!("{name}.npy"), npy_map(&size, &row.map)?);
+            bundle.add_plots(&[segmented::not_excluded(found, row, name, &pixels, shown)])?;
+        }
     }
     if let Some(of_sky) = &result.vision.distilled {
         bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);

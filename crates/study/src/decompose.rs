@@ -6,6 +6,7 @@ mod kept;
 mod looked_up;
 mod ranks;
 mod results;
+mod safety;
 mod segmented;
 mod truth;
 mod vision;
@@ -17,7 +18,8 @@ pub use looked_up::DecomposeStudy;
 pub use ranks::{Count, ranked};
 pub(super) use results::flags;
 pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
-pub use segmented::{CategoryRow, ObjectRow, Segmented};
+pub use safety::{NotExcluded, SafetyRow};
+pub use segmented::{CategoryRow, ObjectRow, PossibleRow, Segmented};
 pub(super) use truth::{There, Truth};
 pub use vision::{DistilledTexture, Vision, hues_deg};
 
@@ -42,6 +44,9 @@ const KEPT_PIXELS: usize = 1 << 20;
 const KEPT: u64 = 150;
 const KEPT_LIGHT: u64 = 14;
 const KEPT_BESIDE_OTHERS: u64 = 400;
+/// The same for sets of categories, and for each category.
+const KEPT_SETS: u64 = 100;
+const KEPT_CATEGORY: u64 = 4;
 
 impl DecomposeStudy {
     /// Whether the maps are better kept in files: they are many, and nothing needs all pixels together.
@@ -175,6 +180,11 @@ impl DecomposeStudy {
             None => KEPT + KEPT_LIGHT * self.lights.len() as u64,
             Some(_) => KEPT_BESIDE_OTHERS,
         };
+        let per_pixel = per_pixel
+            + match self.categories.len() as u64 {
+                0 => 0,
+                count => KEPT_SETS + KEPT_CATEGORY * count,
+            };
         let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
         let instead = "cut the cube into parts of fewer rows";
         memory::promise(bytes, "the maps of all pixels", instead)
@@ -203,6 +213,7 @@ impl DecomposeStudy {
             relative,
             correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
         });
-        Options { prior: self.prior.clone(), library_error, skipping, spatial }
+        let categories = if self.categories.is_empty() { Vec::new() } else { self.categories.sets() };
+        Options { prior: self.prior.clone(), library_error, skipping, spatial, categories }
     }
 }

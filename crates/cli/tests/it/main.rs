@@ -45,6 +45,7 @@ mod rule;
 mod rule_clauses;
 mod rule_mistakes;
 mod rule_uncertainty;
+mod safety;
 mod segmentation;
 mod serve;
 mod shell;

@@ -78,25 +78,38 @@ fn with(scenario: &str) -> Folder {
 }
 
 #[test]
-fn a_pane_in_the_wall_is_the_house_and_one_alone_the_lamp() {
+fn a_pane_in_the_wall_is_the_house_and_one_beside_what_is_missing_is_open() {
     let folder = with(SCENARIO);
     let found = folder.json(&["decompose", "a.toml", "--out", "out"]);
     let segmentation = &found["segmentation"];
     assert_eq!(segmentation["rule"], "regions");
     let counts = |key: &str| [0, 1].map(|i: usize| segmentation["categories"][i][key].as_u64().unwrap());
-    assert_eq!((counts("pixels"), counts("objects")), ([25, 3], [1, 1]));
-    assert_eq!(segmentation["none"], 7);
+    assert_eq!((counts("pixels"), counts("objects")), ([25, 0], [1, 0]));
+    // The panes in the wall are no less panes for being the house's: only their neighbours say it.
+    assert_eq!(counts("decided"), [21, 0]);
+    assert_eq!((&segmentation["none"], &segmentation["undecided"]), (&0.into(), &10.into()));
     let lamp = &segmentation["objects"][1];
     assert_eq!(
         (lamp["category"].as_str(), &lamp["rows"], &lamp["columns"]),
-        (Some("lamp"), &serde_json::json!([1, 4]), &serde_json::json!([6, 7]))
+        (Some("house or lamp"), &serde_json::json!([1, 4]), &serde_json::json!([6, 7]))
     );
+    let half = |name: &str| serde_json::json!({ "category": name, "probability": 0.5 });
+    assert_eq!(lamp["possible"], serde_json::json!([half("house"), half("lamp")]));
     // The middle one of its three pixels, which stand a row apart.
     assert!((lamp["temperature_median_k"].as_f64().unwrap() - 287.0).abs() < 1e-3, "{lamp}");
-    assert_eq!(segmentation["agreement"]["mean_iou"], 1.0);
-    assert_eq!(segmentation["agreement"]["pixels"], 35);
+    // What is undecided is not right; that it is the lamp is only the likeliest.
+    let agreement = &segmentation["agreement"];
+    assert_eq!((&agreement["mean_iou"], &agreement["pixels"]), (&0.5.into(), &35.into()));
+    assert_eq!(
+        (&agreement["right"], &agreement["undecided"]),
+        (&(25.0 / 35.0).into(), &(10.0 / 35.0).into())
+    );
+    assert_eq!(segmentation["agreement_of_likeliest"]["mean_iou"], 1.0);
     assert!(segmentation["agreement_by_brightness"]["mean_iou"].as_f64().unwrap() <= 1.0);
+    let likeliest = fs::read(folder.path().join("out/likeliest_category.npy")).unwrap();
+    assert_eq!(&likeliest[128 + 7..128 + 14], [0, 0, 0, 0, 0, 255, 1]);
     let map = fs::read(folder.path().join("out/segmentation.npy")).unwrap();
+    assert_eq!(&map[128 + 7..128 + 14], [0, 0, 0, 0, 0, 255, 255]);
     assert_eq!(&map[128..135], [0, 0, 0, 0, 0, 255, 255]);
     for name in ["segmentation.png", "segmentation.csv", "categories.csv", "objects.csv"] {
         assert!(folder.path().join("out").join(name).exists(), "{name}");
@@ -131,6 +144,8 @@ fn what_is_wrong_is_said_with_its_line() {
         ("labels = [3]\n", "", "category[1]: no labels"),
         ("labels = [3]", "labels = [3.5]", "category[1].labels[0]: "),
         ("smallest_object = 2", "smallest_object = 0", "segmentation.smallest_object: "),
+        ("enclosed = [\"pane\"]", "safety = 1", "category[0].safety: "),
+        ("name = \"lamp\"", "name = \"undecided\"", "category[1].name: `undecided`, which says"),
         ("smoothing = false", "rule = \"best\"", "segmentation.rule: "),
         ("enclosed = [\"pane\"]", "surfaces = [\"wall\"]", "category[0]: there is no key `surfaces`"),
     ] {

@@ -8,6 +8,7 @@
 
 use super::model::{MOST_SURROUNDINGS, Setting};
 use super::pixel::{NO_MATERIAL, Pixel, flag};
+use super::possible::Possible;
 use hadar::planck;
 use hadar::root::crossing;
 use hadar::spectrum::Bands;
@@ -43,6 +44,7 @@ impl<'a> GreyBody<'a> {
             posterior: f64::NAN,
             candidates: 0,
             flags: if temperature_k.is_some() { 0 } else { flag::TEMPERATURE_UNKNOWN },
+            possible: Possible::ANYTHING,
         }
     }
 

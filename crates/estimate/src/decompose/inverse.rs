@@ -19,6 +19,7 @@
 
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{NO_MATERIAL, Pixel, flag};
+use super::possible::Possible;
 use hadar::error::Result;
 use hadar::planck;
 use hadar::spectrum::Bands;
@@ -97,6 +98,7 @@ impl<'a> Inverse<'a> {
             posterior: f64::NAN,
             candidates: 0,
             flags: flag::TEMPERATURE_UNKNOWN,
+            possible: Possible::ANYTHING,
         };
         if let Some((m, solved)) = best {
             pixel.material = m as u16;

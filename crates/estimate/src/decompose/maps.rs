@@ -6,6 +6,7 @@
 use super::library_error::{Errors, LibraryError};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{NO_MATERIAL, Pixel, Room, Spared, Task, flag};
+use super::possible::{ANYTHING, Members, Possible};
 use super::screen::Screen;
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use hadar::cube::{CubeRef, Rows, Sample};
@@ -25,6 +26,8 @@ pub struct Options {
     pub skipping: Skipping,
     /// What neighbours tell about a pixel; each is for itself if silent.
     pub spatial: Option<SpatialPrior>,
+    /// The categories of each material, a bit each ([`super::possible`]); empty where none are asked for.
+    pub categories: Vec<u64>,
 }
 
 /// What is found of every pixel, `[row][column]`.
@@ -46,6 +49,14 @@ pub struct Maps {
     pub candidates: Vec<u16>,
     /// [`Pixel::flags`].
     pub flags: Vec<u8>,
+    /// [`Possible::at_95`]; empty without categories, and by methods without a likelihood.
+    pub possible_95: Vec<u64>,
+    /// [`Possible::common_95`], likewise.
+    pub common_95: Vec<u64>,
+    /// [`Possible::at_99`], likewise.
+    pub possible_99: Vec<u64>,
+    /// Shares of the categories in the posterior by the counts of the pixel alone, `[row][column][category]`; NaN where anything is possible.
+    pub category_shares: Vec<f32>,
     /// What was spared.
     pub spared: Spared,
     /// What a prior over the image did, if there was one.
@@ -95,10 +106,12 @@ fn whole<S: Sample>(
         |room: &mut Room, sample: &[S], same: Option<Pixel>, spared: &mut Spared, kept: &mut KeptRow| {
             if let Some(same) = same.filter(|_| task.skip && options.spatial.is_none()) {
                 spared.equal += setting.library.len() as u64;
+                task.share(None, kept);
                 return same;
             }
             task.load(sample, per_unit, room);
             let pixel = task.pixel(room, spared);
+            task.share(Some((&pixel, &room.shares)), kept);
             if options.spatial.is_some() {
                 task.keep(&pixel, room, kept);
             }
@@ -106,15 +119,18 @@ fn whole<S: Sample>(
         };
     let surroundings = setting.surroundings.len();
     let Some(prior) = &options.spatial else {
-        return by_rows.in_blocks(blocks, || task.room(), pixel, surroundings);
+        return by_rows.in_blocks(blocks, || task.room(), pixel, surroundings, task.members.is_some());
     };
     let rows = by_rows.rows(0..cube.shape().rows(), &|| task.room(), &pixel, &|pixels| pixels)?;
     let spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
     let (pixels, kept): (Vec<Vec<Pixel>>, Vec<KeptRow>) =
         rows.into_iter().map(|(pixels, _, kept)| (pixels, kept)).unzip();
+    let shares = kept.iter().flat_map(|row| row.shares.iter().copied()).collect();
     let (mut pixels, kept) = (pixels.concat(), Kept::of_rows(kept));
     let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
-    blocks.1(0, Maps { spared: spared + more, spatial: Some(about), ..Maps::of(&pixels, surroundings) })
+    let mut maps = Maps::of(&pixels, surroundings, task.members.is_some());
+    (maps.spared, maps.spatial, maps.category_shares) = (spared + more, Some(about), shares);
+    blocks.1(0, maps)
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -142,12 +158,14 @@ impl<S: Sample> ByRows<'_, S> {
         room: impl Fn() -> R + Sync,
         pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut KeptRow) -> Pixel + Sync,
         surroundings: usize,
+        categories: bool,
     ) -> Result<()> {
         let rows = self.cube.shape().rows();
         let height = height.clamp(1, rows);
         for first in (0..rows).step_by(height) {
             let block = first..rows.min(first + height);
-            let block = self.rows(block, &room, &pixel, &|pixels| Maps::of(&pixels, surroundings))?;
+            let block =
+                self.rows(block, &room, &pixel, &|pixels| Maps::of(&pixels, surroundings, categories))?;
             take(first, Maps::joined(block))?;
         }
         Ok(())
@@ -210,23 +228,38 @@ impl Task {
         if let Some(wrong) = prior.iter().find(|p| !(**p > 0.0 && p.is_finite())) {
             return Err(Error::out_of_range("prior probability", *wrong, "", "above 0"));
         }
-        let (mut kinds, mut alike): (Vec<usize>, Vec<usize>) = Default::default();
+        let (mut kinds, mut alike, mut kind_of): (Vec<usize>, Vec<usize>, Vec<usize>) = Default::default();
         for m in 0..materials {
             let same =
                 |&first: &usize| setting.library[first] == setting.library[m] && prior[first] == prior[m];
             match kinds.iter().position(same) {
-                Some(kind) => alike[kind] += 1,
+                Some(kind) => {
+                    alike[kind] += 1;
+                    kind_of.push(kind);
+                }
                 None => {
+                    kind_of.push(kinds.len());
                     kinds.push(m);
                     alike.push(1);
                 }
             }
         }
         let most = prior.iter().copied().fold(0.0, f64::max);
-        let handicap = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
+        let handicap: Vec<f64> = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
         let screen = (!model.gain).then(|| Screen::new(&model, &kinds));
         let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
-        Ok(Self { errors, model, screen, kinds, alike, handicap, skip: options.skipping.skips() })
+        let members = Members::new(&options.categories, &kind_of, &alike, &handicap)?;
+        Ok(Self { errors, model, screen, members, kinds, alike, handicap, skip: options.skipping.skips() })
+    }
+
+    /// Keeps the shares of the categories of a pixel, or those of the pixel before once more.
+    fn share(&self, of: Option<(&Pixel, &Vec<f32>)>, kept: &mut KeptRow) {
+        let Some(Members { count, .. }) = self.members else { return };
+        match of {
+            Some((pixel, shares)) if pixel.possible != Possible::ANYTHING => kept.shares.extend(shares),
+            Some(_) => kept.shares.extend(std::iter::repeat_n(f32::NAN, count)),
+            None => kept.shares.extend_from_within(kept.shares.len().saturating_sub(count)..),
+        }
     }
 }
 
@@ -241,6 +274,17 @@ impl Maps {
             && flags & (flag::NO_FIT | flag::TEMPERATURE_AT_LIMIT) == 0
     }
 
+    /// The categories that pixel i may be of; anything where that is not known.
+    #[must_use]
+    pub fn possible(&self, i: usize) -> Possible {
+        let of = |sets: &[u64]| sets.get(i).copied().unwrap_or(ANYTHING);
+        Possible {
+            at_95: of(&self.possible_95),
+            common_95: of(&self.common_95),
+            at_99: of(&self.possible_99),
+        }
+    }
+
     /// The materials, [`NO_MATERIAL`] also where none of the library fits.
     #[must_use]
     pub fn fitting_material(&self) -> Vec<u16> {
@@ -252,7 +296,7 @@ impl Maps {
     /// The maps of rows, one below the other.
     fn joined(rows: Vec<Row<Self>>) -> Self {
         let mut all = Self::default();
-        for (row, spared, _) in rows {
+        for (row, spared, kept) in rows {
             all.material.extend(row.material);
             all.temperature_k.extend(row.temperature_k);
             all.temperature_sigma_k.extend(row.temperature_sigma_k);
@@ -261,13 +305,20 @@ impl Maps {
             all.posterior.extend(row.posterior);
             all.candidates.extend(row.candidates);
             all.flags.extend(row.flags);
+            all.possible_95.extend(row.possible_95);
+            all.common_95.extend(row.common_95);
+            all.possible_99.extend(row.possible_99);
+            all.category_shares.extend(kept.shares);
             all.spared = all.spared + spared;
         }
         all
     }
 
-    fn of(pixels: &[Pixel], surroundings: usize) -> Self {
+    fn of(pixels: &[Pixel], surroundings: usize, categories: bool) -> Self {
         let all = || pixels.iter();
+        let possible = |of: fn(&Possible) -> u64| -> Vec<u64> {
+            if categories { all().map(|p| of(&p.possible)).collect() } else { Vec::new() }
+        };
         let mut lighting = Vec::with_capacity(pixels.len() * surroundings);
         all().for_each(|p| {
             lighting.extend(p.lighting[..surroundings.min(MOST_SURROUNDINGS)].iter().map(|v| *v as f32))
@@ -281,6 +332,9 @@ impl Maps {
             posterior: all().map(|p| p.posterior as f32).collect(),
             candidates: all().map(|p| p.candidates).collect(),
             flags: all().map(|p| p.flags).collect(),
+            possible_95: possible(|one| one.at_95),
+            common_95: possible(|one| one.common_95),
+            possible_99: possible(|one| one.at_99),
             ..Self::default()
         }
     }

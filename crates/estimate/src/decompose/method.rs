@@ -145,7 +145,7 @@ fn compared<S: Sample>(
             true => pixel(room),
             false => Pixel::SKIPPED,
         };
-        by_rows.in_blocks((height, &mut *take), Vec::new, own, setting.surroundings.len())
+        by_rows.in_blocks((height, &mut *take), Vec::new, own, setting.surroundings.len(), false)
     };
     match method {
         Method::GreyBody => {

@@ -10,6 +10,7 @@ use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
 use super::kernel::{Asked, Sums, contrast, sums};
 use super::library_error::{Errors, Workplace};
 use super::model::{MOST_SURROUNDINGS, Model};
+use super::possible::{Members, Possible};
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
 use hadar::cube::Sample;
@@ -28,7 +29,7 @@ const CONTRAST: f64 = 16.0;
 /// Deviation of a lighting factor from which on it could be anything.
 const ANY_LIGHTING: f64 = 1.0;
 /// Posteriors that are the same.
-const TIE: f64 = 1e-9;
+pub(super) const TIE: f64 = 1e-9;
 
 /// What is said of a pixel besides its numbers: bits of `flags`.
 pub mod flag {
@@ -83,6 +84,8 @@ pub struct Pixel {
     pub candidates: u16,
     /// Bits of [`flag`].
     pub flags: u8,
+    /// The categories that it may be of; anything where no categories are given.
+    pub possible: Possible,
 }
 
 impl Pixel {
@@ -96,6 +99,7 @@ impl Pixel {
         posterior: 0.0,
         candidates: 0,
         flags: flag::SKIPPED,
+        possible: Possible::ANYTHING,
     };
 }
 
@@ -154,6 +158,8 @@ pub(super) struct Task {
     pub(super) handicap: Vec<f64>,
     /// Errors of the library.
     pub(super) errors: Option<Errors>,
+    /// What its materials are parts of, where categories are given.
+    pub(super) members: Option<Members>,
     /// Whether bounds exclude materials.
     pub(super) skip: bool,
 }
@@ -170,6 +176,8 @@ pub(super) struct Room {
     bounds: Vec<(f64, usize)>,
     /// Kinds that count of the pixel at hand, the best first.
     pub(super) fits: Vec<(usize, Fit)>,
+    /// Shares of the categories in the posterior of the pixel at hand.
+    pub(super) shares: Vec<f32>,
 }
 
 impl Task {
@@ -184,6 +192,7 @@ impl Task {
             mean: vec![0.0; width],
             bounds: Vec::with_capacity(self.kinds.len()),
             fits: Vec::with_capacity(self.kinds.len()),
+            shares: Vec::new(),
         }
     }
 
@@ -381,7 +390,7 @@ impl Task {
         let total: f64 =
             room.fits.iter().map(|(kind, one)| self.alike[*kind] as f64 * weight(one, &fit)).sum();
         // The fewest that hold the share, and all that are as probable as the last of them.
-        let (mut held, mut candidates, mut last) = (0.0, 0, 0.0);
+        let (mut held, mut candidates, mut last, mut fits) = (0.0, 0, 0.0, 0);
         for (kind, one) in &room.fits {
             let each = weight(one, &fit) / total;
             if held >= CANDIDATE_SHARE && each < last * (1.0 - TIE) {
@@ -389,8 +398,12 @@ impl Task {
             }
             held += each * self.alike[*kind] as f64;
             candidates += self.alike[*kind];
+            fits += 1;
             last = each;
         }
+        let possible = self.members.as_ref().map(|members| {
+            members.possible(&room.fits, |one| weight(one, &fit) / total, fits, &mut room.shares)
+        });
         let m = self.kinds[kind];
         let (fit, looks) = match &self.errors {
             None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
@@ -430,6 +443,7 @@ impl Task {
         raise(candidates > 1, flag::UNDECIDED);
         raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
         let nothing = f64::NAN;
+        let is_told = flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0;
         Pixel {
             material: if no_information { NO_MATERIAL } else { m as u16 },
             temperature_k: if no_temperature { nothing } else { fit.state.temperature_k },
@@ -439,6 +453,7 @@ impl Task {
             posterior: 1.0 / total,
             candidates: candidates as u16,
             flags,
+            possible: possible.filter(|_| is_told).unwrap_or(Possible::ANYTHING),
         }
     }
 }

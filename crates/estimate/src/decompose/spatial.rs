@@ -18,6 +18,7 @@ pub(super) use kept::{Kept, KeptRow};
 
 use self::potts::Beliefs;
 use super::pixel::{CANDIDATE_SHARE, Pixel, Spared, Task, flag};
+use super::possible::Members;
 use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
 use rayon::prelude::*;
@@ -138,7 +139,11 @@ impl SpatialPrior {
             .fold(Spared::default(), |sum, (spared, _)| Spared { looks: sum.looks + spared.looks, ..sum });
         if let Some(beliefs) = &chosen.beliefs {
             let alike = |kind: u16| task.alike.get(usize::from(kind)).copied().unwrap_or(1);
-            pixels.iter_mut().enumerate().for_each(|(i, pixel)| beliefs.put(kept, i, alike, pixel));
+            let members = task.members.as_ref();
+            pixels
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, pixel)| beliefs.put(kept, i, (alike, members), pixel));
         }
         let temperatures_k = match (chosen.about.temperature_step_k, chosen.temperatures_k) {
             (Some(step_k), _) => level::levelled(pixels, columns, step_k),
@@ -180,18 +185,28 @@ impl SpatialPrior {
 }
 
 impl Beliefs {
-    /// Puts the posterior of pixel `i` and the materials that 95 % of it leave in the place of those of its own counts.
-    pub(super) fn put(&self, kept: &Kept, i: usize, alike: impl Fn(u16) -> usize, pixel: &mut Pixel) {
-        let mut order: Vec<(f64, usize)> = Vec::new();
+    /// Puts the posterior of pixel `i`, the materials that 95 % of it leave, and their categories in the place of those of its own counts.
+    pub(super) fn put(
+        &self,
+        kept: &Kept,
+        i: usize,
+        (alike, members): (impl Fn(u16) -> usize, Option<&Members>),
+        pixel: &mut Pixel,
+    ) {
+        let mut order: Vec<(f64, usize, Option<usize>)> = Vec::new();
         for (candidate, belief) in kept.of(i).iter().zip(self.of(kept, i)) {
             let count = candidate.kind.map_or(kept.others(i), &alike);
-            order.push((f64::from(*belief), count));
+            order.push((f64::from(*belief), count, candidate.kind.map(usize::from)));
         }
-        let Some(&(belief, count)) = order.get(self.best(kept, i)) else { return };
+        let Some(&(belief, count, _)) = order.get(self.best(kept, i)) else { return };
         pixel.posterior = belief / count.max(1) as f64;
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
         let (mut held, mut candidates) = (0.0, 0);
-        for (belief, count) in order {
+        if let Some(members) = members {
+            let beliefs: Vec<_> = order.iter().map(|(belief, _, kind)| (*kind, *belief)).collect();
+            members.put(&beliefs, pixel);
+        }
+        for (belief, count, _) in order {
             if held >= CANDIDATE_SHARE {
                 break;
             }

@@ -1,11 +1,12 @@
 //! Which materials a category is made of.
 
+use crate::decompose::possible::MOST;
 use hadar::error::{Error, Result};
 
 /// The category of a pixel that has none.
 pub const NO_CATEGORY: u8 = u8::MAX;
 /// Categories at most.
-pub const MOST_CATEGORIES: usize = NO_CATEGORY as usize;
+pub const MOST_CATEGORIES: usize = MOST;
 
 /// A material as a part of a category.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,7 +54,12 @@ impl Categories {
     pub fn new(materials: usize, categories: &[Vec<Part>]) -> Result<Self> {
         if categories.len() > MOST_CATEGORIES {
             let found = format!("{} categories", categories.len());
-            return Err(Error::malformed(found, format!("write at most {MOST_CATEGORIES}")));
+            return Err(Error::malformed(
+                found,
+                format!(
+                    "write at most {MOST_CATEGORIES}, as each is a bit of the set that a pixel may be of"
+                ),
+            ));
         }
         let mut of_material = vec![Vec::new(); materials];
         for (category, parts) in categories.iter().enumerate() {
@@ -101,8 +107,30 @@ impl Categories {
         self.of(material).iter().any(|one| one.category == category)
     }
 
+    /// The set of the categories of each material, a bit each ([`crate::decompose::possible`]); empty for a material that is in none.
+    #[must_use]
+    pub fn sets(&self) -> Vec<u64> {
+        self.of_material.iter().map(|own| set(own)).collect()
+    }
+
+    /// What materials of exactly these categories can be a part of, if that is the same for all of them.
+    pub(super) fn alike(&self, categories: u64) -> Option<&[Candidate]> {
+        let mut own = self.of_material.iter().filter(|own| set(own) == categories);
+        let first = own.next()?;
+        own.all(|other| other == first).then_some(first.as_slice())
+    }
+
     /// What a material can be a part of; nothing for no material, or one that is in no category.
     pub(super) fn of(&self, material: u16) -> &[Candidate] {
         self.of_material.get(usize::from(material)).map_or(&[], Vec::as_slice)
     }
+}
+
+fn set(candidates: &[Candidate]) -> u64 {
+    candidates.iter().fold(0, |set, one| set | bit(one.category))
+}
+
+/// The bit of a category in a set.
+pub(super) fn bit(category: u8) -> u64 {
+    1_u64.checked_shl(category.into()).unwrap_or(0)
 }

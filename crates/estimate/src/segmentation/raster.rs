@@ -1,6 +1,7 @@
 //! Algorithm 4 of the paper, pixel by pixel from the first row; what it leaves open as [`super::Rule::Raster`] says.
 
 use super::categories::{Candidate, Categories, NO_CATEGORY};
+use super::claims::Own;
 
 pub(super) fn segment(material: &[u16], columns: usize, categories: &Categories) -> Vec<u8> {
     let mut found = vec![NO_CATEGORY; material.len()];
@@ -46,4 +47,30 @@ fn neighbour(
         (Some(one), _) | (None, Some(one)) => Some(found[one]),
         (None, None) => None,
     }
+}
+
+/// The same of what pixels are told to be: a pixel of several categories is given one only where those to its left and above have one or
+/// are of none, so that nothing unknown is passed over; there is no pass back.
+pub(super) fn claimed(own: &[Own], shared: &[&[Candidate]], columns: usize) -> Vec<Option<u8>> {
+    let mut found: Vec<Option<u8>> = vec![None; own.len()];
+    for i in 0..own.len() {
+        found[i] = match own[i] {
+            Own::Category(category) => Some(category),
+            Own::None => Some(NO_CATEGORY),
+            Own::Unknown => None,
+            Own::Shared(place) => {
+                let left = (!i.is_multiple_of(columns)).then(|| i - 1);
+                let before = [left, i.checked_sub(columns)];
+                let is_known = before.iter().flatten().all(|j| found[*j].is_some());
+                let can_be = |j: &usize| shared[place].iter().any(|one| Some(one.category) == found[*j]);
+                let said = match before.map(|j| j.filter(can_be)) {
+                    [Some(a), Some(b)] if own[a] != own[i] && own[b] == own[i] => found[b],
+                    [Some(one), _] | [None, Some(one)] => found[one],
+                    [None, None] => shared[place].iter().find(|one| !one.enclosed).map(|one| one.category),
+                };
+                said.filter(|_| is_known)
+            }
+        };
+    }
+    found
 }

@@ -20,11 +20,14 @@ const LISTED: usize = 12;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &Decomposed) -> String {
-    let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
+    let is_rejected = result.model.verdict == ModelVerdict::Rejected;
+    let safety =
+        result.segmentation.as_ref().map_or_else(String::new, |found| segmented::safety(found, is_rejected));
+    let mut out = format!("{}\n{safety}\n{}", sentence(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
-        out.push_str(&segmented::text(segmentation));
+        out.push_str(&segmented::text(segmentation, is_rejected));
     }
     out.push_str(&flags(result));
     if let Some(truth) = &result.truth {
@@ -229,7 +232,12 @@ pub(crate) fn how(result: &Decomposed) -> &'static str {
 }
 
 /// Below the picture of the categories.
-pub(crate) const SEGMENTED: &str = "Every pixel is in segmentation.npy, every object in objects.csv.";
+pub(crate) const SEGMENTED: &str = "Every pixel that has a category is in segmentation.npy, every object in objects.csv. Hatched: undecided, what is there is one \
+    of several categories, or not known.";
+
+/// Below the picture of where a category cannot be excluded.
+pub(crate) const NOT_EXCLUDED_SAID: &str = "It cannot where one of its materials is among what 99 % of the posterior leave, where nothing fits or tells, and where a \
+    sample is missing.";
 
 /// What brightness means in a picture whose contrast is limited so, and what it is where the lighting is unknown.
 pub(crate) fn brightness_said(limit: f64, unlit: f64) -> String {

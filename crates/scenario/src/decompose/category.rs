@@ -14,6 +14,8 @@ pub struct CategorySpec {
     pub materials: Vec<String>,
     /// Those of them that have other parts of it around them.
     pub enclosed: Vec<String>,
+    /// Whether it matters for safety: it is said where it cannot be excluded, and no neighbour takes it away.
+    pub safety: bool,
     /// Numbers that stand for it in the map of the truth; its own place among the categories if silent.
     pub labels: Vec<usize>,
     /// Surfaces of a scene to be rendered that it is.
@@ -43,9 +45,9 @@ impl Told {
 pub struct SegmentationSpec {
     /// By which rule, where a material is in several.
     pub rule: Rule,
-    /// Whether each pixel takes the commonest category of 5 × 5 in the end.
+    /// Whether the likeliest category of each pixel is the commonest of 5 × 5 in the end.
     pub smoothing: bool,
-    /// Pixels of the smallest object that is listed.
+    /// Pixels from which on an object is listed without a decided pixel too.
     pub smallest_object: usize,
 }
 
@@ -97,7 +99,7 @@ pub(crate) fn categories(entry: &Entry<'_>, told: Told) -> Result<Vec<CategorySp
 
 fn category(section: &Section<'_>) -> Result<CategorySpec> {
     let name = section.require("name")?.name("\"car\"")?;
-    if name.is_empty() || name.eq_ignore_ascii_case("none") {
+    if name.is_empty() || ["none", "undecided"].iter().any(|taken| name.eq_ignore_ascii_case(taken)) {
         let found = format!("`{name}`, which says that a pixel has no category");
         return Err(section.fail("name", Error::malformed(found, "give it another name")));
     }
@@ -128,10 +130,12 @@ fn category(section: &Section<'_>) -> Result<CategorySpec> {
     let surfaces = section.read("surfaces", |entry| {
         without_repetition(&entry.items("surfaces = [\"car\", \"tyres of car\"]")?, text)
     })?;
+    let safety = section.read("safety", Entry::boolean)?;
     Ok(CategorySpec {
         name,
         materials,
         enclosed: enclosed.unwrap_or_default(),
+        safety: safety.unwrap_or_default(),
         labels: labels.unwrap_or_default(),
         surfaces: surfaces.unwrap_or_default(),
     })
@@ -161,6 +165,7 @@ fn category_written(category: &CategorySpec) -> Entries {
         .put("name", category.name.clone())
         .put("materials", category.materials.clone())
         .put_if("enclosed", some(&category.enclosed))
+        .put_if("safety", category.safety.then_some(true))
         .put_if("labels", (!labels.is_empty()).then_some(labels))
         .put_if("surfaces", some(&category.surfaces))
 }

@@ -301,6 +301,14 @@ const CATEGORY_KEYS: &[Key] = &[
         "Those of them that have other parts of it around them.",
         "segmentation by materials (SIII E, Algorithm 4)",
     ),
+    Key::row(
+        "safety",
+        Value::Flag,
+        Is("false"),
+        "true",
+        "Whether it matters for safety: where it cannot be excluded is said, and neighbours give a pixel that may be of it no other category.",
+        "pixels and objects in which it cannot be excluded",
+    ),
 ];
 const LABELS: Key = Key::row(
     "labels",
@@ -343,7 +351,7 @@ const SEGMENTATION_KEYS: &[Key] = &[
         Value::Flag,
         Is("true"),
         "false",
-        "Whether each pixel takes the commonest category of 5 x 5 in the end.",
+        "Whether the likeliest category of each pixel is the commonest of 5 x 5 in the end; no finding rests on it.",
         "segmentation by materials (SIII E, Algorithm 4)",
     ),
     Key::row(
@@ -351,7 +359,7 @@ const SEGMENTATION_KEYS: &[Key] = &[
         Value::Number(PIXELS),
         Is("25"),
         "25",
-        "Pixels of the smallest object that is listed.",
+        "Pixels from which on an object is listed without a decided pixel too; one with a decided pixel is listed whatever its size.",
         "objects of the answer",
     ),
 ];

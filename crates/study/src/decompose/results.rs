@@ -261,7 +261,7 @@ pub(super) fn summary(
     study: &DecomposeStudy,
     method: Method,
     (counted, mut found, model): (&Counted, Vec<MaterialRow>, ModelJudged),
-    (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
+    (truth, vision, mut segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
     mut warnings: Vec<Warning>,
     kept: Kept,
 ) -> Decomposed {
@@ -270,6 +270,7 @@ pub(super) fn summary(
     if model.verdict == ModelVerdict::Rejected {
         decided = 0;
         found.iter_mut().for_each(|row| row.decided = 0);
+        segmentation.iter_mut().for_each(Segmented::take_back);
         warnings.push(Warning::ModelRejected {
             if_it_holds: counted.decided,
             causes: model.causes.iter().filter(|row| row.may_be).cloned().collect(),

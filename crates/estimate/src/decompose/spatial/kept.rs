@@ -29,6 +29,8 @@ pub(in super::super) struct KeptRow {
     ends: Vec<usize>,
     deviances: Vec<f32>,
     others: Vec<u16>,
+    /// Shares of the categories in the posterior, category after category of a pixel.
+    pub(in super::super) shares: Vec<f32>,
 }
 
 /// The candidates of all pixels, the most likely first.
@@ -127,6 +129,7 @@ impl Kept {
                 .collect(),
             deviances: vec![deviance; pixels.len()],
             others: vec![0; pixels.len()],
+            shares: Vec::new(),
         };
         Self::of_rows(vec![row])
     }

@@ -4,29 +4,83 @@ use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::degrees;
 use hadar::words::{share, significant, whole};
 use hadar_estimate::segmentation::{Agreement, Rule};
-use hadar_study::decompose::Segmented;
+use hadar_study::decompose::{ObjectRow, Segmented};
 use std::fmt::Write as _;
 
 /// Objects that are listed.
 const LISTED: usize = 12;
 
+/// Categories of which an object may be that are named.
+const NAMED: usize = 3;
+
+/// Where categories that matter for safety cannot be excluded, in words; nothing without them.
+pub(super) fn safety(found: &Segmented, is_rejected: bool) -> String {
+    let mut out = String::new();
+    for row in &found.safety {
+        let article =
+            if row.category.starts_with(['a', 'e', 'i', 'o', 'A', 'E', 'I', 'O']) { "An" } else { "A" };
+        let name = &row.category;
+        let _ = match (row.pixels, row.objects.len()) {
+            _ if is_rejected => writeln!(
+                out,
+                "{article} {name} cannot be excluded anywhere while the cube does not follow its model; if it did, in {} of the pixels.",
+                share(row.share_if_model_holds)
+            ),
+            (0, _) => writeln!(out, "{article} {name} is excluded in every pixel."),
+            (_, objects) => writeln!(
+                out,
+                "{article} {name} cannot be excluded in {} of the pixels ({objects} {}).",
+                share(row.share),
+                if objects == 1 { "object" } else { "objects" }
+            ),
+        };
+        let _ = writeln!(
+            out,
+            "  If the model and the library hold, at most {} of the pixels that {} {name} fills are excluded: of pixels, not of objects.",
+            share(row.bound_missed),
+            article.to_lowercase()
+        );
+    }
+    out
+}
+
+/// The names of what an object is or may be, not too many of them.
+fn named(row: &ObjectRow) -> String {
+    match row.possible.len().checked_sub(NAMED).filter(|more| *more > 1) {
+        None => row.category.clone(),
+        Some(more) => {
+            let names: Vec<&str> = row.possible.iter().take(NAMED).map(|one| one.category.as_str()).collect();
+            format!("{} or {more} more", names.join(" or "))
+        }
+    }
+}
+
 /// Categories and objects, in words.
-pub(super) fn text(found: &Segmented) -> String {
-    let width = found.categories.iter().map(|row| row.category.chars().count()).max().unwrap_or(0).max(8);
+pub(super) fn text(found: &Segmented, is_rejected: bool) -> String {
+    let shown = || found.objects.iter().take(LISTED);
+    let names = || found.categories.iter().map(|row| row.category.clone()).chain(shown().map(named));
+    let width = names().map(|name| name.chars().count()).max().unwrap_or(0).max(9);
     let mut table =
         Columns::new([left("", width), right("pixels", 9), right("decided", 9), right("objects", 7)]);
     for row in &found.categories {
         let counts = [row.pixels, row.decided].map(|count| whole(count as u64));
         table.row(std::iter::once(row.category.clone()).chain(counts).chain([row.objects.to_string()]));
     }
-    if found.none > 0 {
-        table.row(["none", &whole(found.none as u64)]);
+    for (name, pixels) in [("none", found.none), ("undecided", found.undecided)] {
+        if pixels > 0 {
+            table.row([name, &whole(pixels as u64)]);
+        }
     }
-    let mut out = format!("Categories\n{}", table.text());
+    let held = if is_rejected { ", if the model held" } else { "" };
+    let mut out = format!("Categories{held}\n{}", table.text());
     let _ = writeln!(
         out,
-        "\nObjects of {} pixels or more{}",
+        "\nObjects: all of {} pixels or more, and all with a decided pixel{}{}",
         found.smallest_object,
+        match found.objects_not_listed {
+            0 => String::new(),
+            left_out => format!("; {} smaller ones without are not listed", whole(left_out as u64)),
+        },
         if found.objects.is_empty() { ": none" } else { "" },
     );
     let mut table = Columns::new([
@@ -40,16 +94,20 @@ pub(super) fn text(found: &Segmented) -> String {
     ]);
     let span = |[first, after]: [usize; 2]| format!("{first} to {}", after - 1);
     let known = |k: f64, shown: &dyn Fn(f64) -> String| if k.is_finite() { shown(k) } else { "-".to_owned() };
-    for row in found.objects.iter().take(LISTED) {
-        let guessed = if 2 * row.decided < row.pixels { "  undecided" } else { "" };
+    for row in shown() {
+        let how = match (row.possible.is_empty(), 2 * row.decided < row.pixels) {
+            (false, _) => "  undecided",
+            (true, true) => "  by its neighbours",
+            (true, false) => "",
+        };
         table.row([
-            row.category.clone(),
+            named(row),
             whole(row.pixels as u64),
             whole(row.decided as u64),
             span(row.rows),
             span(row.columns),
             known(row.temperature_median_k, &degrees),
-            format!("{:>10}{guessed}", known(row.temperature_sigma_median_k, &|k| significant(k, 2))),
+            format!("{:>10}{how}", known(row.temperature_sigma_median_k, &|k| significant(k, 2))),
         ]);
     }
     out.push_str(&table.text());
@@ -64,7 +122,12 @@ pub(super) fn text(found: &Segmented) -> String {
         _ => "the truth of no pixel is known".to_owned(),
     };
     if let Some(agreement) = &found.agreement {
-        let _ = writeln!(out, "  against what is there: {}", said(agreement));
+        let undecided = agreement.undecided.filter(|share| *share > 0.0);
+        let undecided = undecided.map_or_else(String::new, |of| format!(", {} undecided", share(of)));
+        let _ = writeln!(out, "  against what is there: {}{undecided}", said(agreement));
+    }
+    if let Some(agreement) = &found.agreement_of_likeliest {
+        let _ = writeln!(out, "  the likeliest category of each pixel, no finding: {}", said(agreement));
     }
     if let Some(agreement) = &found.agreement_by_brightness {
         let _ = writeln!(
@@ -74,14 +137,15 @@ pub(super) fn text(found: &Segmented) -> String {
         );
     }
     let rule = match found.rule {
-        Rule::Raster => "the neighbour before says it (Algorithm 4 of the paper)",
-        Rule::Regions => "what encloses its region, or the outside",
+        Rule::Raster => "the decided neighbours before say it (Algorithm 4 of the paper)",
+        Rule::Regions => "what is decided around its region, as far as nothing unknown could change it",
     };
     let _ = writeln!(
         out,
-        "  decided: one material left, of this category; objects may join where they touch, and what is not in the library may be taken for what is\n  \
-         sigma: of one pixel, its material certain; no category: no material, or none that fits\n  a material in several categories: {rule}{}\n",
-        if found.smoothing { "; then the commonest of 5 x 5 pixels" } else { "" }
+        "  decided: all materials that 95 % leave are of this category alone; objects may join where they touch, and what is not in the library \
+         may be taken for what is\n  sigma: of one pixel, its material certain; undecided: of several categories, or nothing fits or tells\n  \
+         a material in several categories: {rule}\n  likeliest_category.npy: the likeliest category of each pixel, no finding{}\n",
+        if found.smoothing { "; the commonest of 5 x 5 pixels" } else { "" }
     );
     out
 }

@@ -173,11 +173,11 @@ words! {
         },
     }
     ObjectsUndecided {
-        meaning: "Objects rest on pixels whose material is not decided: several are left, or none fits.",
+        meaning: "Objects rest on pixels that are not decided by themselves: their neighbours settle their category, or nothing does.",
         remedy: "Do not act on them: look closer, expose longer, or add what is there to the library.",
         ObjectsUndecided { objects, of } => format!(
-            "in {objects} of {of} objects less than half of the pixels have one material left: their category is the likelier one, and no \
-             finding"
+            "in {objects} of {of} objects less than half of the pixels are decided by themselves: what they are rests on what is around them, \
+             or is left open"
         ),
     }
     SpatialPrior {
