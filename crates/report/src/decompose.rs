@@ -81,7 +81,13 @@ pub fn bundle(result: &Decomposed, room: Option<&Path>) -> Result<Bundle> {
             bundle.add_file(IMAGE, path);
         }
     }
+    if !result.model.causes.is_empty() {
+        bundle.add_table("model_causes.csv", figures::causes(&result.model))?;
+    }
     bundle.add_plots(&[vision::plot(&brush, &pixels, shown), figures::maps(result, &pixels, shown)])?;
+    if let Some(residual) = figures::residual(&result.model) {
+        bundle.add_plots(&[residual])?;
+    }
     Ok(bundle)
 }
 
