@@ -4,8 +4,8 @@ use crate::support::folder::Folder;
 use serde_json::Value;
 use std::fs;
 
-/// A person of a material at a distance, on a road, in a library that has what a car is made of.
-fn street(material: &str, distance_m: f64) -> String {
+/// A person of a material at a distance, on a road, seen with so much noise, in a library that has what a car is made of.
+fn street(material: &str, distance_m: f64, noise_electrons: f64) -> String {
     format!(
         r#"[scene]
 sky = {{ material = "sky-us-standard", temperature = "288 K" }}
@@ -29,7 +29,7 @@ exposure = "2 ms"
 pixel = "64 um"
 f_number = 1.4
 focal_length = "14 mm"
-noise_electrons = 3000
+noise_electrons = {noise_electrons}
 noise_exposure = "2 ms"
 [[category]]
 name = "road"
@@ -49,6 +49,9 @@ enclosed = ["soda-lime-glass", "aluminium", "fabric"]
 }
 
 const PERSON: u8 = 1;
+/// Noise of a reading, electrons: as of a camera, and thirty times as much, in which skin and fabric are hardly told apart from others.
+const QUIET: f64 = 3000.0;
+const LOUD: f64 = 100_000.0;
 
 /// The numbers of a map that were written for so many pixels.
 fn map<const BYTES: usize>(folder: &Folder, name: &str) -> Vec<[u8; BYTES]> {
@@ -67,8 +70,8 @@ struct Seen {
     is_filled: Vec<bool>,
 }
 
-fn seen(material: &str, distance_m: f64, seed: u32) -> Seen {
-    let folder = Folder::with(&street(material, distance_m));
+fn seen((material, distance_m, noise_electrons): (&str, f64, f64), seed: u32) -> Seen {
+    let folder = Folder::with(&street(material, distance_m, noise_electrons));
     let rendered = folder.run(&["render", "a.toml", "--out", "cube", "--seed", &seed.to_string()]);
     assert_eq!(rendered.code, 0, "{}", rendered.stderr);
     let answer = folder.json(&["decompose", "cube/decompose.toml", "--out", "out"]);
@@ -91,7 +94,7 @@ fn seen(material: &str, distance_m: f64, seed: u32) -> Seen {
 
 #[test]
 fn a_person_in_the_fabric_of_seats_is_no_car() {
-    let seen = seen("fabric", 8.0, 1);
+    let seen = seen(("fabric", 8.0, QUIET), 1);
     let segmentation = &seen.answer["segmentation"];
     let objects = segmentation["objects"].as_array().unwrap();
     assert!(objects.iter().all(|object| object["category"] != "car"), "{objects:?}");
@@ -119,7 +122,7 @@ fn a_person_in_the_fabric_of_seats_is_no_car() {
 #[test]
 fn a_person_far_away_is_not_smoothed_away() {
     for distance_m in [20.0, 30.0, 45.0] {
-        let seen = seen("skin", distance_m, 2);
+        let seen = seen(("skin", distance_m, QUIET), 2);
         let told =
             |is: &[bool]| is.iter().zip(&seen.category).filter(|(is, one)| **is && **one == PERSON).count();
         let all = vec![true; seen.category.len()];
@@ -137,20 +140,20 @@ fn a_person_far_away_is_not_smoothed_away() {
     }
 }
 
-/// Of the pixels that a person fills at most 1 % are excluded, whatever the person wears and wherever it stands. What that costs: a person
-/// cannot be excluded in less than a fifth of the other pixels, most of them where sky and road merge and nothing is told.
+/// Of the pixels that a person fills at most 1 % are excluded, whatever the person wears and wherever it stands: here none of 3 253, most of them
+/// under thirty times as much noise. What that costs: a person cannot be excluded in 15 % of the other pixels, most of them where sky and
+/// road merge and nothing is told.
 #[test]
 fn a_person_is_excluded_in_one_of_a_hundred_of_its_pixels_at_most() {
     let (mut pixels, mut missed, mut others, mut alarms) = (0, 0, 0, 0);
-    for (material, distance_m, seed) in [
-        ("skin", 5.0, 3),
-        ("skin", 12.0, 4),
-        ("skin", 30.0, 5),
-        ("fabric", 5.0, 6),
-        ("fabric", 12.0, 7),
-        ("fabric", 30.0, 8),
+    for (scene, seed) in [
+        (("skin", 5.0, QUIET), 3),
+        (("skin", 30.0, QUIET), 4),
+        (("fabric", 12.0, QUIET), 5),
+        (("skin", 5.0, LOUD), 6),
+        (("fabric", 5.0, LOUD), 7),
     ] {
-        let seen = seen(material, distance_m, seed);
+        let seen = seen(scene, seed);
         for (i, left) in seen.not_excluded.iter().enumerate() {
             if seen.is_filled[i] {
                 pixels += 1;
