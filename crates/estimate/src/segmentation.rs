@@ -20,9 +20,11 @@ mod claims;
 mod components;
 mod groups;
 mod object;
+mod own;
 mod raster;
 mod rectangle;
 mod regions;
+mod rule;
 mod smoothing;
 
 pub use agreement::Agreement;
@@ -31,28 +33,11 @@ pub use categories::{Categories, MOST_CATEGORIES, NO_CATEGORY, Part};
 pub use claims::{Claims, Told, claims};
 pub use groups::{Group, Groups, groups};
 pub use object::{Object, Objects, objects};
+pub use rule::Rule;
 pub use smoothing::smoothed;
 
 use hadar::error::Result;
 use rectangle::rectangle;
-use serde::Serialize;
-
-/// How the pixels of a material that is in several categories get one of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Rule {
-    /// Algorithm 4 of the paper, pixel by pixel: the category of the neighbour to the left or above where the material can be in it,
-    /// else the category where the material is not enclosed.
-    ///
-    /// What the paper leaves open: where both neighbours can be meant and differ, the one of the same material counts, or the left one;
-    /// of several categories where the material is not enclosed, the one listed first; where there is none, the neighbours to the right
-    /// and below are asked in a pass from the end; what then has no category, and what has no material, is [`NO_CATEGORY`].
-    Raster,
-    /// Connected pixels of one material as one region: it belongs to the category that encloses it (three quarters of its border or more)
-    /// if the material is enclosed there, else to one where it is not, of several to that along which it has the longest border.
-    #[default]
-    Regions,
-}
 
 /// Categories of a map of materials `[row][column]`, not yet smoothed ([`smoothed`]). The materials are taken for true: of materials that are only
 /// the likeliest these are the likeliest categories, and no finding ([`claims`]).

@@ -10,7 +10,7 @@ use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
 use super::kernel::{Asked, Sums, contrast, sums};
 use super::library_error::{Errors, Workplace};
 use super::model::{MOST_SURROUNDINGS, Model};
-use super::possible::{Members, Possible};
+use super::possible::{CANDIDATE_SHARE, Members, Possible, TIE};
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
 use hadar::cube::Sample;
@@ -20,16 +20,12 @@ use hadar::statistics::chi_square_survival;
 
 /// Deviance beyond the best one at which a material no longer counts: its posterior is e⁻¹² of the best one's.
 pub(super) const CUT: f64 = 24.0;
-/// Share of the posterior that the candidates hold.
-pub const CANDIDATE_SHARE: f64 = 0.95;
 /// Below this p-value no material of the library fits.
 pub const NO_FIT: f64 = 1e-4;
 /// Squared deviations by which what a pixel sends must differ from what its surroundings send.
 const CONTRAST: f64 = 16.0;
 /// Deviation of a lighting factor from which on it could be anything.
 const ANY_LIGHTING: f64 = 1.0;
-/// Posteriors that are the same.
-pub(super) const TIE: f64 = 1e-9;
 
 /// What is said of a pixel besides its numbers: bits of `flags`.
 pub mod flag {

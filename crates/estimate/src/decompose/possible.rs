@@ -19,9 +19,12 @@
 //! second condition void in libraries of more than some 1600 of them.
 
 use super::fit::Fit;
-use super::pixel::{CANDIDATE_SHARE, Pixel, TIE};
 use hadar::error::{Error, Result};
 
+/// Share of the posterior that the candidates hold.
+pub const CANDIDATE_SHARE: f64 = 0.95;
+/// Posteriors that are the same.
+pub(super) const TIE: f64 = 1e-9;
 /// Categories at most.
 pub const MOST: usize = 63;
 /// The bit of a material that is in no category.
@@ -156,8 +159,8 @@ impl Members {
 
     /// Puts what a prior over the image leaves in the place of what the counts of a pixel leave: kinds with the posterior of all their
     /// materials, the likeliest first. What the counts alone do not exclude stays possible at 99 %.
-    pub(super) fn put(&self, beliefs: &[(Option<usize>, f64)], pixel: &mut Pixel) {
-        if pixel.possible == Possible::ANYTHING {
+    pub(super) fn put(&self, beliefs: &[(Option<usize>, f64)], of_pixel: &mut Possible) {
+        if *of_pixel == Possible::ANYTHING {
             return;
         }
         let (mut held, mut possible) = (0.0, Possible::NOTHING);
@@ -173,8 +176,8 @@ impl Members {
             (*kind, belief / alike as f64)
         };
         let known = || beliefs.iter().filter(|(kind, belief)| kind.is_some() || *belief > 0.0).map(each);
-        possible.at_99 = pixel.possible.at_99 | self.left(known());
-        pixel.possible = possible;
+        possible.at_99 = of_pixel.at_99 | self.left(known());
+        *of_pixel = possible;
     }
 }
 

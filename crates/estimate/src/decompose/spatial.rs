@@ -17,8 +17,8 @@ mod sgd;
 pub(super) use kept::{Kept, KeptRow};
 
 use self::potts::Beliefs;
-use super::pixel::{CANDIDATE_SHARE, Pixel, Spared, Task, flag};
-use super::possible::Members;
+use super::pixel::{Pixel, Spared, Task, flag};
+use super::possible::{CANDIDATE_SHARE, Members};
 use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
 use rayon::prelude::*;
@@ -204,7 +204,7 @@ impl Beliefs {
         let (mut held, mut candidates) = (0.0, 0);
         if let Some(members) = members {
             let beliefs: Vec<_> = order.iter().map(|(belief, _, kind)| (*kind, *belief)).collect();
-            members.put(&beliefs, pixel);
+            members.put(&beliefs, &mut pixel.possible);
         }
         for (belief, count, _) in order {
             if held >= CANDIDATE_SHARE {

@@ -23,11 +23,12 @@
 //!
 //! With a category for safety a shared pixel that may be of it is not given another one by its neighbours.
 
-use super::Rule;
 use super::categories::{Candidate, Categories, NO_CATEGORY, bit};
 use super::components::{NO_PART, Neighbours, components};
+use super::own::Own;
 use super::raster;
 use super::rectangle::rectangle;
+use super::rule::Rule;
 use crate::decompose::possible::OTHER;
 use hadar::error::{Error, Result};
 use rayon::prelude::*;
@@ -57,19 +58,6 @@ pub struct Claims {
     pub category: Vec<u8>,
     /// How they have them.
     pub told: Vec<Told>,
-}
-
-/// What a pixel is by its own candidates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Own {
-    /// Of this category.
-    Category(u8),
-    /// Of none.
-    None,
-    /// Of one of several, the place among those that occur.
-    Shared(usize),
-    /// Not known.
-    Unknown,
 }
 
 /// Categories that pixels `[row][column]` are told to be, of the sets of the categories of any and of all of their candidates

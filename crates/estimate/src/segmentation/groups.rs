@@ -1,8 +1,7 @@
 //! Objects of what pixels may be: connected pixels of the same set of categories.
 
-use super::Told;
 use super::categories::{NO_CATEGORY, bit};
-use super::claims::Claims;
+use super::claims::{Claims, Told};
 use super::components::{NO_PART, Neighbours, components};
 use super::rectangle::rectangle;
 use crate::decompose::possible::ANYTHING;

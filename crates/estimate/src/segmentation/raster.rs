@@ -1,7 +1,7 @@
 //! Algorithm 4 of the paper, pixel by pixel from the first row; what it leaves open as [`super::Rule::Raster`] says.
 
 use super::categories::{Candidate, Categories, NO_CATEGORY};
-use super::claims::Own;
+use super::own::Own;
 
 pub(super) fn segment(material: &[u16], columns: usize, categories: &Categories) -> Vec<u8> {
     let mut found = vec![NO_CATEGORY; material.len()];
