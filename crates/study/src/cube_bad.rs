@@ -167,6 +167,10 @@ impl Readings<'_> {
             if first == 0.0 {
                 return if LEAST_EMISSIVITY * least > FEWEST || noise > 0.0 { 2 } else { 0 };
             }
+            // Below 0 without noise there are no counts at all, which is an error of its own.
+            if first < 0.0 && noise == 0.0 {
+                return 0;
+            }
             // The most probable value of counts of mean n has the probability 1/√(2πn).
             let counts = (first / self.units_per_count).abs();
             let same = |band: &usize| {

@@ -12,7 +12,7 @@ mod truth;
 mod vision;
 mod worth;
 
-pub use judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
+pub use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
 pub use kept::{Block, Keep, Kept, MapFiles};
 pub use looked_up::DecomposeStudy;
 pub use ranks::{Count, ranked};
@@ -144,7 +144,7 @@ impl DecomposeStudy {
             .map_err(|error| self.at_cube(error))?;
         let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
         let answer = (truth, vision, segmented);
-        let model = asked.unwrap_or_default().found(self, method, &options, &counted);
+        let model = asked.unwrap_or_default().found(self, method, &options, counted.p_values());
         Ok(summary(self, method, (&counted, found, model), answer, warnings, kept))
     }
 

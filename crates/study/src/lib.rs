@@ -41,6 +41,7 @@ mod integration;
 pub mod library;
 mod looked_up;
 mod memory;
+mod model_judged;
 mod own_cameras;
 mod per_photon;
 mod proviso;

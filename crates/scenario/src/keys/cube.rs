@@ -71,7 +71,7 @@ const CUBE_KEYS: &[Key] = &[
     Key::row(
         "bad_pixels",
         Value::File,
-        Is("none"),
+        Means("no pixel is named"),
         "\"bad_pixels.npy\"",
         "A map of the cube's rows and columns: pixels that are not 0 in it are left out.",
         "which samples are used",

@@ -11,24 +11,23 @@
 //! all pixels of a material.
 
 use super::DecomposeStudy;
-use super::results::Counted;
 use crate::cube_bad::{LOOKED, some};
+use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits};
 use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
 use hadar::error::Result;
 use hadar::planck::photon_radiance_and_slope_into;
 use hadar_estimate::decompose::{
-    Cause, Judged, Light, Maps, Method, Options, Setting, Together, decompose_by, flag, judge, p_deviations,
+    Cause, Judged, Light, Maps, Method, Options, Setting, Together, decompose_by, judge, p_deviations,
 };
 use hadar_scenario::decompose::LightSource;
-use serde::Serialize;
 
 /// Deviations of the mean p-value from which on a model is rejected: three of a hundred thousand right ones are.
 const P_LIMIT: f64 = 4.0;
 /// Deviations of a band or a cause: seven of a million of each.
 const LIMIT: f64 = 4.5;
-/// Deviations of a temperature, rms over the pixels, below which a cause does no harm: 95 % intervals then hold 94 %.
-const HARM: f64 = 0.3;
+/// Deviations of a temperature, rms over the pixels, below which a cause does no harm: 95 % intervals then hold 93 %.
+const HARM: f64 = 0.4;
 /// The same of the mean p-value.
 const P_HARM: f64 = 0.01;
 /// Share of the pixels that fit nothing from which on the model is rejected by that alone.
@@ -39,81 +38,6 @@ const MAY_BE: f64 = 0.5;
 const AIR_K: f64 = 288.15;
 /// A temperature of a light that may be missing where none is found, K.
 const MISSING_K: f64 = 293.15;
-
-/// What all pixels together say of the model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelJudged {
-    /// Whether the cube follows it: `not-rejected`, `rejected`, or `not-judged`.
-    pub verdict: ModelVerdict,
-    /// Pixels with a p-value.
-    pub pixels: usize,
-    /// Mean of their p-values from 1e-4 on: a half for a right model.
-    pub p_value_mean: Option<f64>,
-    /// Deviations by which that is below a half.
-    pub p_value_deviations: Option<f64>,
-    /// Share of the pixels that no material fits.
-    pub unfit: Option<f64>,
-    /// Pixels with one candidate that fit, of which bands and causes are told.
-    pub pixels_asked: usize,
-    /// Mean χ² of a degree of freedom of these pixels: 1 for a right model.
-    pub chi_square_reduced: Option<f64>,
-    /// What these pixels have in common in each band, in rising wavenumber.
-    pub bands: Vec<BandResidual>,
-    /// What may be otherwise than told, what explains most first.
-    pub causes: Vec<CauseRow>,
-}
-
-/// Whether a cube follows its model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ModelVerdict {
-    /// Nothing speaks against it.
-    NotRejected,
-    /// The pixels together do not follow it.
-    Rejected,
-    /// It was not asked.
-    NotJudged,
-}
-
-/// What pixels have in common in a band.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BandResidual {
-    /// Its place, from 0, in rising wavenumber.
-    pub band: usize,
-    /// Mean wavenumber, cm⁻¹.
-    pub wavenumber_cm1: f64,
-    /// Mean residual of a pixel, in deviations of its noise.
-    pub residual: f64,
-    /// The same in deviations of the mean.
-    pub deviations: f64,
-}
-
-/// Something that may be otherwise than told, and what it would explain.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CauseRow {
-    /// `gain`, `wavelength-shift`, `light-scale`, `light-tilt`, `light-temperature`, `lighting-total`, `light-missing`, `air`, `band` or
-    /// `noise`.
-    pub cause: &'static str,
-    /// Which of the surroundings, from 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub light: Option<usize>,
-    /// Which band, from 0 in rising wavenumber.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub band: Option<usize>,
-    /// By how much, were it that alone.
-    pub estimate: f64,
-    /// Its deviation.
-    pub sigma: f64,
-    /// `cm^-1`, `K`, `m`, or nothing for a share.
-    pub unit: &'static str,
-    /// By how much χ² of the pixels asked falls by it.
-    pub gain_chi_square: f64,
-    /// By how many of its deviations a temperature moves then, rms over the pixels.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub temperature_moved: Option<f64>,
-    /// Whether it explains at least half as much as the best: intervals hold what it would do.
-    pub may_be: bool,
-}
 
 /// What was asked of some pixels, and what is to be put into the deviations.
 #[derive(Debug, Default)]
@@ -170,14 +94,21 @@ impl Asked {
         (0..self.causes.len()).filter(|i| gain(i) >= f64::max(MAY_BE * best, LIMIT * LIMIT)).collect()
     }
 
+    /// Whether what explains most would move temperatures by more than is harmless, or another that may be it by twice as much.
+    fn does_harm(&self, sums: &Together) -> bool {
+        let gain = |i: &usize| sums.alone(*i).map_or(0.0, |(_, gain)| gain);
+        let may_be = self.may_be(sums);
+        let best = may_be.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+        best.is_some_and(|best| sums.temperature_moved(best) > HARM)
+            || may_be.into_iter().any(|i| sums.temperature_moved(i) > 2.0 * HARM)
+    }
+
     /// Whether bands or causes reject the model.
     fn rejects(&self) -> bool {
         let (Some(sums), Some(judged)) = (self.sums(), &self.judged) else { return false };
         let unfit = (judged.fitting.pixels as f64) < (1.0 - UNFIT) * judged.all.pixels as f64;
         let fitting = &judged.fitting;
-        unfit
-            || below(fitting.p_values, fitting.pixels)
-            || self.may_be(sums).into_iter().any(|i| sums.temperature_moved(i) > HARM)
+        unfit || below(fitting.p_values, fitting.pixels) || self.does_harm(sums)
     }
 
     /// The causes that the deviations have to hold, with how much of each; none while nothing speaks against the model.
@@ -193,10 +124,9 @@ impl Asked {
         study: &DecomposeStudy,
         method: Method,
         options: &Options,
-        counted: &Counted,
+        (pixels, p_sum, unfit): (usize, f64, usize),
     ) -> ModelJudged {
         let is_judged = method == Method::Ml && options.library_error.is_none();
-        let (pixels, p_sum, unfit) = counted.p_values();
         let p_z = p_deviations(p_sum, pixels);
         let unfit_share = unfit as f64 / (pixels + unfit).max(1) as f64;
         let rejected = below(p_sum, pixels) || unfit_share > UNFIT || self.rejects();
@@ -323,11 +253,4 @@ fn causes(study: &DecomposeStudy, setting: &Setting<'_>) -> Vec<Cause> {
     let is_used = |band: &usize| !setting.bad_bands.contains(band);
     all.extend((0..study.bands.len()).filter(is_used).map(Cause::Band));
     all
-}
-
-/// Whether a pixel has a p-value that counts here: `None` without one, else whether some material fits.
-pub(super) fn fits(maps: &Maps, i: usize) -> Option<bool> {
-    let flags = maps.flags.get(i).copied().unwrap_or(flag::SKIPPED);
-    let told = flags & (flag::SKIPPED | flag::NO_INFORMATION) == 0 && !maps.p_value.get(i)?.is_nan();
-    told.then_some(flags & flag::NO_FIT == 0)
 }

@@ -1,7 +1,6 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
-use super::judged::{ModelJudged, ModelVerdict, fits};
 use super::kept::Kept;
 use super::ranks::ranked;
 use super::segmented::Segmented;
@@ -9,6 +8,7 @@ use super::vision::{DRAWN, Vision, apart};
 pub use super::worth::TruthFound;
 use crate::Warning;
 use crate::cube_bad::BadFound;
+use crate::model_judged::{ModelJudged, ModelVerdict, fits};
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::error::Result;

@@ -1,6 +1,6 @@
 //! Every warning by a row: what it is of, its data, its code. Its words are a block of `hadar_report::words::warnings`.
 
-use crate::decompose::CauseRow;
+use crate::model_judged::CauseRow;
 use crate::proviso::Proviso;
 use crate::rule::NotInForce;
 use crate::warning::WorstBlackbody;
