@@ -3,17 +3,17 @@
 //! | code | name | a pixel |
 //! |---|---|---|
 //! | 1 | missing | a sample of which is no number |
-//! | 2 | dead | all samples of which are 0, where even a surface at the lowest temperature would send [`FEWEST`] counts |
+//! | 2 | dead | all samples of which are 0, where even a surface at the lowest temperature would send 30 counts at an emissivity of 0.02 |
 //! | 3 | stuck | all samples of which are one value, which noise would do once in 10¹² pixels at most |
 //! | 4 | saturated | a sample of which is at the value where readings are cut off |
-//! | 5 | too-bright | a sample of which is more than [`BEYOND`] times what a blackbody at the highest temperature, or any light, sends |
+//! | 5 | too-bright | a sample of which is more than 4 times what a blackbody at the highest temperature, or any light, sends |
 //! | 6 | named | that stands in `cube.bad_pixels` |
 //!
 //! A band is bad where it is missing in most pixels, or one value in all that were looked at while noise would move it. Readings are
-//! cut off at the largest value that [`PILED`] of the samples looked at have, if ten times as many have it as the next one and fewer are above.
+//! cut off at the largest value that 20 of the samples looked at have, if ten times as many have it as the next one and fewer are above.
 //!
 //! Nothing here depends on the neighbours of a pixel: spoiling one changes no other one. Samples of bad pixels are handed on as
-//! missing ones, for every command alike. Only pixels looked at ([`LOOKED`], evenly) say what a band and a limit is.
+//! missing ones, for every command alike. Only pixels looked at (16 384, evenly) say what a band and a limit is.
 
 use super::Warning;
 use hadar::cube::{Cube, MemoryCube, Rows, Sample, Shape};

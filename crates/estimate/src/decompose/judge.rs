@@ -55,7 +55,7 @@ pub struct Together {
     pub residual: Vec<[f64; 2]>,
     /// s of each cause.
     pub score: Vec<f64>,
-    /// J, row after row.
+    /// J of each cause alone.
     pub information: Vec<f64>,
     /// Σ of the squares of what a unit of each cause does to a temperature, in its deviations.
     pub moved: Vec<f64>,
@@ -66,7 +66,7 @@ impl Together {
         Self {
             residual: vec![[0.0; 2]; bands],
             score: vec![0.0; causes],
-            information: vec![0.0; causes * causes],
+            information: vec![0.0; causes],
             moved: vec![0.0; causes],
             ..Self::default()
         }
@@ -87,7 +87,7 @@ impl Together {
     /// Estimate of a cause alone, and what χ² gains by it; nothing where the pixels do not tell.
     #[must_use]
     pub fn alone(&self, cause: usize) -> Option<(f64, f64)> {
-        let information = *self.information.get(cause * (self.score.len() + 1))?;
+        let information = *self.information.get(cause)?;
         let score = *self.score.get(cause)?;
         (information > 0.0).then(|| (score / information, score * score / information))
     }
@@ -233,9 +233,7 @@ impl Judge<'_> {
             for (a, one) in slopes.iter().enumerate() {
                 sums.score[a] += weight * dot(one, rho);
                 sums.moved[a] += moved[a] * moved[a];
-                for (b, other) in slopes.iter().enumerate() {
-                    sums.information[a * slopes.len() + b] += weight * dot(one, other);
-                }
+                sums.information[a] += weight * dot(one, one);
             }
         }
     }
