@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | 1 | missing | a sample of which is no number |
 //! | 2 | dead | all samples of which are 0, where even a surface at the lowest temperature would send 30 counts at an emissivity of 0.02 |
-//! | 3 | stuck | all samples of which are one value, which noise would do once in 10¹² pixels at most |
+//! | 3 | stuck | all samples of which are one value, which noise would do once in 10⁹ pixels at most |
 //! | 4 | saturated | a sample of which is at the value where readings are cut off |
 //! | 5 | too-bright | a sample of which is more than 4 times what a blackbody at the highest temperature, or any light, sends |
 //! | 6 | named | that stands in `cube.bad_pixels` |
@@ -31,7 +31,7 @@ const SAYING: usize = 16;
 /// Counts of which 0 is no reading: e⁻³⁰.
 const FEWEST: f64 = 30.0;
 /// Probability that noise makes all samples of a pixel the same.
-const BY_CHANCE: f64 = 1e-12;
+const BY_CHANCE: f64 = 1e-9;
 /// Times the most that can be sent.
 const BEYOND: f64 = 4.0;
 /// Counts of a pixel beside which another of the same picture does not hold none at all: a twentieth of them would be missed by e⁻³⁰.
@@ -374,7 +374,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const BANDS: usize = 6;
+    const BANDS: usize = 8;
 
     fn readings() -> Readings<'static> {
         Readings {
