@@ -196,6 +196,8 @@ def verdict(outcome, words, how):
     by_signal = outcome.code == -signal.SIGXFSZ and "files of at most" in how
     # A program that is not loaded yet.
     unloaded = outcome.code in (-signal.SIGSEGV, -signal.SIGKILL) and not outcome.stderr and ("address space" in how or "a stack of" in how or re.search(r"mmap fails with ENOMEM, number \d\+?$", how))
+    # The standard library lays out a stack for its own handler of overflows before the program's first line.
+    unloaded = unloaded or outcome.code != 0 and "failed to allocate an alternative stack" in outcome.stderr
     if outcome.aborted or loader or by_signal or unloaded:
         return []
     silent = "write fails" in how and how.endswith("+") or "files of at most" in how
