@@ -444,4 +444,22 @@ mod tests {
         let found = readings().find(&cube(samples), &[]).unwrap();
         assert_eq!(found.pixels.iter().map(|one| one.why).collect::<Vec<_>>(), ["saturated"]);
     }
+
+    /// Where a picture is bright, a pixel that is 0 in all bands was not read; where it is dim, it is a reading like any other.
+    #[test]
+    fn dead_pixels_of_a_bright_picture_have_no_samples() {
+        let mut samples = good();
+        samples[..BANDS].fill(0.0);
+        samples[BANDS] = 0.0;
+        let missing = |counts_per_unit: f64| -> Vec<usize> {
+            let Cube::F64(cube) = without_dead(cube(samples.clone()), counts_per_unit).unwrap() else {
+                panic!()
+            };
+            let mut buffer = Vec::new();
+            let read = cube.read(0..8, &mut buffer).unwrap();
+            read.iter().enumerate().filter(|(_, one)| one.is_nan()).map(|(i, _)| i).collect()
+        };
+        assert_eq!(missing(1.0), (0..BANDS).collect::<Vec<_>>());
+        assert!(missing(1e-3).is_empty());
+    }
 }
