@@ -224,6 +224,22 @@ fn both_factors_measure_the_same_ellipsoid() {
     }
 }
 
+/// Three parameters: the covariance comes out as it went in, and whitens as its inverse by another algorithm.
+#[test]
+fn a_covariance_of_three_is_kept_and_whitens() {
+    let rows = [4.0, 1.2, -0.6, 1.2, 9.0, 2.1, -0.6, 2.1, 1.0];
+    let bound = JointBound::from_covariance(3, &rows).unwrap();
+    for i in 0..9 {
+        assert!((bound.covariance(i / 3, i % 3) - rows[i]).abs() < 1e-14, "{i}");
+    }
+    let inverse = nalgebra::DMatrix::from_row_slice(3, 3, &rows).try_inverse().unwrap();
+    for x in [[1.0, 0.0, 0.0], [0.2, -1.0, 0.7], [0.0, 0.0, 1.0]] {
+        let square: f64 = bound.whitened(&x).iter().map(|z| z * z).sum();
+        let by_inverse: f64 = (0..9).map(|i| x[i / 3] * inverse[(i / 3, i % 3)] * x[i % 3]).sum();
+        assert!((square / by_inverse - 1.0).abs() < 1e-12, "{x:?}");
+    }
+}
+
 #[test]
 fn what_is_no_bound_is_refused() {
     let (bands, surroundings) = scene(&[(800.0, 1.0)]);
