@@ -229,8 +229,8 @@ fn both_factors_measure_the_same_ellipsoid() {
 fn a_covariance_of_three_is_kept_and_whitens() {
     let rows = [4.0, 1.2, -0.6, 1.2, 9.0, 2.1, -0.6, 2.1, 1.0];
     let bound = JointBound::from_covariance(3, &rows).unwrap();
-    for i in 0..9 {
-        assert!((bound.covariance(i / 3, i % 3) - rows[i]).abs() < 1e-14, "{i}");
+    for (i, wanted) in rows.iter().enumerate() {
+        assert!((bound.covariance(i / 3, i % 3) - wanted).abs() < 1e-14, "{i}");
     }
     let inverse = nalgebra::DMatrix::from_row_slice(3, 3, &rows).try_inverse().unwrap();
     for x in [[1.0, 0.0, 0.0], [0.2, -1.0, 0.7], [0.0, 0.0, 1.0]] {
