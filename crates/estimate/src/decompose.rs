@@ -44,7 +44,7 @@ mod together;
 pub use cause::Cause;
 pub use distil::{Distilled, Residue, Sky, distil};
 pub use inverse_error::{InverseError, inverse_error};
-pub use judge::{Judged, Together, judge, p_deviations};
+pub use judge::{Alone, Judged, Together, judge, p_deviations};
 pub use library_error::LibraryError;
 pub use maps::{Maps, Options};
 pub use method::{Method, decompose, decompose_by, decompose_by_rows};

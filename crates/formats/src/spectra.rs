@@ -25,6 +25,7 @@ use self::content::Content;
 pub(crate) use self::content::stem;
 pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::names::{tagged_name, unique_names};
+pub use holes::measured;
 
 use crate::file::text_of_file;
 use hadar::error::{Error, Result};

@@ -16,16 +16,13 @@
 //! missing ones, for every command alike. Only pixels looked at (16 384, evenly) say what a band and a limit is.
 
 use super::Warning;
+use super::cube_sample::{LOOKED, some};
 use hadar::cube::{Cube, MemoryCube, Rows, Sample, Shape};
-use hadar::error::{Error, Result};
+use hadar::error::Result;
 use hadar::parallel;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::ops::Range;
-use std::path::Path;
 
-/// Pixels that are looked at for bands and limits, evenly in rows and columns.
-pub(super) const LOOKED: usize = 1 << 14;
 /// Fewer pixels say nothing of a band.
 const SAYING: usize = 16;
 /// Counts of which 0 is no reading: e⁻³⁰.
@@ -34,8 +31,6 @@ const FEWEST: f64 = 30.0;
 const BY_CHANCE: f64 = 1e-9;
 /// Times the most that can be sent.
 const BEYOND: f64 = 4.0;
-/// Counts of a pixel beside which another of the same picture does not hold none at all: a twentieth of them would be missed by e⁻³⁰.
-const BRIGHT: f64 = 600.0;
 /// Least emissivity that a surface is taken to have on the average over the bands.
 const LEAST_EMISSIVITY: f64 = 0.02;
 /// Samples at one value that are no chance, and how many more than at the next value.
@@ -243,132 +238,6 @@ fn cut_off<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<f64> {
     None
 }
 
-/// Some pixels of a cube, `most` at most, evenly in rows and columns.
-pub(super) fn some<S: Sample>(cube: &dyn Rows<S>, most: usize) -> Result<MemoryCube<S>> {
-    let shape = cube.shape();
-    let stride = ((shape.rows() * shape.columns()) as f64 / most as f64).sqrt().ceil().max(1.0) as usize;
-    let [down, across] = [stride.min(shape.rows()), stride.min(shape.columns())];
-    let (mut samples, mut buffer, mut rows, mut columns) = (Vec::new(), Vec::new(), 0, 0);
-    for row in (0..shape.rows()).step_by(down) {
-        let own = cube.read(row..row + 1, &mut buffer)?;
-        columns = 0;
-        for pixel in own.chunks(shape.bands()).step_by(across) {
-            samples.extend_from_slice(pixel);
-            columns += 1;
-        }
-        rows += 1;
-    }
-    MemoryCube::new(Shape::new(rows, columns, shape.bands())?, samples)
-}
-
-/// Which pixels a map in a file names: all that are not 0.
-pub(super) fn named(path: &Path, shape: Shape) -> Result<Vec<bool>> {
-    fn of<S: Sample>(map: &dyn Rows<S>) -> Result<Vec<bool>> {
-        let mut buffer = Vec::new();
-        let samples = map.read(0..map.shape().rows(), &mut buffer)?;
-        Ok(samples.iter().map(|one| (*one).into() != 0.0).collect())
-    }
-    let map = hadar_formats::cube::open(path, None)?;
-    let [found, wanted] = [map.shape(), shape].map(|shape| [shape.rows(), shape.columns()]);
-    if found != wanted || map.shape().bands() != 1 {
-        let found = format!(
-            "the map is {} x {} x {}, the cube {} x {} pixels",
-            found[0],
-            found[1],
-            map.shape().bands(),
-            wanted[0],
-            wanted[1]
-        );
-        return Err(Error::malformed(found, "give one value for each pixel, 0 for good ones").in_file(path));
-    }
-    match &map {
-        Cube::F32(rows) => of(rows.as_ref()),
-        Cube::F64(rows) => of(rows.as_ref()),
-    }
-}
-
-/// The cube with the samples of its dead pixels missing, where nothing is known of it but how many counts a unit is: pixels that are 0
-/// in all bands while the median of those looked at holds [`BRIGHT`] counts.
-pub(super) fn without_dead(cube: Cube, counts_per_unit: f64) -> Result<Cube> {
-    fn is_bright<S: Sample>(cube: &dyn Rows<S>, counts_per_unit: f64) -> Result<bool> {
-        let looked = some(cube, LOOKED)?;
-        let pixels = looked.samples().chunks(looked.shape().bands());
-        let mut sums: Vec<f64> = pixels.map(|pixel| pixel.iter().map(|one| (*one).into()).sum()).collect();
-        let middle = sums.len() / 2;
-        let median = *sums.select_nth_unstable_by(middle, f64::total_cmp).1;
-        Ok(median * counts_per_unit >= BRIGHT)
-    }
-    Ok(match cube {
-        Cube::F32(cube) if is_bright(cube.as_ref(), counts_per_unit)? => {
-            Cube::F32(Box::new(WithoutDead(cube)))
-        }
-        Cube::F64(cube) if is_bright(cube.as_ref(), counts_per_unit)? => {
-            Cube::F64(Box::new(WithoutDead(cube)))
-        }
-        other => other,
-    })
-}
-
-/// A cube whose dead pixels have no samples.
-#[derive(Debug)]
-struct WithoutDead<S>(Box<dyn Rows<S>>);
-
-impl<S: Sample> Rows<S> for WithoutDead<S> {
-    fn shape(&self) -> Shape {
-        self.0.shape()
-    }
-
-    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
-        let bands = self.shape().bands();
-        let mut own = Vec::new();
-        let samples = self.0.read(rows, &mut own)?;
-        buffer.clear();
-        buffer.extend_from_slice(samples);
-        for pixel in buffer.chunks_mut(bands).filter(|pixel| pixel.iter().all(|one| (*one).into() == 0.0)) {
-            pixel.fill(S::of(f64::NAN));
-        }
-        Ok(buffer)
-    }
-}
-
-/// A cube whose bad pixels have no samples.
-#[derive(Debug)]
-struct WithoutBad<S> {
-    cube: Box<dyn Rows<S>>,
-    map: Vec<u8>,
-}
-
-/// The cube with the samples of bad pixels missing.
-pub(super) fn without(cube: Cube, map: &[u8]) -> Cube {
-    if map.iter().all(|code| *code == 0) {
-        return cube;
-    }
-    let map = map.to_vec();
-    match cube {
-        Cube::F32(cube) => Cube::F32(Box::new(WithoutBad { cube, map })),
-        Cube::F64(cube) => Cube::F64(Box::new(WithoutBad { cube, map })),
-    }
-}
-
-impl<S: Sample> Rows<S> for WithoutBad<S> {
-    fn shape(&self) -> Shape {
-        self.cube.shape()
-    }
-
-    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
-        let shape = self.shape();
-        let mut own = Vec::new();
-        let samples = self.cube.read(rows.clone(), &mut own)?;
-        buffer.clear();
-        buffer.extend_from_slice(samples);
-        let codes = self.map.iter().skip(rows.start.saturating_mul(shape.columns()));
-        for (pixel, _) in buffer.chunks_mut(shape.bands()).zip(codes).filter(|(_, code)| **code > 0) {
-            pixel.fill(S::of(f64::NAN));
-        }
-        Ok(buffer)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -443,23 +312,5 @@ mod tests {
         samples.iter_mut().for_each(|n| *n = n.min(5400.0));
         let found = readings().find(&cube(samples), &[]).unwrap();
         assert_eq!(found.pixels.iter().map(|one| one.why).collect::<Vec<_>>(), ["saturated"]);
-    }
-
-    /// Where a picture is bright, a pixel that is 0 in all bands was not read; where it is dim, it is a reading like any other.
-    #[test]
-    fn dead_pixels_of_a_bright_picture_have_no_samples() {
-        let mut samples = good();
-        samples[..BANDS].fill(0.0);
-        samples[BANDS] = 0.0;
-        let missing = |counts_per_unit: f64| -> Vec<usize> {
-            let Cube::F64(cube) = without_dead(cube(samples.clone()), counts_per_unit).unwrap() else {
-                panic!()
-            };
-            let mut buffer = Vec::new();
-            let read = cube.read(0..8, &mut buffer).unwrap();
-            read.iter().enumerate().filter(|(_, one)| one.is_nan()).map(|(i, _)| i).collect()
-        };
-        assert_eq!(missing(1.0), (0..BANDS).collect::<Vec<_>>());
-        assert!(missing(1e-3).is_empty());
     }
 }

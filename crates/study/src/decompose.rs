@@ -23,7 +23,7 @@ pub use segmented::{CategoryRow, ObjectRow, PossibleRow, Segmented};
 pub(super) use truth::{There, Truth};
 pub use vision::{DistilledTexture, Vision, hues_deg};
 
-use self::judged::Asked;
+use self::judged::{Asked, ToHold};
 use self::results::{Counted, rows, summary};
 use self::worth::Held;
 use super::{Warning, memory};
@@ -107,7 +107,11 @@ impl DecomposeStudy {
                 Some(asked) => &*asked,
                 none => none.insert(Asked::of(self, method, &setting, &options, all)?),
             };
-            let (together, causes) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
+            let (together, to_hold) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
+            if let Some(ToHold { noise, .. }) = &to_hold {
+                maps.temperature_sigma_k.iter_mut().for_each(|sigma_k| *sigma_k *= *noise as f32);
+            }
+            let causes = to_hold.map_or_else(Vec::new, |to_hold| to_hold.causes);
             if method.has_likelihood() && !(together.is_empty() && causes.is_empty()) {
                 widen(&setting, &mut maps, together, &causes)
                     .map_err(|error| error.at(self.scenario.place("cube.noise")))?;
@@ -144,7 +148,7 @@ impl DecomposeStudy {
             .map_err(|error| self.at_cube(error))?;
         let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
         let answer = (truth, vision, segmented);
-        let model = asked.unwrap_or_default().found(self, method, &options, counted.p_values());
+        let model = asked.unwrap_or_default().found(self, method, counted.p_values());
         Ok(summary(self, method, (&counted, found, model), answer, warnings, kept))
     }
 

@@ -5,11 +5,13 @@ use super::cube_bands::{InOrder, axes_in_doubt};
 use super::cube_noise::{NoiseOfBands, of_bands};
 use super::cube_rows;
 use super::cube_unit::check_light;
+use super::cube_without::without;
+use super::pixel_map::Map;
 use super::{Warning, bands, camera, camera_bands};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::grid::Grid;
-use hadar::instrument::View;
+use hadar::instrument::{Camera, View};
 use hadar::material::Library;
 use hadar::order;
 use hadar::planck;
@@ -18,6 +20,7 @@ use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
+use hadar_formats::spectra::measured;
 use hadar_scenario::decompose::{Bad, CubeUnit, HeatCube, LightSource};
 use hadar_scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use std::path::Path;
@@ -58,6 +61,13 @@ pub(super) struct Measured {
     pub(super) together: Option<Vec<f64>>,
     /// What one count is in the unit of the cube.
     pub(super) units_per_count: f64,
+}
+
+/// What the samples of a cube are in counts.
+struct Scale {
+    counts_per_radiance: Vec<f64>,
+    var_added: Vec<f64>,
+    units_per_count: f64,
 }
 
 impl Said<'_> {
@@ -107,7 +117,6 @@ impl Said<'_> {
         let widths = bands.widths_cm1();
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
-        let mut units_per_count = 1.0;
         // Its table has the order of the file.
         let noise = of_bands(
             self.cube.noise.as_ref(),
@@ -129,34 +138,14 @@ impl Said<'_> {
         let lit = lit.collect::<Result<Vec<_>>>()?;
         let most = brightest(&bands, self.temperature_k[1], &lit);
         let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
-        let (counts_per_radiance, var_added): (Vec<f64>, Vec<f64>) = match self.cube.unit {
-            CubeUnit::CountsPerPhotonRadiance(counts) => {
-                (widths.iter().map(|width| counts / width).collect(), (0..bands.len()).map(added).collect())
-            }
-            CubeUnit::Radiance => {
-                // A variance so much larger than that of the photons that the noise alone counts.
-                let least = (0..bands.len()).map(added).fold(f64::INFINITY, f64::min);
-                let joules = |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
-                let largest =
-                    centres.iter().zip(&widths).zip(&most).map(|((nu, w), sum)| joules(nu) * sum / w);
-                // Of what surfaces and lights can send, not of what the cube holds: no sample changes what another one is worth.
-                units_per_count = least / (PER_VARIANCE * largest.fold(least.sqrt(), f64::max));
-                let scale = |(nu, width): (&f64, &f64)| joules(nu) / (units_per_count * width);
-                let var = (0..bands.len()).map(|band| added(band) / units_per_count / units_per_count);
-                (centres.iter().zip(&widths).map(scale).collect(), var.collect())
-            }
-            CubeUnit::Camera => {
-                let Some(camera) = &camera else {
-                    return Err(at("camera")(Error::malformed("the table is missing", "write [camera]")));
-                };
-                let counting = camera.counting(&bands, &View::default());
-                let var = (0..bands.len()).map(|w| counting.var_added(w) + added(w));
-                (vec![counting.counts_per_radiance; bands.len()], var.collect())
-            }
-        };
+        let added: Vec<f64> = (0..bands.len()).map(added).collect();
+        let Scale { counts_per_radiance, var_added, units_per_count } =
+            self.scale(&bands, &centres, &added, &most, camera.as_ref())?;
         let shape = cube.shape();
-        let named = self.cube.bad_pixels.as_ref().map(|path| cube_bad::named(path, shape));
+        let named = self.cube.bad_pixels.as_ref();
+        let named = named.map(|path| Map::open(path, shape, &[1])?.read(0..shape.rows()));
         let named = named.transpose().map_err(at("cube.bad_pixels"))?.unwrap_or_default();
+        let named: Vec<bool> = named.iter().map(|one| *one != 0.0).collect();
         let counts = |sums: Vec<f64>| sums.iter().zip(&counts_per_radiance).map(|(s, k)| s * k).collect();
         let mut coldest = vec![0.0; bands.nodes_cm1().len()];
         planck::photon_radiance_into(bands.nodes_cm1(), self.temperature_k[0], &mut coldest);
@@ -174,21 +163,8 @@ impl Said<'_> {
         warnings.extend(bad.warnings(shape));
         bad_bands.extend(bad.bands.iter().map(|bad| bad.band));
         bad_bands.sort_unstable();
-        let cube = cube_bad::without(cube, &bad.map);
-        let lights =
-            self.environment.iter().zip(lit).enumerate().map(|(k, (source, lit))| match (source, lit) {
-                (LightSource::Rows(rows), _) => {
-                    let (light, left_out) = counted(&cube, *rows, &bad_bands, units_per_count)
-                        .map_err(at(&format!("environment[{k}]")))?;
-                    if left_out > 0 {
-                        let pixels = (rows[1] - rows[0]) * shape.columns();
-                        warnings.push(Warning::RowsUneven { environment: k, pixels: left_out, of: pixels });
-                    }
-                    Ok(light)
-                }
-                (_, lit) => Ok(Light::Radiance(lit.unwrap_or_default())),
-            });
-        let lights = lights.collect::<Result<Vec<_>>>()?;
+        let cube = without(cube, &bad.map);
+        let lights = self.lights(lit, (&cube, &bad_bands, units_per_count), &mut warnings)?;
         let together =
             noise.together.map(|sigma| sigma.into_iter().map(|sigma| sigma / units_per_count).collect());
         Ok(Measured {
@@ -204,6 +180,76 @@ impl Said<'_> {
             together,
             units_per_count,
         })
+    }
+
+    /// What a sample is. `added` is the variance of its noise in the unit of the cube, `most` what can be sent in each band.
+    fn scale(
+        &self,
+        bands: &Bands,
+        centres_cm1: &[f64],
+        added: &[f64],
+        most: &[f64],
+        camera: Option<&Camera>,
+    ) -> Result<Scale> {
+        let widths = bands.widths_cm1();
+        Ok(match self.cube.unit {
+            CubeUnit::CountsPerPhotonRadiance(counts) => Scale {
+                counts_per_radiance: widths.iter().map(|width| counts / width).collect(),
+                var_added: added.to_vec(),
+                units_per_count: 1.0,
+            },
+            CubeUnit::Radiance => {
+                // A variance so much larger than that of the photons that the noise alone counts.
+                let least = added.iter().copied().fold(f64::INFINITY, f64::min);
+                let joules = |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
+                let of_bands = || centres_cm1.iter().zip(&widths);
+                // Of what surfaces and lights can send, not of what the cube holds: no sample changes what another one is worth.
+                let largest = of_bands().zip(most).map(|((nu, width), sum)| joules(nu) * sum / width);
+                let units_per_count = least / (PER_VARIANCE * largest.fold(least.sqrt(), f64::max));
+                Scale {
+                    counts_per_radiance: of_bands()
+                        .map(|(nu, width)| joules(nu) / (units_per_count * width))
+                        .collect(),
+                    var_added: added.iter().map(|var| var / units_per_count / units_per_count).collect(),
+                    units_per_count,
+                }
+            }
+            CubeUnit::Camera => {
+                let Some(camera) = camera else {
+                    let missing = Error::malformed("the table is missing", "write [camera]");
+                    return Err(self.at("camera")(missing));
+                };
+                let counting = camera.counting(bands, &View::default());
+                Scale {
+                    counts_per_radiance: vec![counting.counts_per_radiance; bands.len()],
+                    var_added: added.iter().enumerate().map(|(w, var)| counting.var_added(w) + var).collect(),
+                    units_per_count: 1.0,
+                }
+            }
+        })
+    }
+
+    /// The surroundings: `lit` where they are told, else rows of the cube without what is not like the rest of them.
+    fn lights(
+        &self,
+        lit: Vec<Option<Vec<f64>>>,
+        (cube, bad_bands, units_per_count): (&Cube, &[usize], f64),
+        warnings: &mut Vec<Warning>,
+    ) -> Result<Vec<Light>> {
+        let each = self.environment.iter().zip(lit).enumerate();
+        each.map(|(environment, (source, lit))| match source {
+            LightSource::Rows(rows) => {
+                let (light, left_out) = counted(cube, *rows, bad_bands, units_per_count)
+                    .map_err(self.at(&format!("environment[{environment}]")))?;
+                if left_out > 0 {
+                    let of = (rows[1] - rows[0]) * cube.shape().columns();
+                    warnings.push(Warning::RowsUneven { environment, pixels: left_out, of });
+                }
+                Ok(light)
+            }
+            _ => Ok(Light::Radiance(lit.unwrap_or_default())),
+        })
+        .collect()
     }
 
     /// Bands that are left out, as the scenario and the file say, in rising wavenumber.
@@ -289,7 +335,9 @@ pub(super) fn spectrum(path: &Path, column: &str, nodes_cm1: &[f64]) -> Result<V
         let names = table.iter().map(|(name, _)| name.as_str());
         return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
     };
-    let mut rows = rows.clone();
+    let largest = rows.iter().fold(0.0_f64, |most, row| most.max(row.1));
+    let rows = measured(rows, largest).map_err(|error| error.for_key(column).in_file(path))?;
+    let mut rows = rows.to_vec();
     order::ascending(&mut rows, |a| a.0);
     on_nodes(&rows, nodes_cm1).map_err(|error| error.in_file(path))
 }

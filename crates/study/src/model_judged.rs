@@ -10,7 +10,7 @@ pub struct ModelJudged {
     pub verdict: ModelVerdict,
     /// Pixels with a p-value.
     pub pixels: usize,
-    /// Mean of their p-values from 1e-4 on: a half for a right model.
+    /// Mean of their p-values from 1e-4 on: a half for a right model; not with stated errors of the library.
     pub p_value_mean: Option<f64>,
     /// Deviations by which that is below a half.
     pub p_value_deviations: Option<f64>,

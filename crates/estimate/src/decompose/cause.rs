@@ -20,7 +20,6 @@
 use super::model::Setting;
 use super::tangent::{Tangent, Tangents};
 use hadar::planck::photon_radiance_into;
-use hadar::spectrum::Bands;
 
 /// Something that may be otherwise than it is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,35 +61,34 @@ pub enum Cause {
 #[derive(Debug)]
 pub(super) struct Effect {
     cause: Cause,
-    /// What is incident for a unit of it, as radiance in each band; or what stands in the table above besides.
-    incident: Vec<f64>,
-    also: Vec<f64>,
+    /// Radiance in each band: of the light that a unit of it adds, or of the air.
+    radiance: Vec<f64>,
+    /// x_w of a tilt, α_w of the air.
+    share: Vec<f64>,
 }
 
 impl Effect {
     pub(super) fn new(cause: &Cause, setting: &Setting<'_>, tangents: &Tangents<'_>) -> Self {
         let bands = setting.bands;
         let pick = |all: Vec<f64>| -> Vec<f64> { tangents.used.iter().map(|band| all[*band]).collect() };
-        let blackbody = |temperature_k: f64| {
-            let mut radiance = vec![0.0; bands.nodes_cm1().len()];
-            photon_radiance_into(bands.nodes_cm1(), temperature_k, &mut radiance);
-            radiance
-        };
-        let (incident, also) = match cause {
-            Cause::LightTemperature { slope, .. } => (pick(bands.weigh(slope)), Vec::new()),
-            Cause::LightMissing { temperature_k } => {
-                (pick(bands.weigh(&blackbody(*temperature_k))), Vec::new())
+        let radiance = match cause {
+            Cause::LightTemperature { slope, .. } => pick(bands.weigh(slope)),
+            Cause::LightMissing { temperature_k } | Cause::Air { temperature_k, .. } => {
+                let mut radiance = vec![0.0; bands.nodes_cm1().len()];
+                photon_radiance_into(bands.nodes_cm1(), *temperature_k, &mut radiance);
+                pick(bands.weigh(&radiance))
             }
-            Cause::Air { depth_per_m, temperature_k } => {
-                let widths = pick(bands.widths_cm1());
-                let depth = pick(bands.weigh(depth_per_m)).iter().zip(&widths).map(|(d, w)| d / w).collect();
-                (pick(bands.weigh(&blackbody(*temperature_k))), depth)
-            }
-            Cause::LightTilt(_) => (Vec::new(), tilt(&pick(centres_cm1(bands)))),
-            Cause::WavelengthShift => (pick(centres_cm1(bands)), pick(bands.widths_cm1())),
-            _ => (Vec::new(), Vec::new()),
+            _ => Vec::new(),
         };
-        Self { cause: cause.clone(), incident, also }
+        let share = match cause {
+            Cause::LightTilt(_) => tilt(&tangents.centres_cm1),
+            Cause::Air { depth_per_m, .. } => {
+                let depth = pick(bands.weigh(depth_per_m));
+                depth.iter().zip(&tangents.widths_cm1).map(|(depth, width)| depth / width).collect()
+            }
+            _ => Vec::new(),
+        };
+        Self { cause: cause.clone(), radiance, share }
     }
 
     /// Slope of the counts of a pixel of material `m` along the cause, in deviations of each band, into `to`.
@@ -114,7 +112,7 @@ impl Effect {
                 }
             }
             Cause::WavelengthShift => {
-                let (nu, width) = (&self.incident, &self.also);
+                let (nu, width) = (&tangents.centres_cm1, &tangents.widths_cm1);
                 let unit: Vec<f64> =
                     mean.iter().zip(kappa).zip(width).map(|((n, k), width)| n / (k * width)).collect();
                 let last = unit.len().saturating_sub(1);
@@ -126,10 +124,10 @@ impl Effect {
             }
             Cause::LightScale(k) => to.extend(scattered(*k).iter().map(|c| v(*k) * c)),
             Cause::LightTilt(k) => {
-                to.extend(scattered(*k).iter().zip(&self.also).map(|(c, x)| v(*k) * c * x));
+                to.extend(scattered(*k).iter().zip(&self.share).map(|(c, x)| v(*k) * c * x));
             }
             Cause::LightTemperature { light, .. } => {
-                to.extend(tangents.reflected[m].iter().zip(&self.incident).map(|(r, s)| v(*light) * r * s));
+                to.extend(tangents.reflected[m].iter().zip(&self.radiance).map(|(r, s)| v(*light) * r * s));
             }
             Cause::LightingTotal => {
                 let total: f64 = lighting.iter().sum();
@@ -140,11 +138,11 @@ impl Effect {
                 }
             }
             Cause::LightMissing { .. } => {
-                to.extend(tangents.reflected[m].iter().zip(&self.incident).map(|(r, s)| r * s));
+                to.extend(tangents.reflected[m].iter().zip(&self.radiance).map(|(r, s)| r * s));
             }
             Cause::Air { .. } => {
-                let sent = mean.iter().zip(kappa).zip(&self.incident);
-                to.extend(sent.zip(&self.also).map(|(((n, k), b), depth)| -depth * (n - k * b)));
+                let sent = mean.iter().zip(kappa).zip(&self.radiance);
+                to.extend(sent.zip(&self.share).map(|(((n, k), b), depth)| -depth * (n - k * b)));
             }
             Cause::Band(band) => {
                 let own = tangents.used.iter().position(|one| one == band);
@@ -153,11 +151,6 @@ impl Effect {
         }
         to.iter_mut().zip(&tangent.sigma).for_each(|(d, sigma)| *d /= sigma);
     }
-}
-
-/// Mean wavenumber of each band, cm⁻¹.
-fn centres_cm1(bands: &Bands) -> Vec<f64> {
-    bands.weigh(bands.nodes_cm1()).iter().zip(bands.widths_cm1()).map(|(sum, width)| sum / width).collect()
 }
 
 /// From −1 at the first to 1 at the last.

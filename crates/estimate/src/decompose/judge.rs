@@ -7,20 +7,25 @@
 //! * Σᵢ ρᵢ_w has the variance Σᵢ kᵢ_w, kᵢ_w = 1 − ΣQᵢ_w²: the residual that pixels have in common in band w;
 //! * along a cause θ ([`super::cause`]), with dᵢ its slope without what temperature and lighting explain, the score is s = Σ dᵢ·ρᵢ and the
 //!   information J = Σ dᵢ·dᵢ. θ̂ = J⁻¹s is the estimate of θ together with all temperatures and lightings (one step of maximum
-//!   likelihood), s²/J what χ² gains by it; a temperature moves by θ̂ (g·∂N/∂θ/σ)/|g| of its deviations, g its row.
+//!   likelihood), s²/J what χ² gains by it; a temperature moves by θ̂ g·(∂N/∂θ)/σ, g its row.
 //!
 //! Pixels that fit nothing by themselves (p below [`NO_FIT`]) are left out of the first sums, as a material that is missing is no fault
 //! of the rest; the p of what is left is uniform from there on. In the second sums, for where most pixels fit nothing, they count
 //! with the weight of a residual of [`FAR`] deviations of χ².
 //!
-//! Assumptions: the material of a pixel with one candidate is right; errors of the library are none (they are the same in all pixels of
-//! a material, and would be taken for causes).
+//! Stated errors ε of the emissivities, of covariance Σ (bands of one material), are the same in all pixels of a material. They move s by
+//! Σₘ aₘ·ε, aₘ_w = Σᵢ dᵢ_w rᵢ_w/σᵢ_w over its pixels, r = e (κB(T) − X) the counts of an error of 1: its variance is J + Σₘ aₘᵀ Σ aₘ, which
+//! takes the place of J in s²/J.
+//!
+//! Assumption: the material of a pixel with one candidate is right.
 
 use super::cause::{Cause, Effect};
+use super::library_error::LibraryError;
 use super::maps::{Maps, check_bands};
 use super::model::Setting;
 use super::pixel::{NO_FIT, NO_MATERIAL, flag};
 use super::tangent::{Tangent, Tangents, dot};
+use hadar::correlation::matern;
 use hadar::cube::{CubeRef, Rows, Sample};
 use hadar::error::{Error, Result};
 use hadar::parallel;
@@ -28,6 +33,9 @@ use hadar::statistics::chi_square_survival;
 
 /// Deviations of χ² above its mean from which on a residual weighs less.
 const FAR: f64 = 4.0;
+
+/// Rows whose sums are in memory at once.
+const ROWS: usize = 16;
 
 /// What pixels say together, of the bands that count and some causes.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,17 +65,23 @@ pub struct Together {
     pub score: Vec<f64>,
     /// J of each cause alone.
     pub information: Vec<f64>,
+    /// What stated errors of the library add to the variance of s.
+    pub of_library: Vec<f64>,
     /// Σ of the squares of what a unit of each cause does to a temperature, in its deviations.
     pub moved: Vec<f64>,
+    /// a of every material, cause and band; empty without stated errors.
+    lean: Vec<f64>,
 }
 
 impl Together {
-    fn new(bands: usize, causes: usize) -> Self {
+    fn new(bands: usize, causes: usize, materials: usize) -> Self {
         Self {
             residual: vec![[0.0; 2]; bands],
             score: vec![0.0; causes],
             information: vec![0.0; causes],
+            of_library: vec![0.0; causes],
             moved: vec![0.0; causes],
+            lean: vec![0.0; materials * causes * bands],
             ..Self::default()
         }
     }
@@ -79,23 +93,41 @@ impl Together {
         self.freedom += other.freedom;
         let pairs = self.residual.iter_mut().zip(&other.residual);
         pairs.for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, from)| *to += from));
-        self.score.iter_mut().zip(&other.score).for_each(|(to, from)| *to += from);
-        self.information.iter_mut().zip(&other.information).for_each(|(to, from)| *to += from);
-        self.moved.iter_mut().zip(&other.moved).for_each(|(to, from)| *to += from);
+        for (to, from) in [
+            (&mut self.score, &other.score),
+            (&mut self.information, &other.information),
+            (&mut self.moved, &other.moved),
+            (&mut self.lean, &other.lean),
+        ] {
+            to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        }
     }
 
-    /// Estimate of a cause alone, and what χ² gains by it; nothing where the pixels do not tell.
+    /// Puts what errors of covariance `sigma` (`[band][band]`) do to the scores in the place of what they lean on.
+    fn with_library(&mut self, sigma: &[f64]) {
+        let (causes, bands) = (self.score.len(), self.residual.len());
+        for (place, a) in std::mem::take(&mut self.lean).chunks(bands.max(1)).enumerate() {
+            let image = sigma.chunks(bands.max(1)).map(|row| dot(row, a));
+            self.of_library[place % causes] += image.zip(a).map(|(image, a)| image * a).sum::<f64>();
+        }
+    }
+
+    /// A cause alone; nothing where the pixels do not tell.
     #[must_use]
-    pub fn alone(&self, cause: usize) -> Option<(f64, f64)> {
-        let information = *self.information.get(cause)?;
-        let score = *self.score.get(cause)?;
-        (information > 0.0).then(|| (score / information, score * score / information))
+    pub fn alone(&self, cause: usize) -> Option<Alone> {
+        let (information, score) = (*self.information.get(cause)?, *self.score.get(cause)?);
+        let var = information + self.of_library.get(cause)?;
+        (information > 0.0).then(|| Alone {
+            estimate: score / information,
+            sigma: var.sqrt() / information,
+            gain_chi_square: score * (score / var),
+        })
     }
 
     /// By how many of its deviations a temperature moves where a cause is as it is estimated, rms over the pixels.
     #[must_use]
     pub fn temperature_moved(&self, cause: usize) -> f64 {
-        let estimate = self.alone(cause).map_or(0.0, |(estimate, _)| estimate.abs());
+        let estimate = self.alone(cause).map_or(0.0, |found| found.estimate.abs());
         let square = self.moved.get(cause).copied().unwrap_or(0.0) / self.pixels.max(1) as f64;
         estimate * square.sqrt()
     }
@@ -105,6 +137,17 @@ impl Together {
     pub fn p_deviations(&self) -> f64 {
         p_deviations(self.p_values, self.pixels)
     }
+}
+
+/// Estimate of a cause alone, together with all temperatures and lightings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alone {
+    /// By how much.
+    pub estimate: f64,
+    /// Its deviation.
+    pub sigma: f64,
+    /// What χ² gains by it; with stated errors of the library the square of the estimate in its deviations.
+    pub gain_chi_square: f64,
 }
 
 /// Deviations by which the mean of p-values from [`NO_FIT`] on is below that of a right model.
@@ -117,13 +160,14 @@ pub fn p_deviations(sum: f64, pixels: usize) -> f64 {
     (0.5 * (1.0 + NO_FIT) - sum / count) * (12.0 * count).sqrt()
 }
 
-/// What pixels `[row][column]` with their `maps` say together of a setting and of `causes`.
+/// What pixels `[row][column]` with their `maps` say together of a setting and of `causes`; errors of the library as stated.
 ///
 /// # Errors
 /// Maps or a cube of another setting, a cube that cannot be read, an unknown gain of every pixel.
 pub fn judge<'c>(
     setting: &Setting<'_>,
     causes: &[Cause],
+    error: Option<LibraryError>,
     maps: &Maps,
     cube: impl Into<CubeRef<'c>>,
 ) -> Result<Judged> {
@@ -134,6 +178,7 @@ pub fn judge<'c>(
     for (what, found, expected) in [
         ("materials of the maps", maps.material.len(), pixels),
         ("temperatures of the maps", maps.temperature_k.len(), pixels),
+        ("deviations of the maps", maps.temperature_sigma_k.len(), pixels),
         ("candidates of the maps", maps.candidates.len(), pixels),
         ("flags of the maps", maps.flags.len(), pixels),
         ("lighting factors of the maps", maps.lighting.len(), pixels * lights),
@@ -144,11 +189,19 @@ pub fn judge<'c>(
     }
     let tangents = Tangents::new(setting)?;
     let effects: Vec<Effect> = causes.iter().map(|cause| Effect::new(cause, setting, &tangents)).collect();
-    let judge = Judge { tangents, effects, maps, lights, per_unit: 1.0 / setting.units_per_count };
-    match cube {
+    let nu = tangents.centres_cm1.clone();
+    let materials = error.map_or(0, |_| setting.library.len());
+    let judge = Judge { tangents, effects, maps, lights, materials, per_unit: 1.0 / setting.units_per_count };
+    let mut found = match cube {
         CubeRef::F32(rows) => judge.whole(rows),
         CubeRef::F64(rows) => judge.whole(rows),
+    }?;
+    if let Some(LibraryError { relative, correlation_cm1 }) = error {
+        let of = |a: f64| nu.iter().map(move |b| relative * relative * matern(a - b, correlation_cm1));
+        let sigma: Vec<f64> = nu.iter().flat_map(|a| of(*a)).collect();
+        [&mut found.fitting, &mut found.all].into_iter().for_each(|sums| sums.with_library(&sigma));
     }
+    Ok(found)
 }
 
 struct Judge<'a> {
@@ -156,15 +209,20 @@ struct Judge<'a> {
     effects: Vec<Effect>,
     maps: &'a Maps,
     lights: usize,
+    /// Materials with stated errors.
+    materials: usize,
     per_unit: f64,
 }
 
 impl Judge<'_> {
     fn whole<S: Sample>(&self, cube: &dyn Rows<S>) -> Result<Judged> {
         let shape = cube.shape();
-        let (bands, causes) = (self.tangents.used.len(), self.effects.len());
+        let sums = || {
+            let (bands, causes) = (self.tangents.used.len(), self.effects.len());
+            [(); 2].map(|()| Together::new(bands, causes, self.materials))
+        };
         let of_row = |(room, buffer): &mut (Room, Vec<S>), row: usize| -> Result<[Together; 2]> {
-            let mut sums = [Together::new(bands, causes), Together::new(bands, causes)];
+            let mut sums = sums();
             let samples = cube.read(row..row + 1, buffer)?;
             for (column, sample) in samples.chunks(shape.bands()).enumerate() {
                 hadar::stop::check();
@@ -172,12 +230,14 @@ impl Judge<'_> {
             }
             Ok(sums)
         };
-        let rows = parallel::try_map_with(shape.rows(), || (Room::default(), Vec::new()), of_row)?;
-        let mut sums = [Together::new(bands, causes), Together::new(bands, causes)];
-        for row in &rows {
-            sums.iter_mut().zip(row).for_each(|(sum, row)| sum.add(row));
+        let mut all = sums();
+        for first in (0..shape.rows()).step_by(ROWS) {
+            let count = ROWS.min(shape.rows() - first);
+            let room = || (Room::default(), Vec::new());
+            let rows = parallel::try_map_with(count, room, |own, row| of_row(own, first + row))?;
+            rows.iter().for_each(|row| all.iter_mut().zip(row).for_each(|(sum, row)| sum.add(row)));
         }
-        let [fitting, all] = sums;
+        let [fitting, all] = all;
         Ok(Judged { fitting, all, bands: self.tangents.used.clone() })
     }
 
@@ -212,15 +272,23 @@ impl Judge<'_> {
         }
         slopes.resize_with(self.effects.len(), Vec::new);
         let row = tangent.row(&tangents.of_temperature()).unwrap_or_default();
-        let length = dot(&row, &row).sqrt();
+        let sigma_k = f64::from(maps.temperature_sigma_k[i]);
+        let reach = match self.materials {
+            0 => Vec::new(),
+            _ => tangents.reach(lit, tangent),
+        };
         moved.clear();
         for (effect, slope) in self.effects.iter().zip(slopes.iter_mut()) {
             effect.slope(tangents, (m, lit), tangent, slope);
-            moved.push(if length > 0.0 { dot(&row, slope) / length } else { 0.0 });
+            moved.push(if sigma_k > 0.0 && sigma_k.is_finite() { dot(&row, slope) / sigma_k } else { 0.0 });
             tangent.take_out(slope);
         }
         let weight = ((freedom + FAR * (2.0 * freedom).sqrt()) / chi_square).min(1.0);
-        let fits = p_value >= NO_FIT;
+        // With stated errors their own p-value says it.
+        let fits = match self.materials {
+            0 => p_value >= NO_FIT,
+            _ => maps.flags[i] & flag::NO_FIT == 0,
+        };
         for (sums, weight) in [(all, weight)].into_iter().chain(fits.then_some((fitting, 1.0))) {
             sums.pixels += 1;
             sums.p_values += p_value;
@@ -234,6 +302,11 @@ impl Judge<'_> {
                 sums.score[a] += weight * dot(one, rho);
                 sums.moved[a] += moved[a] * moved[a];
                 sums.information[a] += weight * dot(one, one);
+                let lean = &mut sums.lean[..];
+                let from = (m * slopes.len() + a) * one.len();
+                for (lean, (d, reach)) in lean.iter_mut().skip(from).zip(one.iter().zip(&reach)) {
+                    *lean += weight * d * reach;
+                }
             }
         }
     }

@@ -32,6 +32,9 @@ pub(super) struct Tangents<'a> {
     pub(super) reflected: Vec<Vec<f64>>,
     /// Counts for each unit of radiance in a band, κ.
     pub(super) counts_per_radiance: Vec<f64>,
+    /// Mean wavenumber of each band, cm⁻¹, and its width, cm⁻¹.
+    pub(super) centres_cm1: Vec<f64>,
+    pub(super) widths_cm1: Vec<f64>,
 }
 
 /// A pixel's counts and their columns.
@@ -56,7 +59,7 @@ impl<'a> Tangents<'a> {
             let found = "an unknown scale of the counts, of which no light can be told";
             return Err(Error::malformed(found, "calibrate the camera: leave unknown.gain out"));
         }
-        let used = Model::new(setting)?.used;
+        let Model { used, centres_cm1, .. } = Model::new(setting)?;
         let pick = |all: Vec<f64>| -> Vec<f64> { used.iter().map(|band| all[*band]).collect() };
         let (bands, widths) = (setting.bands, pick(setting.bands.widths_cm1()));
         let kappa = pick(setting.counts_per_radiance.to_vec());
@@ -95,6 +98,8 @@ impl<'a> Tangents<'a> {
             counted,
             reflected,
             counts_per_radiance: kappa,
+            centres_cm1,
+            widths_cm1: widths,
         })
     }
 
@@ -150,6 +155,17 @@ impl<'a> Tangents<'a> {
             }
         }
         true
+    }
+
+    /// What an error of 1 of the emissivity, as a share of it, does to the counts of a pixel, in deviations of each band:
+    /// e (κB(T) − X)/σ = (N − X)/σ, as N = e κB(T) + (1 − e)X.
+    pub(super) fn reach(&self, lighting: &[f64], tangent: &Tangent) -> Vec<f64> {
+        let each = tangent.mean.iter().zip(&tangent.sigma).enumerate();
+        each.map(|(w, (n, sigma))| {
+            let incident: f64 = self.lights.iter().zip(lighting).map(|(light, v)| v * light[w]).sum();
+            (n - self.counts_per_radiance[w] * incident) / sigma
+        })
+        .collect()
     }
 
     fn first_is_rest(&self) -> bool {

@@ -1,8 +1,7 @@
 //! Objects: connected parts of a map of categories.
 
-use super::categories::NO_CATEGORY;
-use super::components::{NO_PART, Neighbours, components};
-use super::rectangle::rectangle;
+use super::categories::{NO_CATEGORY, bit};
+use super::groups::{Group, groups};
 use hadar::error::Result;
 use serde::Serialize;
 
@@ -34,32 +33,14 @@ pub struct Objects {
 /// # Errors
 /// A map that is no rectangle of so many columns.
 pub fn objects(category: &[u8], columns: usize, smallest: usize) -> Result<Objects> {
-    rectangle(category.len(), columns)?;
-    let value = |i: usize| Some(category[i]).filter(|one| *one != NO_CATEGORY);
-    let (part, count) = components(category.len(), columns, Neighbours::Eight, value);
-    let mut parts: Vec<Option<Object>> = vec![None; count];
-    for (i, part) in part.iter().enumerate().filter(|(_, part)| **part != NO_PART) {
-        let (row, column) = (i / columns, i % columns);
-        let object = parts[*part as usize].get_or_insert(Object {
-            category: category[i],
-            pixels: 0,
-            rows: [row, row + 1],
-            columns: [column, column + 1],
-        });
-        object.pixels += 1;
-        object.rows[1] = row + 1;
-        object.columns = [object.columns[0].min(column), object.columns[1].max(column + 1)];
-    }
-    let mut kept: Vec<(usize, Object)> = parts
-        .into_iter()
-        .enumerate()
-        .filter_map(|(place, object)| Some((place, object.filter(|one| one.pixels >= smallest)?)))
-        .collect();
-    kept.sort_by_key(|(place, object)| (std::cmp::Reverse(object.pixels), *place));
-    let mut place_of = vec![None; count];
-    for (place, (part, _)) in kept.iter().enumerate() {
-        place_of[*part] = u32::try_from(place).ok();
-    }
-    let of_pixel = part.iter().map(|part| place_of.get(*part as usize).copied().flatten()).collect();
-    Ok(Objects { all: kept.into_iter().map(|(_, object)| object).collect(), of_pixel })
+    let one_bit = |one: &u8| if *one == NO_CATEGORY { 0 } else { bit(*one) };
+    let sets: Vec<u64> = category.iter().map(one_bit).collect();
+    let found = groups(&sets, &vec![false; sets.len()], columns, smallest)?;
+    let object = |group: Group| Object {
+        category: group.possible.trailing_zeros() as u8,
+        pixels: group.pixels,
+        rows: group.rows,
+        columns: group.columns,
+    };
+    Ok(Objects { all: found.all.into_iter().map(object).collect(), of_pixel: found.of_pixel })
 }

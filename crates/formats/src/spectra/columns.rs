@@ -345,9 +345,7 @@ impl<'a> Columns<'a> {
         let held = holes::without_padding(&fractions, if percent { 100.0 } else { 1.0 });
         if let Some(hole) = holes::hole(&fractions, held.clone(), if percent { 100.0 } else { 1.0 }) {
             let line = self.grid.rows.get(hole.start).map_or(0, |(line, _)| *line);
-            let found = format!("{} rows of exactly 0 between values that are not", hole.len());
-            let error =
-                Error::malformed(found, "leave rows out where nothing was measured, or write what is there");
+            let error = holes::error(&hole);
             return Err(error.for_key(key).on_line(line));
         }
         Table::new(rows.get(held).unwrap_or(&rows))

@@ -4,12 +4,32 @@
 //! jumps from 0 to a twentieth from one row to the next: such zeros, two or more, are no values. At the ends they are left off, so
 //! that bands beyond are asked for in vain; in between they are an error.
 
+use hadar::error::{Error, Result};
 use std::ops::Range;
 
 /// From exactly 0 to at least this, of all, no spectrum jumps.
 const JUMP: f64 = 0.05;
 /// Zeros that are no accident.
 const RUN: usize = 2;
+
+/// Rows (place, value) of a spectrum without zeros that fill it up at its ends; `all` is the value that a share is of, such as the largest.
+///
+/// # Errors
+/// Zeros between values where none can be.
+pub fn measured(rows: &[(f64, f64)], all: f64) -> Result<&[(f64, f64)]> {
+    let values: Vec<f64> = rows.iter().map(|(_, value)| *value).collect();
+    let held = without_padding(&values, all);
+    match hole(&values, held.clone(), all) {
+        Some(hole) => Err(error(&hole)),
+        None => Ok(rows.get(held).unwrap_or(rows)),
+    }
+}
+
+/// What is said of a hole.
+pub(super) fn error(hole: &Range<usize>) -> Error {
+    let found = format!("{} rows of exactly 0 between values that are not", hole.len());
+    Error::malformed(found, "leave rows out where nothing was measured, or write what is there")
+}
 
 /// The rows without zeros that fill them up at their ends; all of them where there are none, or nothing else.
 pub(super) fn without_padding(values: &[f64], all: f64) -> Range<usize> {

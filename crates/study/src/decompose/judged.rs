@@ -7,11 +7,11 @@
 //! nothing: of many pixels any model is a little wrong. What is said of its pixels then holds only if the model does, and the deviations of temperatures hold what the
 //! causes that explain most would do.
 //!
-//! Assumptions: those of the sums. Not judged are methods that leave light out, and libraries with stated errors: these are the same in
-//! all pixels of a material.
+//! Assumptions: those of the sums. With stated errors of the library, which are the same in all pixels of a material, p-values and bands are not asked, and
+//! causes beside what these errors do. Not judged are methods that leave light out.
 
 use super::DecomposeStudy;
-use crate::cube_bad::{LOOKED, some};
+use crate::cube_sample::{LOOKED, some};
 use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits};
 use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
@@ -45,6 +45,17 @@ pub(super) struct Asked {
     causes: Vec<Cause>,
     judged: Option<Judged>,
     most_decided: bool,
+    /// Whether the library is taken as exact.
+    exact: bool,
+}
+
+/// What the deviations of temperatures have to hold.
+#[derive(Debug)]
+pub(super) struct ToHold {
+    /// Causes with how much of each.
+    pub(super) causes: Vec<(Cause, f64)>,
+    /// By how much all noise is larger.
+    pub(super) noise: f64,
 }
 
 impl Asked {
@@ -56,14 +67,16 @@ impl Asked {
         options: &Options,
         whole: Option<&Maps>,
     ) -> Result<Self> {
-        if method != Method::Ml || setting.gain || options.library_error.is_some() {
-            return Ok(Self::default());
+        let exact = options.library_error.is_none();
+        if method != Method::Ml || setting.gain {
+            return Ok(Self { exact, ..Self::default() });
         }
         let shape = study.cube.shape();
-        let mut asked = Self { causes: causes(study, setting), ..Self::default() };
+        let mut asked = Self { causes: causes(study, setting, exact), exact, ..Self::default() };
+        let error = options.library_error;
         let pixels = |maps: &Maps| (0..maps.material.len()).filter(|i| fits(maps, *i).is_some()).count();
         let (judged, asked_of) = match whole.filter(|_| shape.rows() * shape.columns() <= LOOKED) {
-            Some(maps) => (judge(setting, &asked.causes, maps, &study.cube)?, pixels(maps)),
+            Some(maps) => (judge(setting, &asked.causes, error, maps, &study.cube)?, pixels(maps)),
             None => {
                 let some = match &study.cube {
                     Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref(), LOOKED)?)),
@@ -71,7 +84,7 @@ impl Asked {
                 };
                 let options = Options { spatial: None, ..options.clone() };
                 let maps = decompose_by(method, setting, &options, &some, &|_| ())?;
-                (judge(setting, &asked.causes, &maps, &some)?, pixels(&maps))
+                (judge(setting, &asked.causes, error, &maps, &some)?, pixels(&maps))
             }
         };
         asked.most_decided = 2 * judged.all.pixels > asked_of;
@@ -87,35 +100,59 @@ impl Asked {
         Some(if most_fit { &judged.fitting } else { &judged.all })
     }
 
+    /// What χ² gains by a cause.
+    fn gain(sums: &Together, cause: usize) -> f64 {
+        sums.alone(cause).map_or(0.0, |found| found.gain_chi_square)
+    }
+
+    /// What the likelihood gains by larger noise in all bands, twice, and the factor of its deviations; nothing where errors of the library are in
+    /// the residuals.
+    fn noise(&self, sums: &Together) -> Option<(f64, f64)> {
+        let ratio = sums.chi_square / sums.freedom;
+        (self.exact && ratio > 0.0 && ratio.is_finite())
+            .then(|| (sums.freedom * (ratio - 1.0 - ratio.ln()), ratio.sqrt()))
+    }
+
+    /// What must be gained by what may be the cause: half as much as by the best one, if that is no chance.
+    fn least_gain(&self, sums: &Together) -> f64 {
+        let best = (0..self.causes.len()).map(|i| Self::gain(sums, i)).fold(0.0, f64::max);
+        let best = best.max(self.noise(sums).map_or(0.0, |(gain, _)| gain));
+        if best > LIMIT * LIMIT { MAY_BE * best } else { f64::INFINITY }
+    }
+
     /// Causes that the pixels see and that explain at least half as much as the best.
     fn may_be(&self, sums: &Together) -> Vec<usize> {
-        let gain = |i: &usize| sums.alone(*i).map_or(0.0, |(_, gain)| gain);
-        let best = (0..self.causes.len()).map(|i| gain(&i)).fold(0.0, f64::max);
-        (0..self.causes.len()).filter(|i| gain(i) >= f64::max(MAY_BE * best, LIMIT * LIMIT)).collect()
+        let least = self.least_gain(sums);
+        (0..self.causes.len()).filter(|i| Self::gain(sums, *i) >= least).collect()
     }
 
     /// Whether what explains most would move temperatures by more than is harmless, or another that may be it by twice as much.
     fn does_harm(&self, sums: &Together) -> bool {
-        let gain = |i: &usize| sums.alone(*i).map_or(0.0, |(_, gain)| gain);
         let may_be = self.may_be(sums);
-        let best = may_be.iter().copied().max_by(|a, b| gain(a).total_cmp(&gain(b)));
+        let best =
+            may_be.iter().copied().max_by(|a, b| Self::gain(sums, *a).total_cmp(&Self::gain(sums, *b)));
         best.is_some_and(|best| sums.temperature_moved(best) > HARM)
             || may_be.into_iter().any(|i| sums.temperature_moved(i) > 2.0 * HARM)
     }
 
     /// Whether bands or causes reject the model.
     fn rejects(&self) -> bool {
-        let (Some(sums), Some(judged)) = (self.sums(), &self.judged) else { return false };
-        let unfit = (judged.fitting.pixels as f64) < (1.0 - UNFIT) * judged.all.pixels as f64;
-        let fitting = &judged.fitting;
-        unfit || below(fitting.p_values, fitting.pixels) || self.does_harm(sums)
+        let (Some(sums), Some(Judged { fitting, all, .. })) = (self.sums(), &self.judged) else {
+            return false;
+        };
+        let unfit = (fitting.pixels as f64) < (1.0 - UNFIT) * all.pixels as f64;
+        unfit || self.exact && below(fitting.p_values, fitting.pixels) || self.does_harm(sums)
     }
 
-    /// The causes that the deviations have to hold, with how much of each; none while nothing speaks against the model.
-    pub(super) fn to_hold(&self) -> Vec<(Cause, f64)> {
-        let Some(sums) = self.sums().filter(|_| self.rejects()) else { return Vec::new() };
-        let of = |i: usize| Some((self.causes.get(i)?.clone(), sums.alone(i)?.0));
-        self.may_be(sums).into_iter().filter_map(of).collect()
+    /// What the deviations have to hold; nothing while nothing speaks against the model.
+    pub(super) fn to_hold(&self) -> Option<ToHold> {
+        let sums = self.sums().filter(|_| self.rejects())?;
+        let of = |i: usize| Some((self.causes.get(i)?.clone(), sums.alone(i)?.estimate));
+        let larger = self.noise(sums).filter(|(gain, _)| *gain >= self.least_gain(sums));
+        Some(ToHold {
+            causes: self.may_be(sums).into_iter().filter_map(of).collect(),
+            noise: larger.map_or(1.0, |(_, factor)| factor.max(1.0)),
+        })
     }
 
     /// What is said of the model.
@@ -123,39 +160,40 @@ impl Asked {
         &self,
         study: &DecomposeStudy,
         method: Method,
-        options: &Options,
         (pixels, p_sum, unfit): (usize, f64, usize),
     ) -> ModelJudged {
-        let is_judged = method == Method::Ml && options.library_error.is_none();
+        // Only what is known of all pixels, or of some together.
+        let is_judged = method == Method::Ml && pixels + unfit > 0 && (self.exact || self.sums().is_some());
         let p_z = p_deviations(p_sum, pixels);
         let unfit_share = unfit as f64 / (pixels + unfit).max(1) as f64;
-        let rejected = below(p_sum, pixels) || unfit_share > UNFIT || self.rejects();
+        let rejected = self.exact && below(p_sum, pixels) || unfit_share > UNFIT || self.rejects();
         let sums = self.sums();
         let wide = study.bands.weigh(study.bands.nodes_cm1());
         let widths = study.bands.widths_cm1();
-        let bands = sums.zip(self.judged.as_ref()).map_or_else(Vec::new, |(sums, judged)| {
-            let of = |(band, [sum, var]): (&usize, &[f64; 2])| BandResidual {
-                band: *band,
-                wavenumber_cm1: wide[*band] / widths[*band],
-                residual: sum / sums.pixels.max(1) as f64,
-                deviations: if *var > 0.0 { sum / var.sqrt() } else { 0.0 },
-            };
-            judged.bands.iter().zip(&sums.residual).map(of).collect()
-        });
-        let some = |x: f64| (is_judged && pixels + unfit > 0).then_some(x);
+        let bands =
+            sums.zip(self.judged.as_ref()).filter(|_| self.exact).map_or_else(Vec::new, |(sums, judged)| {
+                let of = |(band, [sum, var]): (&usize, &[f64; 2])| BandResidual {
+                    band: *band,
+                    wavenumber_cm1: wide[*band] / widths[*band],
+                    residual: sum / sums.pixels.max(1) as f64,
+                    deviations: if *var > 0.0 { sum / var.sqrt() } else { 0.0 },
+                };
+                judged.bands.iter().zip(&sums.residual).map(of).collect()
+            });
+        let of_exact = |x: f64| (is_judged && self.exact && x.is_finite()).then_some(x);
         ModelJudged {
-            verdict: match (is_judged && pixels + unfit > 0, rejected) {
+            verdict: match (is_judged, rejected) {
                 (false, _) => ModelVerdict::NotJudged,
                 (true, true) => ModelVerdict::Rejected,
                 (true, false) => ModelVerdict::NotRejected,
             },
             pixels,
-            p_value_mean: some(p_sum / pixels as f64).filter(|p| p.is_finite()),
-            p_value_deviations: some(p_z),
-            unfit: some(unfit_share),
+            p_value_mean: of_exact(p_sum / pixels as f64),
+            p_value_deviations: of_exact(p_z),
+            unfit: is_judged.then_some(unfit_share),
             pixels_asked: sums.map_or(0, |sums| sums.pixels),
             chi_square_reduced: sums
-                .filter(|sums| sums.freedom > 0.0)
+                .filter(|sums| self.exact && sums.freedom > 0.0)
                 .map(|sums| sums.chi_square / sums.freedom),
             bands,
             causes: sums.map_or_else(Vec::new, |sums| self.rows(sums)),
@@ -165,42 +203,37 @@ impl Asked {
     fn rows(&self, sums: &Together) -> Vec<CauseRow> {
         let mut rows: Vec<CauseRow> = (0..self.causes.len())
             .filter_map(|i| {
-                let (estimate, gain) = sums.alone(i)?;
+                let found = sums.alone(i)?;
                 let (cause, light, band, unit) = said(self.causes.get(i)?);
-                let sigma = if gain > 0.0 { (estimate / gain.sqrt()).abs() } else { f64::INFINITY };
                 Some(CauseRow {
                     cause,
                     light,
                     band,
-                    estimate,
-                    sigma,
+                    estimate: found.estimate,
+                    sigma: found.sigma,
                     unit,
-                    gain_chi_square: gain,
+                    gain_chi_square: found.gain_chi_square,
                     temperature_moved: Some(sums.temperature_moved(i)),
                     may_be: false,
                 })
             })
             .collect();
-        // Deviations of all noise larger by a factor: what the likelihood gains by it, twice.
-        let ratio = sums.chi_square / sums.freedom;
-        if ratio > 0.0 && ratio.is_finite() {
+        if let Some((gain, factor)) = self.noise(sums) {
             rows.push(CauseRow {
                 cause: "noise",
                 light: None,
                 band: None,
-                estimate: ratio.sqrt() - 1.0,
-                sigma: (0.5 / sums.freedom).sqrt() * ratio.sqrt(),
+                estimate: factor - 1.0,
+                sigma: (0.5 / sums.freedom).sqrt() * factor,
                 unit: "",
-                gain_chi_square: sums.freedom * (ratio - 1.0 - ratio.ln()),
+                gain_chi_square: gain,
                 temperature_moved: None,
                 may_be: false,
             });
         }
         rows.sort_by(|a, b| b.gain_chi_square.total_cmp(&a.gain_chi_square));
-        let best = rows.first().map_or(0.0, |row| row.gain_chi_square);
-        for row in &mut rows {
-            row.may_be = row.gain_chi_square >= f64::max(MAY_BE * best, LIMIT * LIMIT);
-        }
+        let least = self.least_gain(sums);
+        rows.iter_mut().for_each(|row| row.may_be = row.gain_chi_square >= least);
         rows
     }
 }
@@ -225,7 +258,7 @@ fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static 
 }
 
 /// What may be otherwise than told in a study.
-fn causes(study: &DecomposeStudy, setting: &Setting<'_>) -> Vec<Cause> {
+fn causes(study: &DecomposeStudy, setting: &Setting<'_>, exact: bool) -> Vec<Cause> {
     let nodes = study.bands.nodes_cm1();
     let mut all = vec![Cause::Gain, Cause::WavelengthShift];
     let mut hottest_k = f64::NAN;
@@ -250,7 +283,8 @@ fn causes(study: &DecomposeStudy, setting: &Setting<'_>) -> Vec<Cause> {
     // Where the table of the air does not reach the bands, it cannot be told.
     let depth = Atmosphere::embedded("us-standard").and_then(|air| air.optical_depth(nodes, 1.0));
     all.extend(depth.map(|depth_per_m| Cause::Air { depth_per_m, temperature_k: AIR_K }));
-    let is_used = |band: &usize| !setting.bad_bands.contains(band);
+    // Errors of the library are such in every band.
+    let is_used = |band: &usize| exact && !setting.bad_bands.contains(band);
     all.extend((0..study.bands.len()).filter(is_used).map(Cause::Band));
     all
 }

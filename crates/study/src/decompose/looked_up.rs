@@ -13,6 +13,7 @@ use hadar::spectrum::Bands;
 use hadar_estimate::decompose::{Light, SpatialPrior};
 use hadar_estimate::segmentation::Categories;
 use hadar_formats::cube::Found;
+use hadar_formats::spectra::measured;
 use hadar_scenario::{DecomposeScenario, MaterialRef, Spread};
 
 /// A decomposition scenario with everything it names looked up and checked.
@@ -266,7 +267,8 @@ fn materials(
     };
     let table = columns(path).map_err(|error| ("library.path".to_owned(), error))?;
     let made = |name: &str, rows: &[(f64, f64)]| {
-        Material::from_table(name, rows)
+        measured(rows, 1.0)
+            .and_then(|rows| Material::from_table(name, rows))
             .map_err(|error| ("library.path".to_owned(), error.for_key(name).in_file(path)))
     };
     let Some(wanted) = &spec.materials else {

@@ -1,6 +1,7 @@
 //! Maps of what is there, as files have them, read by rows.
 
-use hadar::cube::{Cube, Rows, Sample, Shape};
+use crate::pixel_map::{Map, read};
+use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hadar_estimate::decompose::NO_MATERIAL;
 use hadar_scenario::decompose::TruthSpec;
@@ -164,50 +165,6 @@ impl Truth {
             })
         };
         places.iter().map(place).collect()
-    }
-}
-
-/// A map in a file.
-#[derive(Debug)]
-struct Map {
-    path: PathBuf,
-    cube: Cube,
-}
-
-impl Map {
-    /// A map of the pixels of a cube, of so many layers as one of `layers`.
-    fn open(path: &Path, shape: Shape, layers: &[usize]) -> Result<Self> {
-        let cube = hadar_formats::cube::open(path, None)?;
-        let found = cube.shape();
-        if (found.rows(), found.columns()) != (shape.rows(), shape.columns())
-            || !layers.contains(&found.bands())
-        {
-            let found = format!(
-                "the map is {} x {} x {}, the cube {} x {} pixels",
-                found.rows(),
-                found.columns(),
-                found.bands(),
-                shape.rows(),
-                shape.columns()
-            );
-            return Err(Error::malformed(found, "give one value for each pixel").in_file(path));
-        }
-        Ok(Self { path: path.to_owned(), cube })
-    }
-
-    fn read(&self, rows: Range<usize>) -> Result<Vec<f64>> {
-        read(&self.cube, rows)
-    }
-}
-
-/// Samples of some rows of a cube.
-fn read(cube: &Cube, rows: Range<usize>) -> Result<Vec<f64>> {
-    fn of<S: Sample>(cube: &dyn Rows<S>, rows: Range<usize>) -> Result<Vec<f64>> {
-        Ok(cube.read(rows, &mut Vec::new())?.iter().map(|x| (*x).into()).collect())
-    }
-    match cube {
-        Cube::F32(cube) => of(cube.as_ref(), rows),
-        Cube::F64(cube) => of(cube.as_ref(), rows),
     }
 }
 

@@ -3,9 +3,9 @@
 use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use super::watched::Watch;
-use crate::cube_bad::without_dead;
 use crate::cube_bands::{InOrder, axes_in_doubt};
 use crate::cube_unit::check_counts;
+use crate::cube_without::without_dead;
 use crate::{bands, camera, camera_bands, stage};
 use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};

@@ -11,23 +11,26 @@ const LISTED: usize = 6;
 pub(super) fn text(model: &ModelJudged) -> String {
     let mut out = String::new();
     let deviations = |x: f64| significant(x, if x.abs() < 100.0 { 2 } else { 3 });
-    let Some((mean, below)) = model.p_value_mean.zip(model.p_value_deviations) else {
-        let why = "Whether the cube follows its model was not asked: with errors of the library, or without scattered light, all pixels of \
-                   a material may be off together\n\n";
-        return if model.verdict == ModelVerdict::NotJudged { why.to_owned() } else { out };
-    };
+    if model.verdict == ModelVerdict::NotJudged {
+        return "Whether the cube follows its model was not asked: too few pixels are decided, there are as many unknowns as bands, or the method \
+                leaves light out\n\n"
+            .to_owned();
+    }
     let says = match model.verdict {
         ModelVerdict::Rejected => "No",
         _ => "Nothing speaks against it",
     };
-    let _ = writeln!(
-        out,
-        "Does the cube follow its model? {says}\n  p-values of {} pixels: mean {}, {} deviations {} a right model\'s",
-        whole(model.pixels as u64),
-        significant(mean, 3),
-        deviations(below.abs()),
-        if below > 0.0 { "below" } else { "above" },
-    );
+    let _ = writeln!(out, "Does the cube follow its model? {says}");
+    if let Some((mean, below)) = model.p_value_mean.zip(model.p_value_deviations) {
+        let _ = writeln!(
+            out,
+            "  p-values of {} pixels: mean {}, {} deviations {} a right model's",
+            whole(model.pixels as u64),
+            significant(mean, 3),
+            deviations(below.abs()),
+            if below > 0.0 { "below" } else { "above" },
+        );
+    }
     let worst = model.bands.iter().max_by(|a, b| a.deviations.abs().total_cmp(&b.deviations.abs()));
     if let Some(worst) = worst {
         let _ = writeln!(
@@ -67,7 +70,7 @@ pub(super) fn text(model: &ModelJudged) -> String {
 /// A cause and by how much, in words.
 pub(crate) fn cause(row: &CauseRow) -> String {
     let amount = |unit: &str, factor: f64| {
-        let [estimate, sigma] = [row.estimate, row.sigma].map(|x| factor * x);
+        let (estimate, sigma) = (factor * row.estimate, factor.abs() * row.sigma);
         let digits = if sigma > 0.0 && estimate != 0.0 {
             (estimate.abs() / sigma).log10().floor().clamp(0.0, 3.0) as usize + 2
         } else {
@@ -91,6 +94,7 @@ pub(crate) fn cause(row: &CauseRow) -> String {
         "band" => {
             format!("band {} (from 0) stronger by {}", row.band.unwrap_or_default(), amount(" %", 100.0))
         }
+        "noise" if row.estimate < 0.0 => format!("noise smaller by {}", amount(" %", -100.0)),
         "noise" => format!("noise larger by {}", amount(" %", 100.0)),
         other => other.to_owned(),
     }
