@@ -142,7 +142,7 @@ fn an_error_that_all_pixels_have_in_common_is_in_the_intervals() {
     // Pixels of a cube err together: 24 draws of what is off, 0.95 +- 0.045. Without, a cube that is far off is found out by itself, and its
     // deviations hold what may be the cause; what is not seen is not held.
     println!("intervals hold {} with the common error, {} without", held[0], held[1]);
-    assert!(held[0] > 0.86 && held[1] < 0.86, "{held:?}");
+    assert!(held[0] > 0.92 && held[1] < 0.92, "{held:?}");
 }
 
 #[test]
