@@ -6,6 +6,7 @@
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
 //! * [`widen`]: what an error that all bands and pixels have in common adds to the deviations;
+//! * [`estimate`]: unknowns that the whole cube shares, with the pixels; [`Told`]: a setting with a cause put into it;
 //! * [`judge()`]: what all pixels together say of the model, and of each [`Cause`] why it may not hold;
 //! * [`Method`], [`decompose_by`]: methods that it is compared with; [`decompose_by_rows`]: maps that are too large to be kept; [`inverse_error`]: by how much one of them errs;
 //! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
@@ -34,12 +35,14 @@ mod model;
 mod pixel;
 pub mod possible;
 mod screen;
+mod shared;
 mod space;
 mod spatial;
 mod step;
 mod tangent;
 mod texture_information;
 mod together;
+mod told;
 
 pub use cause::Cause;
 pub use distil::{Distilled, Residue, Sky, distil};
@@ -48,9 +51,11 @@ pub use judge::{Alone, Judged, Together, judge, p_deviations};
 pub use library_error::LibraryError;
 pub use maps::{Maps, Options};
 pub use method::{Method, decompose, decompose_by, decompose_by_rows};
-pub use model::{Light, MOST_SURROUNDINGS, Setting};
+pub use model::{Light, MOST_SURROUNDINGS, Path, Setting};
 pub use pixel::{NO_FIT, NO_MATERIAL, Pixel, Spared, flag};
 pub use possible::CANDIDATE_SHARE;
+pub use shared::{Shared, Unknown, estimate};
 pub use spatial::{Spatial, SpatialPrior};
 pub use texture_information::{TextureInformation, texture_information};
 pub use together::widen;
+pub use told::{Spectra, Told};

@@ -208,6 +208,8 @@ impl DecomposeStudy {
             lighting_total: unknown.lighting_total,
             gain: unknown.gain,
             bad_bands: &self.bad_bands,
+            path: None,
+            light_besides: &[],
         }
     }
 

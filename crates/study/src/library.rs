@@ -81,6 +81,8 @@ impl LibraryStudy {
             lighting_total: scenario.unknown.lighting_total,
             gain: false,
             bad_bands: &measured.bad_bands,
+            path: None,
+            light_besides: &[],
         };
         let clusters = scenario.clusters;
         let asked = Asked {

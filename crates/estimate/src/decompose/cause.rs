@@ -5,9 +5,9 @@
 //! | cause | unit of θ | ∂N_w/∂θ |
 //! |---|---|---|
 //! | gain | | N_w, without light that was itself counted |
-//! | wavelength shift | cm⁻¹ | κ_w Δ_w ∂(N_w/κ_w Δ_w)/∂ν, over the band and its two neighbours |
+//! | wavelength shift | cm⁻¹ | difference of the counts with all spectra read a little higher and lower |
 //! | scale of light k | | Vₖ Cₖ, Cₖ the counts that are scattered of it at V = 1 |
-//! | tilt of light k | | Vₖ Cₖ x_w, x from −1 to 1 over the bands |
+//! | shape of light k | | Vₖ Cₖ P_w, P Legendre's polynomial of an order over the bands; the tilt is the first |
 //! | temperature of light k | K | κ_w Vₖ (1 − e) ∂Sₖ/∂T |
 //! | sum of the lighting factors | | Σ Vₖ Cₖ/ΣVₖ, where it is told |
 //! | a light that is missing | | κ_w (1 − e) B(T_x), its V |
@@ -17,9 +17,12 @@
 //! Assumption: to first order. Source: paper S44; the score test is C. R. Rao's, Proc. Camb. Phil. Soc. 44, 50 (1948),
 //! doi:10.1017/S0305004100023987.
 
-use super::model::Setting;
+use super::model::{Light, Setting};
 use super::tangent::{Tangent, Tangents};
-use hadar::planck::photon_radiance_into;
+use super::told::{Spectra, Told, legendre};
+use hadar::error::Result;
+use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_into};
+use std::sync::Arc;
 
 /// Something that may be otherwise than it is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,17 +30,23 @@ pub enum Cause {
     /// All counts are larger by this share.
     Gain,
     /// The bands lie so many cm⁻¹ higher than told.
-    WavelengthShift,
+    WavelengthShift(Arc<Spectra>),
     /// A light is stronger by this share in all bands.
     LightScale(usize),
-    /// A light is stronger by this share at the upper end of the bands, and weaker as much at the lower one.
-    LightTilt(usize),
-    /// A light is so many kelvin warmer; with the slope of its radiance at the nodes, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ and K.
+    /// A light is stronger by this share of a Legendre polynomial over the bands: of the first order, at their upper end, and weaker as
+    /// much at the lower one.
+    LightShape {
+        /// Which of the surroundings.
+        light: usize,
+        /// From 1 to 3.
+        order: usize,
+    },
+    /// A light is so many kelvin warmer.
     LightTemperature {
         /// Which of the surroundings.
         light: usize,
-        /// ∂S/∂T at the nodes.
-        slope: Vec<f64>,
+        /// The temperature that it is told to have, K.
+        temperature_k: f64,
     },
     /// The sum of the lighting factors is larger by this.
     LightingTotal,
@@ -57,22 +66,42 @@ pub enum Cause {
     Band(usize),
 }
 
+impl Cause {
+    /// Whether its amount is a share of what it is a cause of.
+    pub(super) fn is_share(&self) -> bool {
+        matches!(self, Self::Gain | Self::LightScale(_) | Self::Band(_))
+    }
+}
+
 /// A cause with what of it is the same for all pixels, in the bands that count.
 #[derive(Debug)]
 pub(super) struct Effect {
     cause: Cause,
     /// Radiance in each band: of the light that a unit of it adds, or of the air.
     radiance: Vec<f64>,
-    /// x_w of a tilt, α_w of the air.
+    /// P_w of a shape, α_w of the air.
     share: Vec<f64>,
+    /// All spectra read higher and lower by [`Effect::step`].
+    shifted: Option<Box<[Tangents; 2]>>,
+    /// Half of the narrowest band's width, cm⁻¹.
+    step: f64,
 }
 
 impl Effect {
-    pub(super) fn new(cause: &Cause, setting: &Setting<'_>, tangents: &Tangents<'_>) -> Self {
+    pub(super) fn new(cause: &Cause, setting: &Setting<'_>, tangents: &Tangents) -> Result<Self> {
         let bands = setting.bands;
         let pick = |all: Vec<f64>| -> Vec<f64> { tangents.used.iter().map(|band| all[*band]).collect() };
         let radiance = match cause {
-            Cause::LightTemperature { slope, .. } => pick(bands.weigh(slope)),
+            Cause::LightTemperature { light, temperature_k } => {
+                let nodes = bands.nodes_cm1();
+                let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+                photon_radiance_and_slope_into(nodes, *temperature_k, &mut value, &mut slope);
+                if let Some(Light::Radiance(radiance)) = setting.surroundings.get(*light) {
+                    let own = slope.iter_mut().zip(value.iter().zip(radiance));
+                    own.for_each(|(d, (b, s))| *d *= if *b > 0.0 { s / b } else { 0.0 });
+                }
+                pick(bands.weigh(&slope))
+            }
             Cause::LightMissing { temperature_k } | Cause::Air { temperature_k, .. } => {
                 let mut radiance = vec![0.0; bands.nodes_cm1().len()];
                 photon_radiance_into(bands.nodes_cm1(), *temperature_k, &mut radiance);
@@ -81,21 +110,33 @@ impl Effect {
             _ => Vec::new(),
         };
         let share = match cause {
-            Cause::LightTilt(_) => tilt(&tangents.centres_cm1),
+            Cause::LightShape { order, .. } => {
+                let wide = bands.weigh(&legendre(*order, bands.nodes_cm1()));
+                pick(wide).iter().zip(&tangents.widths_cm1).map(|(sum, width)| sum / width).collect()
+            }
             Cause::Air { depth_per_m, .. } => {
                 let depth = pick(bands.weigh(depth_per_m));
                 depth.iter().zip(&tangents.widths_cm1).map(|(depth, width)| depth / width).collect()
             }
             _ => Vec::new(),
         };
-        Self { cause: cause.clone(), radiance, share }
+        let step = 0.5 * tangents.widths_cm1.iter().copied().fold(f64::INFINITY, f64::min);
+        let shifted = match cause {
+            Cause::WavelengthShift(_) => {
+                let told = Told::of(setting);
+                let at = |by: f64| Tangents::new(&told.with(cause, by)?.setting());
+                Some(Box::new([at(step)?, at(-step)?]))
+            }
+            _ => None,
+        };
+        Ok(Self { cause: cause.clone(), radiance, share, shifted, step })
     }
 
     /// Slope of the counts of a pixel of material `m` along the cause, in deviations of each band, into `to`.
     pub(super) fn slope(
         &self,
-        tangents: &Tangents<'_>,
-        (m, lighting): (usize, &[f64]),
+        tangents: &Tangents,
+        (m, temperature_k, lighting): (usize, f64, &[f64]),
         tangent: &Tangent,
         to: &mut Vec<f64>,
     ) {
@@ -111,20 +152,19 @@ impl Effect {
                     to.iter_mut().zip(scattered(k)).for_each(|(d, c)| *d -= v(k) * c);
                 }
             }
-            Cause::WavelengthShift => {
-                let (nu, width) = (&tangents.centres_cm1, &tangents.widths_cm1);
-                let unit: Vec<f64> =
-                    mean.iter().zip(kappa).zip(width).map(|((n, k), width)| n / (k * width)).collect();
-                let last = unit.len().saturating_sub(1);
-                to.extend((0..unit.len()).map(|w| {
-                    let (low, high) = (w.saturating_sub(1), (w + 1).min(last));
-                    let rise = nu[high] - nu[low];
-                    if rise > 0.0 { kappa[w] * width[w] * (unit[high] - unit[low]) / rise } else { 0.0 }
-                }));
+            Cause::WavelengthShift(_) => {
+                to.resize(mean.len(), 0.0);
+                let mut counts = Vec::new();
+                let ends = self.shifted.iter().flat_map(|ends| ends.iter()).zip([0.5, -0.5]);
+                for (end, half) in ends {
+                    if end.mean((m, temperature_k, lighting), &mut counts).is_some() {
+                        to.iter_mut().zip(&counts).for_each(|(d, n)| *d += half * n / self.step);
+                    }
+                }
             }
             Cause::LightScale(k) => to.extend(scattered(*k).iter().map(|c| v(*k) * c)),
-            Cause::LightTilt(k) => {
-                to.extend(scattered(*k).iter().zip(&self.share).map(|(c, x)| v(*k) * c * x));
+            Cause::LightShape { light, .. } => {
+                to.extend(scattered(*light).iter().zip(&self.share).map(|(c, x)| v(*light) * c * x));
             }
             Cause::LightTemperature { light, .. } => {
                 to.extend(tangents.reflected[m].iter().zip(&self.radiance).map(|(r, s)| v(*light) * r * s));
@@ -151,11 +191,4 @@ impl Effect {
         }
         to.iter_mut().zip(&tangent.sigma).for_each(|(d, sigma)| *d /= sigma);
     }
-}
-
-/// From −1 at the first to 1 at the last.
-fn tilt(nu: &[f64]) -> Vec<f64> {
-    let (Some(low), Some(high)) = (nu.first(), nu.last()) else { return Vec::new() };
-    let half = 0.5 * (high - low);
-    nu.iter().map(|nu| if half > 0.0 { (nu - low) / half - 1.0 } else { 0.0 }).collect()
 }

@@ -89,7 +89,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(tangents: &Tangents<'_>) -> Self {
+    fn new(tangents: &Tangents) -> Self {
         let (bands, lights) = (tangents.used.len(), tangents.lights.len());
         Self {
             residues: vec![(0, vec![[0.0; 2]; bands]); tangents.materials()],
@@ -217,7 +217,7 @@ pub(super) type Fitted<'a> = (usize, &'a [f64], &'a Tangent, &'a [f64]);
 
 /// Does `with` for each pixel that has a material, a temperature and a lighting, and without anything for the others.
 pub(super) fn each_pixel(
-    tangents: &Tangents<'_>,
+    tangents: &Tangents,
     maps: &Maps,
     (row, counts, setting): Row<'_, '_>,
     with: &mut dyn FnMut(usize, Option<Fitted<'_>>),
@@ -250,12 +250,12 @@ pub(super) fn each_pixel(
 }
 
 /// δ of a band for one unit of its whitened residue; nothing where nothing is scattered.
-fn per_unit(tangents: &Tangents<'_>, m: usize, tangent: &Tangent, w: usize) -> Option<f64> {
+fn per_unit(tangents: &Tangents, m: usize, tangent: &Tangent, w: usize) -> Option<f64> {
     let reflected = tangents.reflected.get(m)?.get(w).filter(|counts| **counts > 0.0)?;
     Some(tangent.sigma.get(w)? / reflected).filter(|per| per.is_finite())
 }
 
-fn first(tangents: &Tangents<'_>, maps: &Maps, row: Row<'_, '_>, shows: &[u64]) -> Sums {
+fn first(tangents: &Tangents, maps: &Maps, row: Row<'_, '_>, shows: &[u64]) -> Sums {
     let mut sums = Sums::new(tangents);
     each_pixel(tangents, maps, row, &mut |i, found| {
         let Some((m, rho, tangent, lighting)) = found else { return };
@@ -324,7 +324,7 @@ fn light_of_the_sky(lights: &[Vec<f64>], sky: usize, sums: &Sums) -> (Vec<Vec<f6
 
 /// Texture, deviation, texture of the model and with all of the residue, of each pixel of a row.
 fn second(
-    tangents: &Tangents<'_>,
+    tangents: &Tangents,
     maps: &Maps,
     row: Row<'_, '_>,
     (of_sky, var_light): (&[Vec<f64>], &[Vec<f64>]),
@@ -362,7 +362,7 @@ fn second(
 }
 
 /// The row of whitened counts that the share of the residue Σω δ follows.
-pub(super) fn fused(tangents: &Tangents<'_>, (m, tangent): (usize, &Tangent), var_light: &[f64]) -> Vec<f64> {
+pub(super) fn fused(tangents: &Tangents, (m, tangent): (usize, &Tangent), var_light: &[f64]) -> Vec<f64> {
     let one = |(w, light): (usize, &f64)| {
         let per = per_unit(tangents, m, tangent, w).filter(|_| *light > 0.0);
         per.map_or(0.0, |per| per * light / (light + tangent.kept(w) * per * per))

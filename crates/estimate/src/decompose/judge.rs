@@ -17,6 +17,9 @@
 //! Σₘ aₘ·ε, aₘ_w = Σᵢ dᵢ_w rᵢ_w/σᵢ_w over its pixels, r = e (κB(T) − X) the counts of an error of 1: its variance is J + Σₘ aₘᵀ Σ aₘ, which
 //! takes the place of J in s²/J.
 //!
+//! Beside unknowns that the whole cube shares and that were estimated with the pixels ([`super::shared`], covariance C), a cause keeps
+//! J_aa − J_aθ C J_θa of its information, and a temperature moves by what the cause does less what the unknowns that follow it do.
+//!
 //! Assumption: the material of a pixel with one candidate is right.
 
 use super::cause::{Cause, Effect};
@@ -24,6 +27,7 @@ use super::library_error::LibraryError;
 use super::maps::{Maps, check_bands};
 use super::model::Setting;
 use super::pixel::{NO_FIT, NO_MATERIAL, flag};
+use super::shared::Shared;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::correlation::matern;
 use hadar::cube::{CubeRef, Rows, Sample};
@@ -33,6 +37,9 @@ use hadar::statistics::chi_square_survival;
 
 /// Deviations of χ² above its mean from which on a residual weighs less.
 const FAR: f64 = 4.0;
+
+/// Share of a cause's information from which on it is one of its own beside those that are estimated with the pixels.
+const ONE: f64 = 1e-6;
 
 /// Rows whose sums are in memory at once.
 const ROWS: usize = 16;
@@ -71,11 +78,26 @@ pub struct Together {
     pub moved: Vec<f64>,
     /// a of every material, cause and band; empty without stated errors.
     lean: Vec<f64>,
+    /// The last of the causes, which are estimated with the pixels ([`super::shared`]).
+    shared: usize,
+    /// J, the same of `of_library` and of `moved`, of each cause with each of the shared ones: `[cause][shared]`.
+    pub(super) cross: Cross,
+}
+
+/// Products of each cause with each of those that are shared, `[cause][shared]`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Cross {
+    pub(super) information: Vec<f64>,
+    pub(super) of_library: Vec<f64>,
+    moved: Vec<f64>,
 }
 
 impl Together {
-    fn new(bands: usize, causes: usize, materials: usize) -> Self {
+    fn new(bands: usize, [causes, shared]: [usize; 2], materials: usize) -> Self {
+        let each = vec![0.0; causes * shared];
         Self {
+            shared,
+            cross: Cross { information: each.clone(), of_library: each.clone(), moved: each },
             residual: vec![[0.0; 2]; bands],
             score: vec![0.0; causes],
             information: vec![0.0; causes],
@@ -98,6 +120,8 @@ impl Together {
             (&mut self.information, &other.information),
             (&mut self.moved, &other.moved),
             (&mut self.lean, &other.lean),
+            (&mut self.cross.information, &other.cross.information),
+            (&mut self.cross.moved, &other.cross.moved),
         ] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
         }
@@ -105,11 +129,45 @@ impl Together {
 
     /// Puts what errors of covariance `sigma` (`[band][band]`) do to the scores in the place of what they lean on.
     fn with_library(&mut self, sigma: &[f64]) {
-        let (causes, bands) = (self.score.len(), self.residual.len());
-        for (place, a) in std::mem::take(&mut self.lean).chunks(bands.max(1)).enumerate() {
-            let image = sigma.chunks(bands.max(1)).map(|row| dot(row, a));
-            self.of_library[place % causes] += image.zip(a).map(|(image, a)| image * a).sum::<f64>();
+        let (causes, bands) = (self.score.len(), self.residual.len().max(1));
+        for of_material in std::mem::take(&mut self.lean).chunks(causes.max(1) * bands) {
+            let lean = |cause: usize| &of_material[cause * bands..][..bands];
+            let images: Vec<Vec<f64>> = (0..causes)
+                .map(|cause| sigma.chunks(bands).map(|row| dot(row, lean(cause))).collect())
+                .collect();
+            for (a, image) in images.iter().enumerate() {
+                self.of_library[a] += dot(image, lean(a));
+                for k in 0..self.shared {
+                    self.cross.of_library[a * self.shared + k] += dot(image, lean(causes - self.shared + k));
+                }
+            }
         }
+    }
+
+    /// What each cause has beside those that were estimated with the pixels, which are no causes any more.
+    fn beside(&mut self, shared: &Shared) {
+        let count = self.shared;
+        let kept = self.score.len() - count;
+        for a in 0..kept {
+            let row = |of: &[f64], a: usize| -> Vec<f64> { of[a * count..][..count].to_vec() };
+            let (information, library, moved) =
+                (row(&self.cross.information, a), row(&self.cross.of_library, a), row(&self.cross.moved, a));
+            // By how much the shared ones follow a unit of the cause.
+            let follow = shared.image(&information);
+            let own = self.information[a];
+            let rest = own - dot(&information, &follow);
+            // What is left of one that a shared unknown is as well is rounding.
+            self.information[a] = if rest > ONE * own { rest } else { 0.0 };
+            let square = |of: &[f64], own: f64, row: &[f64]| {
+                let each = (0..count).map(|k| follow[k] * dot(&follow, &of[(kept + k) * count..][..count]));
+                (own - 2.0 * dot(row, &follow) + each.sum::<f64>()).max(0.0)
+            };
+            self.of_library[a] = square(&self.cross.of_library, self.of_library[a], &library);
+            self.moved[a] = square(&self.cross.moved, self.moved[a], &moved);
+        }
+        [&mut self.score, &mut self.information, &mut self.of_library, &mut self.moved]
+            .into_iter()
+            .for_each(|all| all.truncate(kept));
     }
 
     /// A cause alone; nothing where the pixels do not tell.
@@ -160,13 +218,30 @@ pub fn p_deviations(sum: f64, pixels: usize) -> f64 {
     (0.5 * (1.0 + NO_FIT) - sum / count) * (12.0 * count).sqrt()
 }
 
-/// What pixels `[row][column]` with their `maps` say together of a setting and of `causes`; errors of the library as stated.
+/// What pixels `[row][column]` with their `maps` say together of a setting and of `causes`; errors of the library as stated, and beside
+/// what was estimated with the pixels, where `setting` is that of these estimates.
 ///
 /// # Errors
 /// Maps or a cube of another setting, a cube that cannot be read, an unknown gain of every pixel.
 pub fn judge<'c>(
     setting: &Setting<'_>,
     causes: &[Cause],
+    (error, shared): (Option<LibraryError>, Option<&Shared>),
+    maps: &Maps,
+    cube: impl Into<CubeRef<'c>>,
+) -> Result<Judged> {
+    let also: Vec<Cause> = shared.map_or_else(Vec::new, Shared::causes);
+    let mut found = sums(setting, (causes, &also), error, maps, cube)?;
+    if let Some(shared) = shared {
+        [&mut found.fitting, &mut found.all].into_iter().for_each(|sums| sums.beside(shared));
+    }
+    Ok(found)
+}
+
+/// The sums, those of `shared` after those of `causes`.
+pub(super) fn sums<'c>(
+    setting: &Setting<'_>,
+    (causes, shared): (&[Cause], &[Cause]),
     error: Option<LibraryError>,
     maps: &Maps,
     cube: impl Into<CubeRef<'c>>,
@@ -188,10 +263,19 @@ pub fn judge<'c>(
         }
     }
     let tangents = Tangents::new(setting)?;
-    let effects: Vec<Effect> = causes.iter().map(|cause| Effect::new(cause, setting, &tangents)).collect();
+    let effects = causes.iter().chain(shared).map(|cause| Effect::new(cause, setting, &tangents));
+    let effects = effects.collect::<Result<Vec<_>>>()?;
     let nu = tangents.centres_cm1.clone();
     let materials = error.map_or(0, |_| setting.library.len());
-    let judge = Judge { tangents, effects, maps, lights, materials, per_unit: 1.0 / setting.units_per_count };
+    let judge = Judge {
+        tangents,
+        effects,
+        shared: shared.len(),
+        maps,
+        lights,
+        materials,
+        per_unit: 1.0 / setting.units_per_count,
+    };
     let mut found = match cube {
         CubeRef::F32(rows) => judge.whole(rows),
         CubeRef::F64(rows) => judge.whole(rows),
@@ -205,8 +289,10 @@ pub fn judge<'c>(
 }
 
 struct Judge<'a> {
-    tangents: Tangents<'a>,
+    tangents: Tangents,
     effects: Vec<Effect>,
+    /// The last of them, which are estimated with the pixels.
+    shared: usize,
     maps: &'a Maps,
     lights: usize,
     /// Materials with stated errors.
@@ -218,7 +304,7 @@ impl Judge<'_> {
     fn whole<S: Sample>(&self, cube: &dyn Rows<S>) -> Result<Judged> {
         let shape = cube.shape();
         let sums = || {
-            let (bands, causes) = (self.tangents.used.len(), self.effects.len());
+            let (bands, causes) = (self.tangents.used.len(), [self.effects.len(), self.shared]);
             [(); 2].map(|()| Together::new(bands, causes, self.materials))
         };
         let of_row = |(room, buffer): &mut (Room, Vec<S>), row: usize| -> Result<[Together; 2]> {
@@ -255,7 +341,8 @@ impl Judge<'_> {
         lit.extend(maps.lighting[i * self.lights..][..self.lights].iter().map(|v| f64::from(*v)));
         // What nothing scatters changes nothing.
         lit.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
-        if !tangents.at(m, f64::from(maps.temperature_k[i]), lit, tangent) {
+        let temperature_k = f64::from(maps.temperature_k[i]);
+        if !tangents.at(m, temperature_k, lit, tangent) {
             return;
         }
         rho.clear();
@@ -279,7 +366,7 @@ impl Judge<'_> {
         };
         moved.clear();
         for (effect, slope) in self.effects.iter().zip(slopes.iter_mut()) {
-            effect.slope(tangents, (m, lit), tangent, slope);
+            effect.slope(tangents, (m, temperature_k, lit), tangent, slope);
             moved.push(if sigma_k > 0.0 && sigma_k.is_finite() { dot(&row, slope) / sigma_k } else { 0.0 });
             tangent.take_out(slope);
         }
@@ -302,6 +389,11 @@ impl Judge<'_> {
                 sums.score[a] += weight * dot(one, rho);
                 sums.moved[a] += moved[a] * moved[a];
                 sums.information[a] += weight * dot(one, one);
+                let first = slopes.len() - self.shared;
+                for (k, other) in slopes[first..].iter().enumerate() {
+                    sums.cross.information[a * self.shared + k] += weight * dot(one, other);
+                    sums.cross.moved[a * self.shared + k] += moved[a] * moved[first + k];
+                }
                 let lean = &mut sums.lean[..];
                 let from = (m * slopes.len() + a) * one.len();
                 for (lean, (d, reach)) in lean.iter_mut().skip(from).zip(one.iter().zip(&reach)) {
@@ -323,4 +415,4 @@ struct Room {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -13,6 +13,9 @@
 //! | Sₖ | photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ | spectrum of the k-th surroundings |
 //! | Vₖ | | its thermal lighting factor |
 //!
+//! Air on the path lets a share τ of all that through and adds its own light, S′ = τ S + P: the factor of κ at the nodes, and a part of
+//! every Cⱼ.
+//!
 //! A(T) is tabulated with its slope and interpolated by cubic Hermite polynomials on steps of h = 0.03 T²/(c₂ν), the least of the
 //! range: off by (0.03)⁴/384 = 2e-9 of itself at most. Where each band has one node the table is Planck's law and all
 //! materials share it.
@@ -42,6 +45,15 @@ pub enum Light {
     Counts(Vec<f64>),
 }
 
+/// What is between surface and camera, at the nodes of the bands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Share τ of the light that comes through.
+    pub transmittance: Vec<f64>,
+    /// What it sends itself, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
+    pub radiance: Vec<f64>,
+}
+
 /// All that is known of a cube before its counts are looked at.
 #[derive(Debug, Clone, Copy)]
 pub struct Setting<'a> {
@@ -65,6 +77,10 @@ pub struct Setting<'a> {
     pub gain: bool,
     /// Bands that are left out, for instance dead or saturated ones.
     pub bad_bands: &'a [usize],
+    /// The air before the camera, the same for all pixels; none if silent.
+    pub path: Option<&'a Path>,
+    /// Light that all surfaces scatter besides, photon radiance at the nodes; empty for none.
+    pub light_besides: &'a [f64],
 }
 
 /// The tables of a [`Setting`]. Values of bands are padded with zeros to whole chunks.
@@ -144,7 +160,9 @@ impl Model {
                 format!("give fewer than 65535 and at most {MOST_SURROUNDINGS}"),
             ));
         }
-        library.iter().try_for_each(|e| check_emissivity(e, bands.nodes_cm1().len()))?;
+        let nodes = bands.nodes_cm1().len();
+        library.iter().try_for_each(|e| check_emissivity(e, nodes))?;
+        check_between(setting, nodes)?;
         let [low, high] = setting.temperature_k;
         check::positive("temperature", low, "K")?;
         if !(low < high && high.is_finite()) {
@@ -223,7 +241,7 @@ impl Model {
 
     /// What each vertex sends and what each material scatters of it: darkness first if there is one, then each of the surroundings alone.
     fn fill_lighting(&mut self, setting: &Setting<'_>, widths: &[f64]) -> Result<()> {
-        let Setting { bands, library, surroundings, .. } = *setting;
+        let Setting { bands, library, surroundings, light_besides, .. } = *setting;
         let width = self.width;
         let first = self.vertices - surroundings.len();
         let share = self.lighting_total.unwrap_or(1.0);
@@ -263,6 +281,29 @@ impl Model {
                 };
                 let to = &mut self.scattered[(m * self.vertices + first + k) * width..][..width];
                 put(&self.used, to, &scattered);
+            }
+        }
+        for (m, emissivity) in library.iter().enumerate() {
+            // What each vertex has besides: light that is always there, and the air's own.
+            let mut besides = vec![0.0; bands.len()];
+            if !light_besides.is_empty() {
+                let nodes = light_besides.iter().zip(emissivity.iter());
+                besides = counts(setting, nodes.map(|(s, e)| (1.0 - e) * s));
+            }
+            if let Some(path) = setting.path {
+                let sent = bands.weigh(&path.radiance);
+                let each = besides.iter_mut().zip(sent.iter().zip(setting.counts_per_radiance));
+                each.for_each(|(n, (sent, k))| *n += k * sent);
+            }
+            for own in self.scattered[m * self.vertices * width..][..self.vertices * width].chunks_mut(width)
+            {
+                own.iter_mut().zip(&self.used).for_each(|(n, band)| *n += besides[*band]);
+            }
+        }
+        if !light_besides.is_empty() {
+            let besides = counts(setting, light_besides.iter().copied());
+            for own in self.light.chunks_mut(width) {
+                own.iter_mut().zip(&self.used).for_each(|(n, band)| *n += besides[*band]);
             }
         }
         for m in 0..library.len() {
@@ -402,10 +443,40 @@ impl Model {
     }
 }
 
-/// Photon counts of each band of a spectrum at the nodes.
+/// Photon counts of each band of a spectrum at the nodes, behind the air.
 fn counts(setting: &Setting<'_>, signal: impl Iterator<Item = f64>) -> Vec<f64> {
-    let weighed = setting.bands.weigh(&signal.collect::<Vec<f64>>());
+    let through = |i: usize| setting.path.map_or(1.0, |path| path.transmittance[i]);
+    let signal: Vec<f64> = signal.enumerate().map(|(i, s)| through(i) * s).collect();
+    let weighed = setting.bands.weigh(&signal);
     weighed.iter().zip(setting.counts_per_radiance).map(|(s, k)| s * k).collect()
+}
+
+/// Refuses air and light besides that are impossible, or that cannot be told apart from rows of the cube.
+fn check_between(setting: &Setting<'_>, nodes: usize) -> Result<()> {
+    let Setting { path, light_besides, surroundings, .. } = *setting;
+    let parts = path
+        .map(|path| [("transmittance of the air", &path.transmittance), ("its radiance", &path.radiance)]);
+    for (what, values) in parts
+        .iter()
+        .flatten()
+        .map(|(what, values)| (*what, values.as_slice()))
+        .chain([("light besides", light_besides)])
+    {
+        if values.len() != nodes && !(values.is_empty() && path.is_none()) && !values.is_empty() {
+            return Err(Error::Length { what: what.into(), found: values.len(), expected: nodes });
+        }
+        check::each(values, |x| (0.0..f64::INFINITY).contains(&x), |x| check::non_negative(what, x, ""))?;
+    }
+    if let Some(path) = path {
+        path.transmittance
+            .iter()
+            .try_for_each(|share| check::unit_interval("transmittance of the air", *share).map(|_| ()))?;
+        if surroundings.iter().any(|light| matches!(light, Light::Counts(_))) {
+            let found = "rows of the cube as a light, and air on the path";
+            return Err(Error::malformed(found, "give the light as a spectrum, or leave the air out"));
+        }
+    }
+    Ok(())
 }
 
 /// The values of the bands that are used.

@@ -10,6 +10,7 @@
 use super::model::{Light, Model, Setting};
 use hadar::error::{Error, Result};
 use hadar::planck::photon_radiance_and_slope_into;
+use hadar::spectrum::Bands;
 
 /// What is left of a column of length 1 that counts as none of its own.
 const DEPENDENT: f64 = 1e-9;
@@ -18,8 +19,14 @@ const AGREES: f64 = 1e-6;
 
 /// What is the same for all pixels. Values are those of the bands that count.
 #[derive(Debug)]
-pub(super) struct Tangents<'a> {
-    setting: Setting<'a>,
+pub(super) struct Tangents {
+    bands: Bands,
+    /// Emissivities at the nodes.
+    library: Vec<Vec<f64>>,
+    /// Electronic noise of each band, counts².
+    var_added: Vec<f64>,
+    /// Whether the lighting that is first has what the others leave.
+    first_is_rest: bool,
     /// Bands that count.
     pub(super) used: Vec<usize>,
     /// Radiance of each of the surroundings in each band, photons s⁻¹ m⁻² sr⁻¹.
@@ -35,6 +42,16 @@ pub(super) struct Tangents<'a> {
     /// Mean wavenumber of each band, cm⁻¹, and its width, cm⁻¹.
     pub(super) centres_cm1: Vec<f64>,
     pub(super) widths_cm1: Vec<f64>,
+    /// Counts of each material besides: of light that is always there, and of the air: `[material][band]`.
+    besides: Vec<Vec<f64>>,
+    /// Light that is always there, radiance in each band; empty for none.
+    light_besides: Vec<f64>,
+    /// Counts of the air's own light; empty for none.
+    pub(super) of_air: Vec<f64>,
+    /// Share of the light of a node that comes through; empty for all of it.
+    through: Vec<f64>,
+    /// Its mean in each band.
+    through_band: Vec<f64>,
 }
 
 /// A pixel's counts and their columns.
@@ -51,10 +68,10 @@ pub(super) struct Tangent {
     scales: Vec<f64>,
 }
 
-impl<'a> Tangents<'a> {
+impl Tangents {
     /// # Errors
     /// An impossible setting; an unknown gain, which maps do not keep.
-    pub(super) fn new(setting: &Setting<'a>) -> Result<Self> {
+    pub(super) fn new(setting: &Setting<'_>) -> Result<Self> {
         if setting.gain {
             let found = "an unknown scale of the counts, of which no light can be told";
             return Err(Error::malformed(found, "calibrate the camera: leave unknown.gain out"));
@@ -72,26 +89,50 @@ impl<'a> Tangents<'a> {
                 Light::Counts(counts) => per(pick(counts.clone())),
             })
             .collect();
+        let through: Vec<f64> = setting.path.map_or_else(Vec::new, |path| path.transmittance.clone());
+        let behind = |values: Vec<f64>| -> Vec<f64> {
+            let share = |i: usize| through.get(i).copied().unwrap_or(1.0);
+            pick(bands.weigh(&values.iter().enumerate().map(|(i, s)| share(i) * s).collect::<Vec<_>>()))
+        };
+        let per_kappa =
+            |radiance: Vec<f64>| -> Vec<f64> { radiance.iter().zip(&kappa).map(|(s, k)| s * k).collect() };
+        let of_air = setting.path.map_or_else(Vec::new, |path| per_kappa(pick(bands.weigh(&path.radiance))));
+        let light_besides = match setting.light_besides {
+            [] => Vec::new(),
+            light => pick(bands.weigh(light)),
+        };
+        let mut besides = Vec::with_capacity(setting.library.len());
         let mut reflected = Vec::with_capacity(setting.library.len());
         let mut scattered = Vec::with_capacity(setting.library.len());
         for emissivity in setting.library {
             let rest: Vec<f64> = emissivity.iter().map(|e| 1.0 - e).collect();
-            let mean: Vec<f64> = pick(bands.weigh(&rest)).iter().zip(&widths).map(|(r, w)| r / w).collect();
+            let mean: Vec<f64> = behind(rest.clone()).iter().zip(&widths).map(|(r, w)| r / w).collect();
             let of = |(light, sent): (&Light, &Vec<f64>)| -> Vec<f64> {
                 let radiance = match light {
                     Light::Radiance(radiance) => {
-                        pick(bands.weigh(&radiance.iter().zip(&rest).map(|(s, r)| s * r).collect::<Vec<_>>()))
+                        behind(radiance.iter().zip(&rest).map(|(s, r)| s * r).collect())
                     }
                     Light::Counts(_) => sent.iter().zip(&mean).map(|(s, r)| s * r).collect(),
                 };
-                radiance.iter().zip(&kappa).map(|(s, k)| s * k).collect()
+                per_kappa(radiance)
             };
+            let mut own = match setting.light_besides {
+                [] => vec![0.0; kappa.len()],
+                light => per_kappa(behind(light.iter().zip(&rest).map(|(s, r)| s * r).collect())),
+            };
+            own.iter_mut().zip(&of_air).for_each(|(n, air)| *n += air);
+            besides.push(own);
             scattered.push(setting.surroundings.iter().zip(&lights).map(of).collect());
             reflected.push(mean.iter().zip(&kappa).map(|(r, k)| r * k).collect());
         }
         let counted = setting.surroundings.iter().map(|light| matches!(light, Light::Counts(_))).collect();
+        let through_band =
+            behind(vec![1.0; bands.nodes_cm1().len()]).iter().zip(&widths).map(|(t, w)| t / w).collect();
         Ok(Self {
-            setting: *setting,
+            bands: bands.clone(),
+            library: setting.library.to_vec(),
+            var_added: setting.var_added.to_vec(),
+            first_is_rest: setting.lighting_total.is_some() && !setting.surroundings.is_empty(),
             used,
             lights,
             scattered,
@@ -99,13 +140,18 @@ impl<'a> Tangents<'a> {
             reflected,
             counts_per_radiance: kappa,
             centres_cm1,
+            besides,
+            light_besides,
+            of_air,
+            through_band,
             widths_cm1: widths,
+            through: setting.path.map_or_else(Vec::new, |path| path.transmittance.clone()),
         })
     }
 
     /// The library.
     pub(super) fn materials(&self) -> usize {
-        self.setting.library.len()
+        self.library.len()
     }
 
     /// Counts that material `m` scatters of light `k` at V = 1.
@@ -118,27 +164,37 @@ impl<'a> Tangents<'a> {
         self.counted.get(k).copied().unwrap_or(false)
     }
 
-    /// Columns of a pixel of material `m`; false where it has no temperature or lighting.
-    pub(super) fn at(&self, m: usize, temperature_k: f64, lighting: &[f64], to: &mut Tangent) -> bool {
-        let (Some(emissivity), Some(scattered)) = (self.setting.library.get(m), self.scattered.get(m)) else {
-            return false;
-        };
+    /// Mean counts of a pixel, and their slope with temperature, into `to` and what is returned; `None` where it has no temperature or lighting.
+    pub(super) fn mean(
+        &self,
+        (m, temperature_k, lighting): (usize, f64, &[f64]),
+        to: &mut Vec<f64>,
+    ) -> Option<Vec<f64>> {
+        let (emissivity, scattered) = (self.library.get(m)?, self.scattered.get(m)?);
         if !(temperature_k > 0.0 && lighting.iter().all(|v| v.is_finite())) {
-            return false;
+            return None;
         }
-        let nodes = self.setting.bands.nodes_cm1();
+        let nodes = self.bands.nodes_cm1();
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
         photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
-        let counts = |of: &[f64]| -> Vec<f64> {
-            let emitted: Vec<f64> = of.iter().zip(emissivity).map(|(b, e)| b * e).collect();
-            let all = self.setting.bands.weigh(&emitted);
+        let counts = |mut of: Vec<f64>| -> Vec<f64> {
+            of.iter_mut().zip(emissivity).for_each(|(b, e)| *b *= e);
+            of.iter_mut().zip(&self.through).for_each(|(b, share)| *b *= share);
+            let all = self.bands.weigh(&of);
             self.used.iter().zip(&self.counts_per_radiance).map(|(band, k)| k * all[*band]).collect()
         };
-        to.mean = counts(&value);
+        *to = counts(value);
+        to.iter_mut().zip(&self.besides[m]).for_each(|(n, own)| *n += own);
         for (v, light) in lighting.iter().zip(scattered) {
-            to.mean.iter_mut().zip(light).for_each(|(n, c)| *n += v * c);
+            to.iter_mut().zip(light).for_each(|(n, c)| *n += v * c);
         }
-        let var = |band: usize| self.setting.var_added.get(band).copied().unwrap_or(0.0);
+        Some(counts(slope))
+    }
+
+    /// Columns of a pixel of material `m`; false where it has no temperature or lighting.
+    pub(super) fn at(&self, m: usize, temperature_k: f64, lighting: &[f64], to: &mut Tangent) -> bool {
+        let Some(slope) = self.mean((m, temperature_k, lighting), &mut to.mean) else { return false };
+        let var = |band: usize| self.var_added.get(band).copied().unwrap_or(0.0);
         to.sigma.clear();
         to.sigma.extend(
             to.mean.iter().zip(&self.used).map(|(n, band)| (n.max(0.0) + var(*band)).sqrt().max(1e-150)),
@@ -146,10 +202,10 @@ impl<'a> Tangents<'a> {
         to.q.clear();
         to.r.clear();
         to.scales.clear();
-        to.push(counts(&slope));
-        let known = self.first_is_rest();
-        for light in scattered.iter().skip(usize::from(known)) {
-            match scattered.first().filter(|_| known) {
+        to.push(slope);
+        let scattered = &self.scattered[m];
+        for light in scattered.iter().skip(usize::from(self.first_is_rest)) {
+            match scattered.first().filter(|_| self.first_is_rest) {
                 Some(first) => to.push(light.iter().zip(first).map(|(a, b)| a - b).collect()),
                 None => to.push(light.clone()),
             }
@@ -158,24 +214,22 @@ impl<'a> Tangents<'a> {
     }
 
     /// What an error of 1 of the emissivity, as a share of it, does to the counts of a pixel, in deviations of each band:
-    /// e (κB(T) − X)/σ = (N − X)/σ, as N = e κB(T) + (1 − e)X.
+    /// e (κB(T) − X)/σ = (N − X)/σ, as N = e κB(T) + (1 − e)X, all behind the air, without its own light.
     pub(super) fn reach(&self, lighting: &[f64], tangent: &Tangent) -> Vec<f64> {
         let each = tangent.mean.iter().zip(&tangent.sigma).enumerate();
         each.map(|(w, (n, sigma))| {
             let incident: f64 = self.lights.iter().zip(lighting).map(|(light, v)| v * light[w]).sum();
-            (n - self.counts_per_radiance[w] * incident) / sigma
+            let incident = incident + self.light_besides.get(w).copied().unwrap_or(0.0);
+            let air = self.of_air.get(w).copied().unwrap_or(0.0);
+            (n - air - self.counts_per_radiance[w] * self.through_band[w] * incident) / sigma
         })
         .collect()
-    }
-
-    fn first_is_rest(&self) -> bool {
-        self.setting.lighting_total.is_some() && !self.setting.surroundings.is_empty()
     }
 
     /// ℓ of ΣVₖ aₖ in the order of the columns.
     pub(super) fn of_lighting(&self, a: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0];
-        match a.first().filter(|_| self.first_is_rest()) {
+        match a.first().filter(|_| self.first_is_rest) {
             Some(first) => all.extend(a.iter().skip(1).map(|a| a - first)),
             None => all.extend(a),
         }

@@ -111,7 +111,7 @@ fn of_row(g: &[f64], u: &[f64]) -> f64 {
 
 /// Together, temperature, texture, distilled texture.
 fn of_fit(
-    tangents: &Tangents<'_>,
+    tangents: &Tangents,
     (m, tangent): (usize, &Tangent),
     distilled: &Distilled,
     u: &[f64],

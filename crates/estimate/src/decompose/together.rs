@@ -13,12 +13,14 @@ use super::cause::{Cause, Effect};
 use super::maps::Maps;
 use super::model::Setting;
 use super::pixel::NO_MATERIAL;
+use super::shared::Shared;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::error::{Error, Result, check};
 use rayon::prelude::*;
 
 /// Widens the deviations of the temperatures by an error of deviation `together` in each band (counts; none if empty), the same number of
-/// deviations in all bands and pixels, and by the largest of what the amounts of some causes do to each.
+/// deviations in all bands and pixels, by the largest of what the amounts of some causes do to each, and by what is not known of unknowns
+/// that the whole cube shares.
 ///
 /// # Errors
 /// Maps of another setting, another number of bands, a deviation below 0, an unknown gain.
@@ -27,6 +29,7 @@ pub fn widen(
     maps: &mut Maps,
     together: &[f64],
     causes: &[(Cause, f64)],
+    shared: Option<&Shared>,
 ) -> Result<()> {
     let (bands, lights) = (setting.bands.len(), setting.surroundings.len());
     let pixels = maps.material.len();
@@ -43,8 +46,11 @@ pub fn widen(
     check::each(together, |s| s >= 0.0, |s| check::non_negative("deviation of a band", s, "counts"))?;
     let tangents = Tangents::new(setting)?;
     let row = tangents.of_temperature();
-    let effects: Vec<(Effect, f64)> =
-        causes.iter().map(|(cause, amount)| (Effect::new(cause, setting, &tangents), *amount)).collect();
+    let effect = |cause: &Cause| Effect::new(cause, setting, &tangents);
+    let effects = causes.iter().map(|(cause, amount)| Ok((effect(cause)?, *amount)));
+    let effects = effects.collect::<Result<Vec<(Effect, f64)>>>()?;
+    let together_estimated = shared.map_or_else(Vec::new, Shared::causes);
+    let estimated = together_estimated.iter().map(effect).collect::<Result<Vec<_>>>()?;
     let Maps { material, temperature_k, temperature_sigma_k, lighting, .. } = maps;
     let one = |(tangent, lit, slope): &mut (Tangent, Vec<f64>, Vec<f64>), (i, sigma_k): (usize, &mut f32)| {
         hadar::stop::check();
@@ -55,18 +61,23 @@ pub fn widen(
         lit.extend(lighting[i * lights..(i + 1) * lights].iter().map(|v| f64::from(*v)));
         // Where nothing is scattered the lighting is no number, and tells nothing of the temperature.
         lit.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
-        if !tangents.at(usize::from(material[i]), f64::from(temperature_k[i]), lit, tangent) {
+        let (m, at_k) = (usize::from(material[i]), f64::from(temperature_k[i]));
+        if !tangents.at(m, at_k, lit, tangent) {
             return;
         }
         let Some(g) = tangent.row(&row) else { return };
         let shares = g.iter().zip(&tangents.used).zip(&tangent.sigma);
         let off: f64 =
             shares.map(|((g, band), sigma)| g * together.get(*band).copied().unwrap_or(0.0) / sigma).sum();
-        let moved = effects.iter().map(|(effect, amount)| {
-            effect.slope(&tangents, (usize::from(material[i]), lit), tangent, slope);
-            (dot(&g, slope) * amount).abs()
-        });
-        *sigma_k = f64::from(*sigma_k).hypot(off).hypot(moved.fold(0.0, f64::max)) as f32;
+        let mut moved_by = |effect: &Effect| {
+            effect.slope(&tangents, (m, at_k, lit), tangent, slope);
+            dot(&g, slope)
+        };
+        let moved = effects.iter().map(|(effect, amount)| (moved_by(effect) * amount).abs());
+        let moved = moved.fold(0.0, f64::max);
+        let by_shared: Vec<f64> = estimated.iter().map(&mut moved_by).collect();
+        let by_shared = shared.map_or(0.0, |shared| shared.sigma_of(&by_shared));
+        *sigma_k = f64::from(*sigma_k).hypot(off).hypot(moved).hypot(by_shared) as f32;
     };
     temperature_sigma_k
         .par_iter_mut()
@@ -109,6 +120,8 @@ mod tests {
             lighting_total: None,
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         let samples: Vec<f64> = [290.0, 310.0].into_iter().flat_map(counts).collect();
         let cube =
@@ -116,7 +129,7 @@ mod tests {
         let maps = decompose(&setting, &Options::default(), &cube, &|_| ()).unwrap();
         let mut wider = maps.clone();
         let off: Vec<f64> = slope(310.0).iter().map(|d| 0.07 * d).collect();
-        widen(&setting, &mut wider, &off, &[]).unwrap();
+        widen(&setting, &mut wider, &off, &[], None).unwrap();
         let added = |i: usize| {
             let [before, after] = [&maps, &wider].map(|maps| f64::from(maps.temperature_sigma_k[i]));
             (after * after - before * before).sqrt()
@@ -127,6 +140,6 @@ mod tests {
         let sums =
             n.iter().zip(&d).zip(&off).fold([0.0, 0.0], |[a, b], ((n, d), s)| [a + d * s / n, b + d * d / n]);
         assert!((added(0) / (sums[0] / sums[1]) - 1.0).abs() < 1e-3);
-        assert!(widen(&setting, &mut wider, &[0.0], &[]).is_err());
+        assert!(widen(&setting, &mut wider, &[0.0], &[], None).is_err());
     }
 }

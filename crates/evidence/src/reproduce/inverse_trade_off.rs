@@ -92,6 +92,8 @@ fn row(library: &Library, step_cm1: f64, seed: u64, stream: u64) -> Result<Row> 
         lighting_total: None,
         gain: false,
         bad_bands: &[],
+        path: None,
+        light_besides: &[],
     };
     // The first pixel without noise.
     let draws = Draws::new(&Statistics::Poisson, &means)?;

@@ -262,6 +262,8 @@ fn taken_apart(
         lighting_total: None,
         gain: false,
         bad_bands: &[],
+        path: None,
+        light_besides: &[],
     };
     decompose(&setting, &Options::default(), &cube, &|_| ())
 }

@@ -218,6 +218,8 @@ impl Street {
             lighting_total: Some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         }
     }
 

@@ -148,6 +148,8 @@ impl Textured {
             lighting_total: Some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         }
     }
 

@@ -12,6 +12,24 @@ const NODE_SPACING_CM1: f64 = 1.0;
 const MAX_NODES: f64 = 1e7;
 
 impl Bands {
+    /// The same bands with nodes and edges so many cm⁻¹ higher, of the same weights; a filter's own curve stays where it is.
+    ///
+    /// # Errors
+    /// A shift with which a node is not above 0.
+    pub fn shifted(&self, by_cm1: f64) -> Result<Self> {
+        let mut bands = self.clone();
+        for band in &mut bands.bands {
+            for edge in [&mut band.center_cm1, &mut band.low_cm1, &mut band.high_cm1] {
+                *edge += by_cm1;
+            }
+        }
+        for node in &mut bands.nodes_cm1 {
+            *node += by_cm1;
+            check::positive("wavenumber", *node, "cm^-1")?;
+        }
+        Ok(bands)
+    }
+
     /// Bands of width `step` centred at start, start + step, … up to stop (cm⁻¹), one node each.
     ///
     /// # Errors

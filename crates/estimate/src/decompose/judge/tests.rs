@@ -1,7 +1,7 @@
 //! Counts of a model in which one thing is otherwise than told: the estimate is that thing, whatever temperature and lighting take of it.
 
 use super::*;
-use crate::decompose::{Light, Options, decompose};
+use crate::decompose::{Light, Options, Spectra, Told, decompose};
 use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::planck::photon_radiance;
 use hadar::random::generator;
@@ -12,7 +12,7 @@ const LOW: f64 = 750.0;
 const STEP: f64 = 12.5;
 const BANDS: usize = 41;
 const KAPPA: f64 = 1e-13;
-const PIXELS: usize = 240;
+pub(in crate::decompose) const PIXELS: usize = 240;
 
 /// Emissivities without an end in wavenumber.
 fn emissivity(m: usize, nu: f64) -> f64 {
@@ -31,16 +31,16 @@ fn ground(nu: f64) -> f64 {
 
 /// What is otherwise than told.
 #[derive(Clone, Copy, Default)]
-struct Otherwise {
-    gain: f64,
-    shift_cm1: f64,
-    sky: f64,
-    tilt: f64,
-    total: f64,
-    missing: f64,
-    ground_k: f64,
-    air_m: f64,
-    band: f64,
+pub(in crate::decompose) struct Otherwise {
+    pub(in crate::decompose) gain: f64,
+    pub(in crate::decompose) shift_cm1: f64,
+    pub(in crate::decompose) sky: f64,
+    pub(in crate::decompose) tilt: f64,
+    pub(in crate::decompose) total: f64,
+    pub(in crate::decompose) missing: f64,
+    pub(in crate::decompose) ground_k: f64,
+    pub(in crate::decompose) air_m: f64,
+    pub(in crate::decompose) band: f64,
 }
 
 /// Depth of a metre of air, as if it were water near its lines.
@@ -48,14 +48,14 @@ fn depth_per_m(nu: f64) -> f64 {
     1e-4 * (1.0 + (0.021 * nu).sin())
 }
 
-fn state(i: usize) -> (usize, f64, f64) {
+pub(in crate::decompose) fn state(i: usize) -> (usize, f64, f64) {
     let at = |step: f64| (i as f64 * step).fract();
     (i % 4, 280.0 + 30.0 * at(0.618_034), 0.1 + 0.8 * at(0.414_214))
 }
 
 /// Relative errors of the emissivities of four materials.
-type Errors = [[f64; BANDS]; 4];
-const EXACT: Errors = [[0.0; BANDS]; 4];
+pub(in crate::decompose) type Errors = [[f64; BANDS]; 4];
+pub(in crate::decompose) const EXACT: Errors = [[0.0; BANDS]; 4];
 
 fn mean(i: usize, w: usize, o: Otherwise, errors: &Errors) -> f64 {
     let (m, t, v) = state(i);
@@ -79,18 +79,30 @@ fn judged(draw: impl FnMut(f64) -> f64, otherwise: Otherwise) -> (Vec<Cause>, Ju
 }
 
 fn judged_with(
-    mut draw: impl FnMut(f64) -> f64,
+    draw: impl FnMut(f64) -> f64,
     otherwise: Otherwise,
     errors: &Errors,
     stated: Option<LibraryError>,
 ) -> (Vec<Cause>, Judged) {
+    let told = told();
+    let setting = told.setting();
+    let cube = counted(draw, otherwise, errors);
+    let options = Options { library_error: stated, ..Options::default() };
+    let maps = decompose(&setting, &options, &cube, &|_| ()).unwrap();
+    let causes = causes(&setting);
+    let found = judge(&setting, &causes, (stated, None), &maps, &cube).unwrap();
+    (causes, found)
+}
+
+/// What is told.
+pub(in crate::decompose) fn told() -> Told {
     let bands = Bands::uniform(LOW, LOW + STEP * (BANDS - 1) as f64, STEP).unwrap();
     let nodes = bands.nodes_cm1();
     let library: Vec<Vec<f64>> =
         (0..4).map(|m| nodes.iter().map(|nu| emissivity(m, *nu)).collect()).collect();
     let radiance = |of: fn(f64) -> f64| Light::Radiance(nodes.iter().map(|nu| of(*nu)).collect());
     let lights = [radiance(sky), radiance(ground)];
-    let setting = Setting {
+    Told::of(&Setting {
         bands: &bands,
         library: &library,
         surroundings: &lights,
@@ -101,29 +113,44 @@ fn judged_with(
         lighting_total: Some(1.0),
         gain: false,
         bad_bands: &[],
+        path: None,
+        light_besides: &[],
+    })
+}
+
+/// The counts.
+pub(in crate::decompose) fn counted(
+    draw: impl FnMut(f64) -> f64,
+    otherwise: Otherwise,
+    errors: &Errors,
+) -> Cube {
+    let samples: Vec<f64> =
+        (0..PIXELS).flat_map(|i| (0..BANDS).map(move |w| mean(i, w, otherwise, errors))).map(draw).collect();
+    Cube::F64(Box::new(MemoryCube::new(Shape::new(12, PIXELS / 12, BANDS).unwrap(), samples).unwrap()))
+}
+
+/// All kinds of causes.
+pub(in crate::decompose) fn causes(setting: &Setting<'_>) -> Vec<Cause> {
+    let nodes = setting.bands.nodes_cm1();
+    let grid_cm1 = Spectra::grid(nodes, 8, 40.0);
+    let on = |of: &dyn Fn(f64) -> f64| grid_cm1.iter().map(|nu| of(*nu)).collect::<Vec<f64>>();
+    let spectra = Spectra {
+        library: (0..4).map(|m| on(&|nu| emissivity(m, nu))).collect(),
+        surroundings: vec![on(&sky), on(&ground)],
+        path: None,
+        grid_cm1: grid_cm1.clone(),
     };
-    let samples: Vec<f64> = (0..PIXELS)
-        .flat_map(|i| (0..BANDS).map(move |w| mean(i, w, otherwise, errors)))
-        .map(&mut draw)
-        .collect();
-    let cube =
-        Cube::F64(Box::new(MemoryCube::new(Shape::new(12, PIXELS / 12, BANDS).unwrap(), samples).unwrap()));
-    let options = Options { library_error: stated, ..Options::default() };
-    let maps = decompose(&setting, &options, &cube, &|_| ()).unwrap();
-    let slope = |nu: &f64| hadar::planck::photon_radiance_slope(*nu, 290.0);
-    let causes = vec![
+    vec![
         Cause::Gain,
-        Cause::WavelengthShift,
+        Cause::WavelengthShift(std::sync::Arc::new(spectra)),
         Cause::LightScale(0),
-        Cause::LightTilt(0),
+        Cause::LightShape { light: 0, order: 1 },
         Cause::LightingTotal,
         Cause::LightMissing { temperature_k: 310.0 },
-        Cause::LightTemperature { light: 1, slope: nodes.iter().map(slope).collect() },
+        Cause::LightTemperature { light: 1, temperature_k: 290.0 },
         Cause::Air { depth_per_m: nodes.iter().map(|nu| depth_per_m(*nu)).collect(), temperature_k: 288.0 },
         Cause::Band(17),
-    ];
-    let found = judge(&setting, &causes, stated, &maps, &cube).unwrap();
-    (causes, found)
+    ]
 }
 
 /// Counts without noise: to first order the estimate is what was changed. Tolerance: the second order of changes of 1e-3, and for the

@@ -23,6 +23,8 @@ fn the_modes_give_what_the_whole_covariance_gives() {
         lighting_total: None,
         gain: false,
         bad_bands: &[],
+        path: None,
+        light_besides: &[],
     })
     .unwrap();
     let modes = Modes::new(&model, error).unwrap();

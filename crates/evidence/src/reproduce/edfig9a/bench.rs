@@ -182,6 +182,8 @@ impl Bench {
             lighting_total,
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         decompose(&setting, &Options::default(), &cube, &|_| ())
     }
