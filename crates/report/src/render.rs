@@ -151,6 +151,7 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat) -> Decom
         },
         bands: Some(result.scenario.bands.clone()),
         camera: Some(result.scenario.camera.clone()),
+        atmosphere: None,
         environment: result
             .surroundings
             .iter()
@@ -161,6 +162,7 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat) -> Decom
             temperature_k,
             lighting_total: (result.lighting_left_out < NEARLY_ALL).then_some(1.0),
             gain: false,
+            shared: Default::default(),
         },
         truth: Some(match layout {
             Layout::Npy => TruthSpec {

@@ -10,7 +10,7 @@ pub(super) mod write;
 
 pub use category::{CategorySpec, SegmentationSpec};
 
-use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
+use super::{AtmosphereSpec, BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar_estimate::decompose::SpatialPrior;
 use hadar_formats::cube::Axes;
 use std::collections::BTreeMap;
@@ -49,6 +49,8 @@ pub struct DecomposeScenario {
     pub bands: Option<BandsSpec>,
     /// The camera, where it says what the counts are.
     pub camera: Option<CameraSpec>,
+    /// The air before the camera (`[atmosphere]`); none if silent.
+    pub atmosphere: Option<AirOfCube>,
     /// Spectra of the surroundings (`[[environment]]`).
     pub environment: Vec<LightSource>,
     /// Kinds of surfaces of several spectra each, by name (`[class.NAME]`).
@@ -158,6 +160,36 @@ pub struct LibrarySpec {
     pub emissivity_correlation_cm1: Option<f64>,
 }
 
+/// The air between what a cube shows and its camera (`[atmosphere]`), the same for all pixels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AirOfCube {
+    /// Which air.
+    pub air: AtmosphereSpec,
+    /// Length of the path, m.
+    pub distance_m: f64,
+}
+
+/// What has one value for the whole cube and is known up to a standard deviation (`[unknown]`); exact where silent.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SharedUnknown {
+    /// Of the scale of the counts, as a share.
+    pub gain: Option<f64>,
+    /// Of the wavenumbers of all bands, cm⁻¹.
+    pub wavelength_shift_cm1: Option<f64>,
+    /// Of the strength of the sky, as a share.
+    pub sky_scale: Option<f64>,
+    /// Of its spectrum, rms over the bands, as a share.
+    pub sky_shape: Option<f64>,
+    /// Of the temperature of each of the surroundings that is a surface, K.
+    pub light_temperature_k: Option<f64>,
+    /// Of the lighting factor of a light besides those that are told.
+    pub missing_light: Option<f64>,
+    /// Of the length of the path through the air, m.
+    pub air_m: Option<f64>,
+    /// Of the factor of all noise.
+    pub noise_scale: Option<f64>,
+}
+
 /// What is unknown of every pixel, besides its material and lighting (`[unknown]`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PixelUnknown {
@@ -165,8 +197,10 @@ pub struct PixelUnknown {
     pub temperature_k: [f64; 2],
     /// The known sum of the lighting factors; at most 1 if silent.
     pub lighting_total: Option<f64>,
-    /// Whether the scale of the counts is unknown.
+    /// Whether the scale of the counts is unknown, another one for each pixel.
     pub gain: bool,
+    /// What the whole cube shares.
+    pub shared: SharedUnknown,
 }
 
 /// How the picture of material, temperature and texture is coloured (`[vision]`).

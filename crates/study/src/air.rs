@@ -4,7 +4,7 @@ use super::surface::Surface;
 use hadar::atmosphere::Atmosphere;
 use hadar::error::{Error, Result};
 use hadar_formats::file::text_of_file;
-use hadar_scenario::{AtmosphereSource, Scenario};
+use hadar_scenario::{AtmosphereSource, AtmosphereSpec, Scenario, Source};
 
 /// What is behind the target, on the nodes of the bands.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +27,22 @@ impl Air {
     /// An unknown model, a table that cannot be read, a target without a distance, bands that the table does not cover.
     pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>> {
         let Some(spec) = &scenario.atmosphere else { return Ok(None) };
+        let air = Self::looked_up(spec, &scenario.source)?;
+        if scenario.target.distance_m.is_none() {
+            let error = Error::malformed(
+                "air on the path, but the target has no distance",
+                "write distance = \"30 m\"",
+            );
+            return Err(error.at(scenario.place("target.distance")));
+        }
+        Ok(Some(air))
+    }
+
+    /// Air that is named or in a file.
+    ///
+    /// # Errors
+    /// An unknown model, a table that cannot be read.
+    pub(super) fn looked_up(spec: &AtmosphereSpec, source: &Source) -> Result<Self> {
         let table = match &spec.source {
             AtmosphereSource::Model(name) => {
                 let known = Atmosphere::embedded(name).map_err(|error| match error {
@@ -36,7 +52,7 @@ impl Air {
                     ),
                     error => error,
                 });
-                known.map_err(|error| error.at(scenario.place("atmosphere.model")))?
+                known.map_err(|error| error.at(source.place("atmosphere.model")))?
             }
             AtmosphereSource::Table(path) => {
                 Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
@@ -47,15 +63,8 @@ impl Air {
                 "the temperature of the air is not given",
                 "write temperature = \"15 degC\"",
             );
-            return Err(error.at(scenario.place("atmosphere.temperature")));
+            return Err(error.at(source.place("atmosphere.temperature")));
         };
-        if scenario.target.distance_m.is_none() {
-            let error = Error::malformed(
-                "air on the path, but the target has no distance",
-                "write distance = \"30 m\"",
-            );
-            return Err(error.at(scenario.place("target.distance")));
-        }
-        Ok(Some(Self { table, temperature_k }))
+        Ok(Self { table, temperature_k })
     }
 }

@@ -1,6 +1,7 @@
 //! A heat cube decomposed: names and files looked up, the maps, and what they are worth where the truth is known.
 
 mod categories;
+mod estimated;
 mod judged;
 mod kept;
 mod looked_up;
@@ -13,6 +14,7 @@ mod vision;
 mod worth;
 
 pub use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
+pub use estimated::{SharedFound, SharedRow};
 pub use kept::{Block, Keep, Kept, MapFiles};
 pub use looked_up::DecomposeStudy;
 pub use ranks::{Count, ranked};
@@ -23,6 +25,7 @@ pub use segmented::{CategoryRow, ObjectRow, PossibleRow, Segmented};
 pub(super) use truth::{There, Truth};
 pub use vision::{DistilledTexture, Vision, hues_deg};
 
+use self::estimated::Estimated;
 use self::judged::{Asked, ToHold};
 use self::results::{Counted, rows, summary};
 use self::worth::Held;
@@ -30,7 +33,7 @@ use super::{Warning, memory};
 use hadar::cube::Shape;
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
-use hadar_estimate::decompose::{LibraryError, Maps, Method, Options, Setting, decompose_by_rows, widen};
+use hadar_estimate::decompose::{LibraryError, Maps, Method, Options, decompose_by_rows, widen};
 use std::sync::Arc;
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
@@ -81,7 +84,7 @@ impl DecomposeStudy {
     ) -> Result<Decomposed> {
         self.check(method)?;
         let shape = self.cube.shape();
-        let lights = self.lights.len();
+        let lights = self.told.surroundings.len();
         let (files, height) = match keep {
             Keep::InFiles { folder, rows } if !self.needs_all() => {
                 (Some(MapFiles::create(folder, rows, shape, lights)?), rows)
@@ -92,7 +95,15 @@ impl DecomposeStudy {
             Some(_) => None,
             None => Some(self.memory()?),
         };
-        let (setting, options) = (self.setting(), self.options(skipping));
+        let options = self.options(skipping);
+        let estimated = Estimated::of(self, method, &options)?;
+        let told = estimated.as_ref().map_or(&self.told, |estimated| &estimated.told);
+        let setting = told.setting();
+        if setting.path.is_some() && method != Method::Ml {
+            let found = format!("air before the camera and the method {}", method.name());
+            let error = Error::malformed(found, "leave [atmosphere] out, or take --method ml");
+            return Err(error.at(self.scenario.place("atmosphere")));
+        }
         let finished = std::sync::atomic::AtomicUsize::new(0);
         let progress = |more: usize| {
             let so_far = finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more;
@@ -105,19 +116,19 @@ impl DecomposeStudy {
             let all = (height >= shape.rows()).then_some(&maps);
             let asked = match &mut asked {
                 Some(asked) => &*asked,
-                none => none.insert(Asked::of(self, method, &setting, &options, all)?),
+                none => none.insert(Asked::of(self, method, &setting, &options, (all, estimated.as_ref()))?),
             };
             let (together, to_hold) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
             if let Some(ToHold { noise, .. }) = &to_hold {
                 maps.temperature_sigma_k.iter_mut().for_each(|sigma_k| *sigma_k *= *noise as f32);
             }
             let causes = to_hold.map_or_else(Vec::new, |to_hold| to_hold.causes);
-            if method.has_likelihood() && !(together.is_empty() && causes.is_empty()) {
-                widen(&setting, &mut maps, together, &causes)
+            if method.has_likelihood() && !(together.is_empty() && causes.is_empty() && estimated.is_none()) {
+                widen(&setting, &mut maps, together, &causes, estimated.as_ref().map(|one| &one.shared))
                     .map_err(|error| error.at(self.scenario.place("cube.noise")))?;
             }
             counted.take(&maps);
-            let block = Block::of(self, first, maps)?;
+            let block = Block::of(self, told, first, maps)?;
             if let Some((truth, held)) = &mut held {
                 let rows = first..first + block.maps.material.len() / shape.columns();
                 held.take(self, method, &block.maps, &truth.rows(rows)?);
@@ -149,7 +160,8 @@ impl DecomposeStudy {
         let segmented = all.map(|block| Segmented::of(self, block)).transpose()?.flatten();
         let answer = (truth, vision, segmented);
         let model = asked.unwrap_or_default().found(self, method, counted.p_values());
-        Ok(summary(self, method, (&counted, found, model), answer, warnings, kept))
+        let shared = estimated.as_ref().map(Estimated::found);
+        Ok(summary(self, method, (&counted, found, model, shared), answer, warnings, kept))
     }
 
     /// Refuses what the scenario asks for and the method has not.
@@ -181,7 +193,7 @@ impl DecomposeStudy {
     fn memory(&self) -> Result<memory::Promised<'static>> {
         let shape = self.cube.shape();
         let per_pixel = match &self.scenario.spatial {
-            None => KEPT + KEPT_LIGHT * self.lights.len() as u64,
+            None => KEPT + KEPT_LIGHT * self.told.surroundings.len() as u64,
             Some(_) => KEPT_BESIDE_OTHERS,
         };
         let per_pixel = per_pixel
@@ -193,24 +205,6 @@ impl DecomposeStudy {
         let instead = "cut the cube into parts of fewer rows";
         memory::promise(bytes, "the maps of all pixels", instead)
             .map_err(|error| error.at(self.scenario.place("cube.data")))
-    }
-
-    fn setting(&self) -> Setting<'_> {
-        let unknown = self.scenario.unknown;
-        Setting {
-            bands: &self.bands,
-            library: &self.library,
-            surroundings: &self.lights,
-            counts_per_radiance: &self.counts_per_radiance,
-            var_added: &self.var_added,
-            units_per_count: self.units_per_count,
-            temperature_k: unknown.temperature_k,
-            lighting_total: unknown.lighting_total,
-            gain: unknown.gain,
-            bad_bands: &self.bad_bands,
-            path: None,
-            light_besides: &[],
-        }
     }
 
     fn options(&self, skipping: Skipping) -> Options {

@@ -130,11 +130,9 @@ impl Said<'_> {
             together: noise.together.map(|sigma| opened.rising(&sigma)),
         };
         let InOrder { cube, found: read, .. } = opened;
-        let lit = self
-            .environment
-            .iter()
-            .enumerate()
-            .map(|(k, source)| sent(source, &bands, library).map_err(at(&format!("environment[{k}]"))));
+        let lit = self.environment.iter().enumerate().map(|(k, source)| {
+            sent(source, bands.nodes_cm1(), library).map_err(at(&format!("environment[{k}]")))
+        });
         let lit = lit.collect::<Result<Vec<_>>>()?;
         let most = brightest(&bands, self.temperature_k[1], &lit);
         let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
@@ -290,8 +288,7 @@ pub(super) fn columns(path: &Path) -> Result<Vec<Column>> {
 }
 
 /// The spectrum of one of the surroundings at the nodes; nothing where the cube itself shows it.
-fn sent(light: &LightSource, bands: &Bands, library: &Library) -> Result<Option<Vec<f64>>> {
-    let nodes = bands.nodes_cm1();
+pub(super) fn sent(light: &LightSource, nodes: &[f64], library: &Library) -> Result<Option<Vec<f64>>> {
     match light {
         LightSource::Surface { material, temperature_k } => {
             let mut radiance = vec![0.0; nodes.len()];

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// What all pixels together say of the model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelJudged {
-    /// Whether the cube follows it: `not-rejected`, `rejected`, or `not-judged`.
+    /// Whether the cube follows it: `not-rejected`, `rejected`, `not-judged`, or `shared-not-told`.
     pub verdict: ModelVerdict,
     /// Pixels with a p-value.
     pub pixels: usize,
@@ -36,6 +36,16 @@ pub enum ModelVerdict {
     Rejected,
     /// It was not asked.
     NotJudged,
+    /// Unknowns that the whole cube shares are not told well enough to decide a material.
+    SharedNotTold,
+}
+
+impl ModelVerdict {
+    /// Whether nothing is decided without the condition 'if the model holds'.
+    #[must_use]
+    pub const fn takes_back(self) -> bool {
+        matches!(self, Self::Rejected | Self::SharedNotTold)
+    }
 }
 
 /// What pixels have in common in a band.

@@ -24,7 +24,7 @@ use hadar::error::{Error, Result, check};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Fits of all pixels at most, for each sample.
-const MOST_ROUNDS: usize = 12;
+const MOST_ROUNDS: usize = 24;
 /// Part of its deviation by which a settled unknown moves.
 const SETTLED: f64 = 0.1;
 /// The same of the factor of the noise, as a share.
@@ -33,6 +33,8 @@ const SETTLED_NOISE: f64 = 1e-3;
 const SAME: f64 = 0.9999;
 /// What is added to a variance of 1, so that unknowns that are one have a factor too.
 const RIDGE: f64 = 1e-10;
+/// Least amount of a share: nothing is dimmer than a tenth of what it is told to be.
+const LEAST_SHARE: f64 = -0.9;
 /// Deviations that a factor of the noise may be from 1.
 const FARTHEST: f64 = 5.0;
 
@@ -152,9 +154,15 @@ impl Shared {
         let own = 0.5 * (&own + own.transpose());
         self.factor = factor(own + DMatrix::identity(count, count))?;
         let step = self.factor.solve(&towards);
+        // Far from the best fit pixels have wrong materials: no further than a prior deviation at once.
+        let longest = step.amax();
+        let step = if longest > 1.0 { step / longest } else { step };
         let mut settled = true;
         for (i, step) in step.iter().enumerate() {
             self.amounts[i] += step * s[i];
+            if self.unknowns[i].cause.is_share() {
+                self.amounts[i] = self.amounts[i].max(LEAST_SHARE);
+            }
             settled &= (step * s[i]).abs() <= SETTLED * self.sigma(i);
         }
         if let Some(noise_sigma) = noise_sigma {

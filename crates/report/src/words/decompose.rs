@@ -2,6 +2,7 @@
 
 pub(crate) mod judged;
 mod segmented;
+mod shared;
 
 use crate::table::number;
 use crate::text::columns::{Columns, left, right};
@@ -20,11 +21,12 @@ const LISTED: usize = 12;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &Decomposed) -> String {
-    let is_rejected = result.model.verdict == ModelVerdict::Rejected;
+    let is_rejected = result.model.verdict.takes_back();
     let safety =
         result.segmentation.as_ref().map_or_else(String::new, |found| segmented::safety(found, is_rejected));
     let mut out = format!("{}\n{safety}\n{}", sentence(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
+    out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
         out.push_str(&segmented::text(segmentation, is_rejected));
@@ -85,6 +87,14 @@ fn sentence(result: &Decomposed) -> String {
             result.materials.len()
         );
     }
+    if result.model.verdict == ModelVerdict::SharedNotTold {
+        return format!(
+            "What the whole cube shares is not told well enough: {} pixels ({}) would have one material of {} left with it as estimated; none is decided.",
+            of(result.decided_if_model_holds, seen),
+            share(result.decided_if_model_holds as f64 / seen.max(1) as f64),
+            result.materials.len()
+        );
+    }
     let mut out = match result.decided {
         0 => format!("No pixel of {} is decided", whole(seen as u64)),
         decided => format!(
@@ -110,7 +120,7 @@ fn found(result: &Decomposed) -> String {
     let shown = &result.found[..result.found.len().min(LISTED)];
     let width = shown.iter().map(|row| row.material.chars().count()).max().unwrap_or(0).max(8);
     // Under its condition, that is, while the model is rejected.
-    let decided = if result.model.verdict == ModelVerdict::Rejected { "if held" } else { "decided" };
+    let decided = if result.model.verdict.takes_back() { "if held" } else { "decided" };
     let mut table = Columns::new([
         left("", width),
         right("pixels", 9),

@@ -6,12 +6,14 @@ use super::super::paths::{axes, file, is_path, material, variable};
 use super::super::reader::file;
 use super::super::scene_folder::{self, LEFT, cube_file};
 use super::super::section::{Entry, Section};
-use super::super::{BandsSpec, Source, camera, class};
+use super::super::{AtmosphereSpec, BandsSpec, Source, camera, class};
 use super::category::{Told, categories, segmentation};
 use super::image::{spatial, vision};
 use super::{
-    Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+    AirOfCube, Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown,
+    SharedUnknown, TruthSpec,
 };
+use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
 use std::path::Path;
 
@@ -37,6 +39,7 @@ impl DecomposeScenario {
             cube,
             bands: root.read("bands", BandsSpec::read)?,
             camera,
+            atmosphere: root.read("atmosphere", air)?,
             environment: root
                 .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
                 .unwrap_or_default(),
@@ -50,6 +53,10 @@ impl DecomposeScenario {
             truth: root.read("truth", |entry| truth(entry, &data))?,
             source: Source::default(),
         };
+        if scenario.unknown.shared.air_m.is_some() && scenario.atmosphere.is_none() {
+            let found = Error::malformed("a length of no air", "write [atmosphere] too, or leave it out");
+            return Err(root.fail("unknown.air", found));
+        }
         if scenario.categories.is_empty()
             && let Some(key) = match &scenario.truth {
                 _ if root.get("segmentation").is_some() => Some("segmentation"),
@@ -68,7 +75,12 @@ impl DecomposeScenario {
 
 impl Default for PixelUnknown {
     fn default() -> Self {
-        Self { temperature_k: TEMPERATURES_K, lighting_total: None, gain: false }
+        Self {
+            temperature_k: TEMPERATURES_K,
+            lighting_total: None,
+            gain: false,
+            shared: SharedUnknown::default(),
+        }
     }
 }
 
@@ -178,8 +190,27 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
     Ok(spec)
 }
 
+/// What is said of the scale of the counts.
+#[derive(Clone, Copy, PartialEq)]
+enum Gain {
+    Known,
+    OfEachPixel,
+    Shared(f64),
+}
+
+/// The air of a cube.
+fn air(entry: &Entry<'_>) -> Result<AirOfCube> {
+    let air = AtmosphereSpec::read(entry)?;
+    let distance_m = entry.section()?.require("distance")?.quantity()?;
+    Ok(AirOfCube { air, distance_m })
+}
+
 pub(crate) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
     let section = entry.section()?;
+    let gain = section.read("gain", |entry| match entry.boolean() {
+        Ok(unknown) => Ok(if unknown { Gain::OfEachPixel } else { Gain::Known }),
+        Err(_) => entry.number_as("0.02", ABOVE_ZERO).map(Gain::Shared),
+    })?;
     let temperature = |end: &Entry<'_>| end.quantity();
     let default = PixelUnknown::default();
     Ok(PixelUnknown {
@@ -193,7 +224,20 @@ pub(crate) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
             })?
             .unwrap_or(default.temperature_k),
         lighting_total: section.number("lighting_total")?,
-        gain: section.read("gain", Entry::boolean)?.unwrap_or(default.gain),
+        gain: gain.is_some_and(|gain| gain == Gain::OfEachPixel),
+        shared: SharedUnknown {
+            gain: gain.and_then(|gain| match gain {
+                Gain::Shared(sigma) => Some(sigma),
+                _ => None,
+            }),
+            wavelength_shift_cm1: section.quantity("wavelength_shift")?,
+            sky_scale: section.number("sky_scale")?,
+            sky_shape: section.number("sky_shape")?,
+            light_temperature_k: section.quantity("light_temperature")?,
+            missing_light: section.number("missing_light")?,
+            air_m: section.quantity("air")?,
+            noise_scale: section.number("noise_scale")?,
+        },
     })
 }
 

@@ -34,6 +34,12 @@ impl DecomposeScenario {
             cube_written(&self.cube, self.bands.as_ref(), self.camera.as_ref(), &self.environment, paths);
         Document::titled(self.title.as_ref())
             .and(cube)
+            .put_if(
+                "atmosphere",
+                self.atmosphere.as_ref().map(|one| {
+                    one.air.written(paths).put_quantity("distance", Dimension::Length, Some(one.distance_m))
+                }),
+            )
             .put_if("class", class::all_written(&self.classes, paths))
             .put("library", written)
             .put("unknown", unknown_written(&self.unknown))
@@ -96,10 +102,18 @@ pub(crate) fn cube_written(
 
 /// `[unknown]`.
 pub(crate) fn unknown_written(unknown: &PixelUnknown) -> Entries {
+    let shared = &unknown.shared;
     Entries::default()
         .put_range("temperature", Dimension::Temperature, Some(unknown.temperature_k))
         .put_if("lighting_total", unknown.lighting_total)
-        .put("gain", unknown.gain)
+        .put("gain", shared.gain.map_or(Value::from(unknown.gain), Value::from))
+        .put_quantity("wavelength_shift", Dimension::Wavenumber, shared.wavelength_shift_cm1)
+        .put_if("sky_scale", shared.sky_scale)
+        .put_if("sky_shape", shared.sky_shape)
+        .put_quantity("light_temperature", Dimension::TemperatureDifference, shared.light_temperature_k)
+        .put_if("missing_light", shared.missing_light)
+        .put_quantity("air", Dimension::Length, shared.air_m)
+        .put_if("noise_scale", shared.noise_scale)
 }
 
 /// `[truth]`.

@@ -2,8 +2,8 @@
 
 use super::key::Silent::{Is, Means, Refused};
 use super::key::{
-    A_SHARE, KELVIN, KELVIN_APART, Key, MATERIALS, More, POSITIVE, POSITIVE_SHARE, Table, Value, WAVENUMBER,
-    WHOLE,
+    A_SHARE, KELVIN, KELVIN_APART, Key, LENGTH, MATERIALS, More, POSITIVE, POSITIVE_SHARE, Table, Value,
+    WAVENUMBER, WHOLE,
 };
 use super::task::LIGHTING_TOTAL;
 use hadar::allowed::Allowed;
@@ -179,6 +179,18 @@ const LIBRARY_KEYS: &[Key] = &[
 /// `[library]`.
 pub(crate) static LIBRARY: Table = Table::of("The materials that a pixel may be.", &[LIBRARY_KEYS]);
 
+/// An unknown of the whole cube.
+const fn shared(name: &'static str, value: Value, example: &'static str, meaning: &'static str) -> Key {
+    Key::row(
+        name,
+        value,
+        Means("exactly as told"),
+        example,
+        meaning,
+        "estimated with all pixels, in all deviations",
+    )
+}
+
 const UNKNOWN_KEYS: &[Key] = &[
     Key::row(
         "temperature",
@@ -191,12 +203,44 @@ const UNKNOWN_KEYS: &[Key] = &[
     LIGHTING_TOTAL,
     Key::row(
         "gain",
-        Value::Flag,
+        Value::Either(&[Value::Flag, POSITIVE]),
         Is("false"),
-        "true",
-        "Whether the scale of the counts is unknown.",
-        "one more unknown of the fit",
+        "0.02",
+        "Whether the scale of the counts is unknown: true, another one for each pixel; a number, one for the whole cube, with this deviation.",
+        "one more unknown of the fit; one that is estimated with all pixels",
     ),
+    shared(
+        "wavelength_shift",
+        WAVENUMBER,
+        "\"2 cm^-1\"",
+        "Deviation of the wavenumbers of all bands together.",
+    ),
+    shared(
+        "sky_scale",
+        POSITIVE,
+        "0.05",
+        "Deviation of the strength of the sky, as a share: of vision.sky, else of the darkest light.",
+    ),
+    shared(
+        "sky_shape",
+        POSITIVE,
+        "0.02",
+        "Deviation of the sky's spectrum, smooth, rms over the bands, as a share.",
+    ),
+    shared(
+        "light_temperature",
+        KELVIN_APART,
+        "\"1 K\"",
+        "Deviation of the temperature of each of the surroundings that is a surface.",
+    ),
+    shared(
+        "missing_light",
+        POSITIVE,
+        "0.1",
+        "Deviation of the lighting factor of a light besides those that are told, as warm as the warmest of them.",
+    ),
+    shared("air", LENGTH, "\"10 m\"", "Deviation of the length of the path through the air of [atmosphere]."),
+    shared("noise_scale", POSITIVE, "0.2", "Deviation of the factor by which all noise is larger than told."),
 ];
 /// `[unknown]` of a cube.
 pub(crate) static UNKNOWN: Table =

@@ -169,6 +169,7 @@ pub(crate) static DECOMPOSE: Table = Table::of(
         needed(table("cube", &cube::CUBE)),
         BANDS,
         CAMERA,
+        silent("no air on the path", table("atmosphere", &task::ATMOSPHERE_OF_CUBE)),
         tables("environment", &cube::LIGHT),
         needed(table("library", &cube::LIBRARY)),
         table("unknown", &cube::UNKNOWN),

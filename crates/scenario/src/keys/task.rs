@@ -442,6 +442,18 @@ const ATMOSPHERE_KEYS: &[Key] = &[
 /// `[atmosphere]`.
 pub(crate) static ATMOSPHERE: Table = Table::of("The air between target and camera.", &[ATMOSPHERE_KEYS]);
 
+const DISTANCE_OF_CUBE: &[Key] = &[Key::row(
+    "distance",
+    LENGTH,
+    Refused,
+    "\"30 m\"",
+    "Length of the path from what is seen to the camera, the same for all pixels.",
+    "transmittance of the path",
+)];
+/// `[atmosphere]` of a cube.
+pub(crate) static ATMOSPHERE_OF_CUBE: Table =
+    Table::of("The air between what a cube shows and its camera.", &[ATMOSPHERE_KEYS, DISTANCE_OF_CUBE]);
+
 const TOLERANCE: Allowed =
     Allowed { holds: |value| (1e-14..=0.1).contains(&value), expected: "between 1e-14 and 0.1" };
 const BANDS_KEYS: &[Key] = &[

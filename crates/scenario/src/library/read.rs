@@ -1,7 +1,7 @@
 //! Reads what a library is to be made from: every key checked, every error one line with file, line and key.
 
-use super::super::decompose::PixelUnknown;
 use super::super::decompose::read::{heat_cube, light, truth, unknown};
+use super::super::decompose::{PixelUnknown, SharedUnknown};
 use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::is_cube;
@@ -47,6 +47,13 @@ impl LibraryScenario {
                 "write gain = false, or leave it out",
             );
             return Err(found.at(root.source().place("unknown.gain")));
+        }
+        let SharedUnknown { missing_light, air_m, noise_scale, .. } = unknown.shared;
+        let absent = [("missing_light", missing_light), ("air", air_m), ("noise_scale", noise_scale)];
+        if let Some((key, _)) = absent.into_iter().find(|(_, sigma)| sigma.is_some()) {
+            let found = "an unknown that is not put into emissivities";
+            let instead = "leave it out, or decompose the cube with a library that is there";
+            return Err(root.fail(&format!("unknown.{key}"), Error::malformed(found, instead)));
         }
         let environment: Vec<_> = root
             .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?

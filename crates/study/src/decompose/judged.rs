@@ -11,14 +11,14 @@
 //! causes beside what these errors do. Not judged are methods that leave light out.
 
 use super::DecomposeStudy;
+use super::estimated::{AGAINST, Estimated};
 use crate::cube_sample::{LOOKED, some};
 use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits};
 use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
 use hadar::error::Result;
-use hadar::planck::photon_radiance_and_slope_into;
 use hadar_estimate::decompose::{
-    Cause, Judged, Light, Maps, Method, Options, Setting, Together, decompose_by, judge, p_deviations,
+    Cause, Judged, Light, Maps, Method, Options, Setting, Shared, Together, decompose_by, judge, p_deviations,
 };
 use hadar_scenario::decompose::LightSource;
 
@@ -47,6 +47,10 @@ pub(super) struct Asked {
     most_decided: bool,
     /// Whether the library is taken as exact.
     exact: bool,
+    /// Whether materials can be decided with what is known of what the cube shares.
+    is_told: bool,
+    /// What was estimated far from what was stated of it.
+    against: Vec<CauseRow>,
 }
 
 /// What the deviations of temperatures have to hold.
@@ -65,15 +69,21 @@ impl Asked {
         method: Method,
         setting: &Setting<'_>,
         options: &Options,
-        whole: Option<&Maps>,
+        (whole, estimated): (Option<&Maps>, Option<&Estimated>),
     ) -> Result<Self> {
         let exact = options.library_error.is_none();
+        let is_told = estimated.is_none_or(Estimated::is_told);
+        let shared = estimated.map(|estimated| &estimated.shared);
         if method != Method::Ml || setting.gain {
-            return Ok(Self { exact, ..Self::default() });
+            return Ok(Self { exact, is_told, ..Self::default() });
         }
         let shape = study.cube.shape();
-        let mut asked = Self { causes: causes(study, setting, exact), exact, ..Self::default() };
-        let error = options.library_error;
+        let mut causes = causes(study, setting, exact);
+        let known = shared.map_or_else(Vec::new, Shared::causes);
+        causes.retain(|cause| !known.iter().any(|one| said(one) == said(cause)));
+        let against = shared.map_or_else(Vec::new, against);
+        let mut asked = Self { causes, exact, is_told, against, ..Self::default() };
+        let error = (options.library_error, shared);
         let pixels = |maps: &Maps| (0..maps.material.len()).filter(|i| fits(maps, *i).is_some()).count();
         let (judged, asked_of) = match whole.filter(|_| shape.rows() * shape.columns() <= LOOKED) {
             Some(maps) => (judge(setting, &asked.causes, error, maps, &study.cube)?, pixels(maps)),
@@ -141,7 +151,10 @@ impl Asked {
             return false;
         };
         let unfit = (fitting.pixels as f64) < (1.0 - UNFIT) * all.pixels as f64;
-        unfit || self.exact && below(fitting.p_values, fitting.pixels) || self.does_harm(sums)
+        unfit
+            || !self.against.is_empty()
+            || self.exact && below(fitting.p_values, fitting.pixels)
+            || self.does_harm(sums)
     }
 
     /// What the deviations have to hold; nothing while nothing speaks against the model.
@@ -168,8 +181,8 @@ impl Asked {
         let unfit_share = unfit as f64 / (pixels + unfit).max(1) as f64;
         let rejected = self.exact && below(p_sum, pixels) || unfit_share > UNFIT || self.rejects();
         let sums = self.sums();
-        let wide = study.bands.weigh(study.bands.nodes_cm1());
-        let widths = study.bands.widths_cm1();
+        let wide = study.told.bands.weigh(study.told.bands.nodes_cm1());
+        let widths = study.told.bands.widths_cm1();
         let bands =
             sums.zip(self.judged.as_ref()).filter(|_| self.exact).map_or_else(Vec::new, |(sums, judged)| {
                 let of = |(band, [sum, var]): (&usize, &[f64; 2])| BandResidual {
@@ -183,8 +196,9 @@ impl Asked {
         let of_exact = |x: f64| (is_judged && self.exact && x.is_finite()).then_some(x);
         ModelJudged {
             verdict: match (is_judged, rejected) {
-                (false, _) => ModelVerdict::NotJudged,
                 (true, true) => ModelVerdict::Rejected,
+                _ if !self.is_told => ModelVerdict::SharedNotTold,
+                (false, _) => ModelVerdict::NotJudged,
                 (true, false) => ModelVerdict::NotRejected,
             },
             pixels,
@@ -234,6 +248,7 @@ impl Asked {
         rows.sort_by(|a, b| b.gain_chi_square.total_cmp(&a.gain_chi_square));
         let least = self.least_gain(sums);
         rows.iter_mut().for_each(|row| row.may_be = row.gain_chi_square >= least);
+        rows.splice(0..0, self.against.iter().cloned());
         rows
     }
 }
@@ -243,12 +258,33 @@ fn below(sum: f64, pixels: usize) -> bool {
     p_deviations(sum, pixels) > P_LIMIT && 0.5 - sum / pixels.max(1) as f64 > P_HARM
 }
 
-fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
+/// What was estimated too far from what was stated of it: with how many deviations of the prior, squared.
+fn against(shared: &Shared) -> Vec<CauseRow> {
+    let each = shared.unknowns.iter().zip(&shared.amounts).enumerate();
+    each.filter(|(_, (one, amount))| amount.abs() > AGAINST * one.sigma)
+        .map(|(i, (one, amount))| {
+            let (cause, light, band, unit) = said(&one.cause);
+            CauseRow {
+                cause,
+                light,
+                band,
+                estimate: *amount,
+                sigma: shared.sigma(i),
+                unit,
+                gain_chi_square: (amount / one.sigma).powi(2),
+                temperature_moved: None,
+                may_be: true,
+            }
+        })
+        .collect()
+}
+
+pub(super) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
     match cause {
         Cause::Gain => ("gain", None, None, ""),
-        Cause::WavelengthShift => ("wavelength-shift", None, None, "cm^-1"),
+        Cause::WavelengthShift(_) => ("wavelength-shift", None, None, "cm^-1"),
         Cause::LightScale(light) => ("light-scale", Some(*light), None, ""),
-        Cause::LightTilt(light) => ("light-tilt", Some(*light), None, ""),
+        Cause::LightShape { light, .. } => ("light-tilt", Some(*light), None, ""),
         Cause::LightTemperature { light, .. } => ("light-temperature", Some(*light), None, "K"),
         Cause::LightingTotal => ("lighting-total", None, None, ""),
         Cause::LightMissing { .. } => ("light-missing", None, None, ""),
@@ -257,34 +293,42 @@ fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static 
     }
 }
 
+/// Temperature of the warmest light that has one, K.
+pub(super) fn hottest_k(study: &DecomposeStudy) -> f64 {
+    let warm = study.scenario.environment.iter().filter_map(|source| match source {
+        LightSource::Surface { temperature_k, .. } => Some(*temperature_k),
+        _ => None,
+    });
+    warm.reduce(f64::max).unwrap_or(MISSING_K)
+}
+
 /// What may be otherwise than told in a study.
 fn causes(study: &DecomposeStudy, setting: &Setting<'_>, exact: bool) -> Vec<Cause> {
-    let nodes = study.bands.nodes_cm1();
-    let mut all = vec![Cause::Gain, Cause::WavelengthShift];
-    let mut hottest_k = f64::NAN;
+    let nodes = setting.bands.nodes_cm1();
+    let mut all = vec![Cause::Gain, Cause::WavelengthShift(study.spectra.clone())];
     for (light, source) in study.scenario.environment.iter().enumerate() {
-        all.extend([Cause::LightScale(light), Cause::LightTilt(light)]);
-        if let (LightSource::Surface { temperature_k, .. }, Some(Light::Radiance(radiance))) =
+        all.extend([Cause::LightScale(light), Cause::LightShape { light, order: 1 }]);
+        if let (LightSource::Surface { temperature_k, .. }, Some(Light::Radiance(_))) =
             (source, setting.surroundings.get(light))
         {
-            hottest_k = hottest_k.max(*temperature_k);
-            let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
-            photon_radiance_and_slope_into(nodes, *temperature_k, &mut value, &mut slope);
-            let each = radiance.iter().zip(value.iter().zip(&slope));
-            let slope = each.map(|(s, (b, d))| if *b > 0.0 { s / b * d } else { 0.0 }).collect();
-            all.push(Cause::LightTemperature { light, slope });
+            all.push(Cause::LightTemperature { light, temperature_k: *temperature_k });
         }
     }
     if setting.lighting_total.is_some() {
         all.push(Cause::LightingTotal);
     }
-    let temperature_k = if hottest_k.is_nan() { MISSING_K } else { hottest_k };
-    all.push(Cause::LightMissing { temperature_k });
+    all.push(Cause::LightMissing { temperature_k: hottest_k(study) });
     // Where the table of the air does not reach the bands, it cannot be told.
-    let depth = Atmosphere::embedded("us-standard").and_then(|air| air.optical_depth(nodes, 1.0));
-    all.extend(depth.map(|depth_per_m| Cause::Air { depth_per_m, temperature_k: AIR_K }));
+    let (depth, temperature_k) = match &study.air {
+        Some((air, distance_m)) => {
+            let growth = air.table.optical_depth_and_growth(nodes, *distance_m);
+            (growth.map(|(_, growth)| growth), air.temperature_k)
+        }
+        None => (Atmosphere::embedded("us-standard").and_then(|air| air.optical_depth(nodes, 1.0)), AIR_K),
+    };
+    all.extend(depth.map(|depth_per_m| Cause::Air { depth_per_m, temperature_k }));
     // Errors of the library are such in every band.
     let is_used = |band: &usize| exact && !setting.bad_bands.contains(band);
-    all.extend((0..study.bands.len()).filter(is_used).map(Cause::Band));
+    all.extend((0..setting.bands.len()).filter(is_used).map(Cause::Band));
     all
 }

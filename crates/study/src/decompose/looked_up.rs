@@ -3,18 +3,24 @@
 use super::categories::parts;
 use super::truth::Truth;
 use crate::Warning;
+use crate::air::Air;
 use crate::budget::Takes;
 use crate::cube_bad::BadFound;
-use crate::heat_cube::{Measured, Said, columns};
+use crate::heat_cube::{Measured, Said, columns, sent};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar::spectrum::Bands;
-use hadar_estimate::decompose::{Light, SpatialPrior};
+use hadar::order;
+use hadar::spectrum::{Bands, interpolated};
+use hadar_estimate::decompose::{Light, Path, SpatialPrior, Spectra, Told};
 use hadar_estimate::segmentation::Categories;
 use hadar_formats::cube::Found;
 use hadar_formats::spectra::measured;
 use hadar_scenario::{DecomposeScenario, MaterialRef, Spread};
+use std::sync::Arc;
+
+/// Parts of a step between two bands in which spectra are read for a shift.
+const BETWEEN: usize = 8;
 
 /// A decomposition scenario with everything it names looked up and checked.
 #[derive(Debug)]
@@ -23,21 +29,18 @@ pub struct DecomposeStudy {
     pub(super) cube: Cube,
     /// What its file was read as.
     pub(super) read: Found,
-    /// Bands that are left out, in rising wavenumber.
-    pub(super) bad_bands: Vec<usize>,
     /// What was found to be bad.
     pub(super) bad: BadFound,
-    pub(super) bands: Bands,
-    /// Names of the materials, and their emissivities at the nodes of the bands.
+    /// All that is told of the cube.
+    pub(super) told: Told,
+    /// Its spectra besides, for a shift of the bands.
+    pub(super) spectra: Arc<Spectra>,
+    /// The air before the camera, and the length of its path, m.
+    pub(super) air: Option<(Air, f64)>,
+    /// Names of the materials.
     pub(super) names: Vec<String>,
-    pub(super) library: Vec<Vec<f64>>,
-    pub(super) lights: Vec<Light>,
-    pub(super) counts_per_radiance: Vec<f64>,
-    pub(super) var_added: Vec<f64>,
     /// What all bands and pixels are off by together, counts.
     pub(super) together: Option<Vec<f64>>,
-    /// What one count is in the unit of the cube.
-    pub(super) units_per_count: f64,
     pub(super) truth: Option<Truth>,
     /// Prior probabilities of the materials in any scale; empty if they are equal.
     pub(super) prior: Vec<f64>,
@@ -85,7 +88,20 @@ impl DecomposeStudy {
             };
             material.emissivity(nodes).map_err(|error| error.at(scenario.place(&key)))
         });
-        let emissivities = emissivities.collect::<Result<_>>()?;
+        let emissivities = emissivities.collect::<Result<Vec<_>>>()?;
+        let atmosphere = scenario.atmosphere.as_ref();
+        let air = atmosphere.map(|one| Ok((Air::looked_up(&one.air, &scenario.source)?, one.distance_m)));
+        let air = air.transpose()?;
+        let path = air.as_ref().map(|air| path(air, nodes)).transpose().map_err(at("atmosphere"))?;
+        if path.is_some()
+            && let Some(rows) = lights.iter().position(|light| matches!(light, Light::Counts(_)))
+        {
+            let found = "rows of the cube as a light, and air before the camera";
+            let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
+            return Err(at(&format!("environment[{rows}]"))(Error::malformed(found, instead)));
+        }
+        let spectra =
+            spectra(scenario, library, (&bands, &emissivities, &lights), (&materials, air.as_ref()));
         let names: Vec<String> = materials.iter().map(|one| one.material.name().to_owned()).collect();
         let entries = materials.last().map_or(0, |last| last.entry + 1);
         if let Some(prior) = &scenario.library.prior
@@ -143,16 +159,25 @@ impl DecomposeStudy {
             scenario: scenario.clone(),
             cube,
             read,
-            bad_bands,
             bad,
-            bands,
+            told: Told {
+                bands,
+                library: emissivities,
+                surroundings: lights,
+                counts_per_radiance,
+                var_added,
+                units_per_count,
+                temperature_k: scenario.unknown.temperature_k,
+                lighting_total: scenario.unknown.lighting_total,
+                gain: scenario.unknown.gain,
+                bad_bands,
+                path,
+                light_besides: Vec::new(),
+            },
+            spectra: Arc::new(spectra),
+            air,
             names,
-            library: emissivities,
-            lights,
-            counts_per_radiance,
-            var_added,
             together,
-            units_per_count,
             truth,
             prior,
             classes,
@@ -172,6 +197,49 @@ impl DecomposeStudy {
             Error::At { place, .. } if place.path.is_some() => error,
             _ => error.in_file(&self.scenario.cube.data),
         }
+    }
+}
+
+/// The air at the nodes.
+fn path((air, distance_m): &(Air, f64), nodes: &[f64]) -> Result<Path> {
+    Ok(Path {
+        transmittance: air.table.transmittance(nodes, *distance_m)?,
+        radiance: air.table.path_radiance(nodes, *distance_m, air.temperature_k)?,
+    })
+}
+
+/// All spectra on a finer grid, a band wider at both ends where they reach so far; else they go on as they end.
+fn spectra(
+    scenario: &DecomposeScenario,
+    library: &Library,
+    (bands, emissivities, lights): (&Bands, &[Vec<f64>], &[Light]),
+    (materials, air): (&[Listed], Option<&(Air, f64)>),
+) -> Spectra {
+    let nodes = bands.nodes_cm1();
+    let widest = bands.widths_cm1().into_iter().fold(0.0, f64::max);
+    let parts = if bands.one_node_per_band() { BETWEEN } else { 1 };
+    let grid_cm1 = Spectra::grid(nodes, parts, widest);
+    let (low, high) = bands.range_cm1();
+    let inside: Vec<f64> = grid_cm1.iter().map(|nu| nu.clamp(low, high)).collect();
+    let on_grid = |read: &dyn Fn(&[f64]) -> Option<Vec<f64>>, at_nodes: &[f64]| {
+        read(&grid_cm1).or_else(|| read(&inside)).unwrap_or_else(|| {
+            let mut rows: Vec<(f64, f64)> = nodes.iter().copied().zip(at_nodes.iter().copied()).collect();
+            order::ascending(&mut rows, |row| row.0);
+            let (xs, ys): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
+            inside.iter().map(|nu| interpolated(&xs, &ys, *nu)).collect()
+        })
+    };
+    let each = materials.iter().zip(emissivities);
+    let surroundings = scenario.environment.iter().zip(lights).map(|(source, light)| match light {
+        Light::Radiance(radiance) => on_grid(&|nodes| sent(source, nodes, library).ok().flatten(), radiance),
+        Light::Counts(_) => Vec::new(),
+    });
+    let between = air.and_then(|air| path(air, &grid_cm1).or_else(|_| path(air, &inside)).ok());
+    Spectra {
+        library: each.map(|(one, e)| on_grid(&|nodes| one.material.emissivity(nodes).ok(), e)).collect(),
+        surroundings: surroundings.collect(),
+        path: between,
+        grid_cm1,
     }
 }
 

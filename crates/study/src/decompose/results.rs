@@ -1,6 +1,7 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
+use super::estimated::SharedFound;
 use super::kept::Kept;
 use super::ranks::ranked;
 use super::segmented::Segmented;
@@ -41,6 +42,9 @@ pub struct Decomposed {
     pub undecided: usize,
     /// Whether the cube follows its model, and what may be otherwise than told.
     pub model: ModelJudged,
+    /// What was estimated for the whole cube; nothing where nothing is shared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shared: Option<SharedFound>,
     /// Pixels that were left out: a sample of them is missing, or they were named or found to be bad.
     pub skipped: usize,
     /// What was named or found to be bad.
@@ -260,17 +264,19 @@ pub(super) fn rows(
 pub(super) fn summary(
     study: &DecomposeStudy,
     method: Method,
-    (counted, mut found, model): (&Counted, Vec<MaterialRow>, ModelJudged),
+    (counted, mut found, model, shared): (&Counted, Vec<MaterialRow>, ModelJudged, Option<SharedFound>),
     (truth, vision, mut segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
     mut warnings: Vec<Warning>,
     kept: Kept,
 ) -> Decomposed {
     let (pixels, skipped) = (counted.pixels, counted.has(flag::SKIPPED));
     let mut decided = counted.decided;
-    if model.verdict == ModelVerdict::Rejected {
+    if model.verdict.takes_back() {
         decided = 0;
         found.iter_mut().for_each(|row| row.decided = 0);
         segmentation.iter_mut().for_each(Segmented::take_back);
+    }
+    if model.verdict == ModelVerdict::Rejected {
         warnings.push(Warning::ModelRejected {
             if_it_holds: counted.decided,
             causes: model.causes.iter().filter(|row| row.may_be).cloned().collect(),
@@ -298,6 +304,7 @@ pub(super) fn summary(
         decided,
         decided_if_model_holds: counted.decided,
         model,
+        shared,
         undecided: pixels - decided - skipped,
         skipped,
         bad: study.bad.clone(),

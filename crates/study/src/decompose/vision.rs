@@ -13,7 +13,7 @@ use super::kept::Block;
 use hadar::cube::{Cube, Rows, Sample};
 use hadar::error::Result;
 use hadar::parallel;
-use hadar_estimate::decompose::{Light, Maps, Residue, Setting, Sky, distil};
+use hadar_estimate::decompose::{Light, Maps, Residue, Setting, Sky, Told, distil};
 use hadar_scenario::MaterialRef;
 use hadar_scenario::decompose::LightSource;
 use serde::Serialize;
@@ -86,11 +86,11 @@ impl Block {
     ///
     /// # Errors
     /// A cube that cannot be read.
-    pub(super) fn of(study: &DecomposeStudy, first: usize, maps: Maps) -> Result<Self> {
+    pub(super) fn of(study: &DecomposeStudy, told: &Told, first: usize, maps: Maps) -> Result<Self> {
         let rows = first..first + maps.material.len() / study.cube.shape().columns();
         Ok(Self {
             first,
-            texture: texture(study, &maps),
+            texture: texture(told, &maps),
             thermal: match &study.cube {
                 Cube::F32(cube) => thermal(study, cube.as_ref(), rows),
                 Cube::F64(cube) => thermal(study, cube.as_ref(), rows),
@@ -175,20 +175,20 @@ pub(super) fn apart([low, high]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Bands that count.
-fn used(study: &DecomposeStudy) -> Vec<usize> {
-    (0..study.bands.len()).filter(|band| !study.bad_bands.contains(band)).collect()
+fn used(told: &Told) -> Vec<usize> {
+    (0..told.bands.len()).filter(|band| !told.bad_bands.contains(band)).collect()
 }
 
-fn texture(study: &DecomposeStudy, maps: &Maps) -> Vec<f32> {
-    let used = used(study);
-    let lights: Vec<f64> = study
-        .lights
+fn texture(told: &Told, maps: &Maps) -> Vec<f32> {
+    let used = used(told);
+    let lights: Vec<f64> = told
+        .surroundings
         .iter()
         .map(|light| {
             let of_bands: Vec<f64> = match light {
-                Light::Radiance(radiance) => study.bands.weigh(radiance),
+                Light::Radiance(radiance) => told.bands.weigh(radiance),
                 Light::Counts(counts) => {
-                    counts.iter().zip(&study.counts_per_radiance).map(|(n, k)| n / k).collect()
+                    counts.iter().zip(&told.counts_per_radiance).map(|(n, k)| n / k).collect()
                 }
             };
             used.iter().filter_map(|band| of_bands.get(*band)).sum()
@@ -202,9 +202,9 @@ fn texture(study: &DecomposeStudy, maps: &Maps) -> Vec<f32> {
 }
 
 fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>, rows: Range<usize>) -> Result<Vec<f32>> {
-    let used = used(study);
+    let used = used(&study.told);
     let scale: Vec<f64> =
-        study.counts_per_radiance.iter().map(|k| 1.0 / (k * study.units_per_count)).collect();
+        study.told.counts_per_radiance.iter().map(|k| 1.0 / (k * study.told.units_per_count)).collect();
     let sum = |pixel: &[S]| {
         let of = |band: &usize| Some(scale.get(*band)? * (*pixel.get(*band)?).into());
         used.iter().filter_map(of).sum::<f64>() as f32

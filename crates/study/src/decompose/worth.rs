@@ -15,6 +15,7 @@ use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::parallel;
 use hadar::scene::{State, Surroundings};
 use hadar_estimate::decompose::{Light, Maps, Method, flag};
+use hadar_scenario::decompose::SharedUnknown;
 
 /// Pixels whose limit is computed.
 const LIMITS: usize = 240;
@@ -101,7 +102,7 @@ impl Held {
 
     fn materials(&mut self, study: &DecomposeStudy, maps: &Maps, there: &There, material: &[usize]) {
         let truth = study.truth.as_ref();
-        let count = study.lights.len();
+        let count = study.told.surroundings.len();
         let every =
             truth.filter(|truth| truth.has_states()).map(|truth| truth.known.div_ceil(sampled(count)).max(1));
         for (i, (there_is, own)) in material.iter().zip(&maps.material).enumerate() {
@@ -186,9 +187,14 @@ fn sampled(lights: usize) -> usize {
 
 /// Φ(d) to the nearest of the other materials for some pixels.
 fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<Vec<f64>> {
-    let scale = study.counts_per_radiance[0];
-    let uniform = study.counts_per_radiance.iter().all(|k| (k / scale - 1.0).abs() < 1e-9);
-    if !uniform || study.library.len() < 2 || chosen.is_empty() {
+    let scale = study.told.counts_per_radiance[0];
+    let uniform = study.told.counts_per_radiance.iter().all(|k| (k / scale - 1.0).abs() < 1e-9);
+    if study.told.path.is_some()
+        || study.scenario.unknown.shared != SharedUnknown::default()
+        || !uniform
+        || study.told.library.len() < 2
+        || chosen.is_empty()
+    {
         return Ok(Vec::new());
     }
     let surroundings = surroundings(study)?;
@@ -201,7 +207,7 @@ fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<V
         lighting_sum: total.unwrap_or(1.0),
         ..StateRange::default()
     };
-    let counting = Counting { counts_per_radiance: scale, var_added: study.var_added.clone() };
+    let counting = Counting { counts_per_radiance: scale, var_added: study.told.var_added.clone() };
     let limit = |solver: &mut NearestSolver<'_>, (own, temperature_k, lighting): &(usize, f64, Vec<f64>)| {
         let state = State {
             temperature_k: *temperature_k,
@@ -209,9 +215,9 @@ fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<V
             gain: 1.0,
             environment_k: surroundings.objects().iter().map(|object| object.temperature_k).collect(),
         };
-        let emissivity = &study.library[*own];
+        let emissivity = &study.told.library[*own];
         let mut nearest = f64::INFINITY;
-        for (_, other) in study.library.iter().enumerate().filter(|(place, _)| place != own) {
+        for (_, other) in study.told.library.iter().enumerate().filter(|(place, _)| place != own) {
             // Between two equal ones any test guesses.
             let distance = if other == emissivity {
                 0.0
@@ -222,25 +228,25 @@ fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<V
         }
         Ok(detection::probability(nearest))
     };
-    let solver = || NearestSolver::new(&study.bands, &surroundings, unknowns.clone(), range);
+    let solver = || NearestSolver::new(&study.told.bands, &surroundings, unknowns.clone(), range);
     parallel::try_map_with(chosen.len(), solver, |solver, i| limit(solver, &chosen[i]))
 }
 
 /// The spectra of the surroundings.
 fn surroundings(study: &DecomposeStudy) -> Result<Surroundings> {
-    let nodes = study.bands.nodes_cm1();
-    let widths = study.bands.widths_cm1();
+    let nodes = study.told.bands.nodes_cm1();
+    let widths = study.told.bands.widths_cm1();
     let radiance = |light: &Light| match light {
         Light::Radiance(radiance) => radiance.clone(),
         // One value for all nodes of a band.
         Light::Counts(counts) => {
             let per_band: Vec<f64> = counts
                 .iter()
-                .zip(study.counts_per_radiance.iter().zip(&widths))
+                .zip(study.told.counts_per_radiance.iter().zip(&widths))
                 .map(|(n, (k, width))| n / (k * width))
                 .collect();
-            study.bands.spread(&per_band)
+            study.told.bands.spread(&per_band)
         }
     };
-    Surroundings::of_radiances(nodes, &study.lights.iter().map(radiance).collect::<Vec<_>>())
+    Surroundings::of_radiances(nodes, &study.told.surroundings.iter().map(radiance).collect::<Vec<_>>())
 }

@@ -11,7 +11,7 @@ const LISTED: usize = 6;
 pub(super) fn text(model: &ModelJudged) -> String {
     let mut out = String::new();
     let deviations = |x: f64| significant(x, if x.abs() < 100.0 { 2 } else { 3 });
-    if model.verdict == ModelVerdict::NotJudged {
+    if matches!(model.verdict, ModelVerdict::NotJudged | ModelVerdict::SharedNotTold) {
         return "Whether the cube follows its model was not asked: too few pixels are decided, there are as many unknowns as bands, or the method \
                 leaves light out\n\n"
             .to_owned();
