@@ -15,6 +15,7 @@ mod worth;
 
 pub use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
 pub use estimated::{SharedFound, SharedRow};
+pub(super) use judged::said;
 pub use kept::{Block, Keep, Kept, MapFiles};
 pub use looked_up::DecomposeStudy;
 pub use ranks::{Count, ranked};

@@ -54,6 +54,7 @@ pub mod render;
 mod resolve;
 mod rests_on;
 mod rule;
+mod shared_unknown;
 mod shortfall;
 mod sight;
 mod simulate;

@@ -1,8 +1,10 @@
 //! A library made out of a heat cube: files looked up, emissivities, and what they are worth where the truth is known.
 
 mod results;
+mod shared;
 
 pub use results::{ClusterRow, LibraryFound, TruthOfClusters};
+pub use shared::SharedOfLibrary;
 
 use super::Warning;
 use super::decompose::Truth;
@@ -64,13 +66,9 @@ impl LibraryStudy {
         Ok(Self { scenario: scenario.clone(), truth: truth.transpose()?, measured })
     }
 
-    /// The library; `done` is told how many rows of the cube are finished, of how many.
-    ///
-    /// # Errors
-    /// Counts that are negative, a cube that cannot be read, more clusters than pixels that have an emissivity.
-    pub fn library(&self, seed: u64, done: &(dyn Fn(usize, usize) + Sync)) -> Result<LibraryFound> {
+    fn setting(&self) -> Setting<'_> {
         let (measured, scenario) = (&self.measured, &self.scenario);
-        let setting = Setting {
+        Setting {
             bands: &measured.bands,
             library: &[],
             surroundings: &measured.lights,
@@ -83,7 +81,20 @@ impl LibraryStudy {
             bad_bands: &measured.bad_bands,
             path: None,
             light_besides: &[],
-        };
+        }
+    }
+
+    /// The library; `done` is told how many rows of the cube are finished, of how many.
+    ///
+    /// # Errors
+    /// Counts that are negative, a cube that cannot be read, more clusters than pixels that have an emissivity.
+    pub fn library(
+        &self,
+        library: &Library,
+        seed: u64,
+        done: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<LibraryFound> {
+        let (measured, scenario) = (&self.measured, &self.scenario);
         let clusters = scenario.clusters;
         let asked = Asked {
             count: clusters.count,
@@ -96,15 +107,20 @@ impl LibraryStudy {
         let progress = |more: usize| {
             done(finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more, rows);
         };
-        let found = library_from_cube(&setting, &asked, &measured.cube, &progress);
-        let found = found.map_err(|error| match &error {
+        let error = |error: Error| match &error {
             Error::At { place, .. } if place.path.is_some() => error,
             // What is asked for is wrong, or what the cube holds.
             Error::At { place, source } if place.key.as_deref() == Some(COUNT) => {
                 source.as_ref().clone().at(scenario.source.place(COUNT))
             }
             _ => error.in_file(&scenario.cube.data),
-        })?;
+        };
+        let mut found =
+            library_from_cube(&self.setting(), &asked, &measured.cube, &progress).map_err(error)?;
+        let again = |setting: &Setting<'_>| {
+            library_from_cube(setting, &asked, &measured.cube, &|_| ()).map_err(error)
+        };
+        let shared = self.with_shared(library, &mut found, &again)?;
         let truth = self.truth.as_ref().map(|truth| Ok(results::against(&truth.all()?, &found.maps)));
         let truth = truth.transpose()?;
         let mut warnings = measured.warnings.clone();
@@ -157,6 +173,6 @@ impl LibraryStudy {
                 clusters: hardly.into_iter().map(|one| one.0).collect(),
             });
         }
-        Ok(results::summary(scenario, measured, found, truth, (misfits, warnings)))
+        Ok(results::summary(scenario, measured, found, truth, shared, (misfits, warnings)))
     }
 }

@@ -24,10 +24,11 @@ pub(super) fn run(args: &LibraryArgs, global: &Global) -> Result<ExitCode> {
     LibraryScenario::check_path(&args.scenario)?;
     let mut scenario = LibraryScenario::from_written(&global.written(&args.scenario)?)?;
     scenario.cube.bad = args.bad.map_or(scenario.cube.bad, Bad::from);
-    let study = LibraryStudy::new(&scenario, &global.library()?)?;
+    let library_of_program = global.library()?;
+    let study = LibraryStudy::new(&scenario, &library_of_program)?;
     global.admit(study.takes())?;
     let bar = global.progress("rows");
-    let mut result = study.library(global.seed, &|done, total| bar.set(done, total))?;
+    let mut result = study.library(&library_of_program, global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = library::text(&result);
     result.stats.add(&global.report(&text, || library::bundle(&result))?);

@@ -453,28 +453,29 @@ fn counts(setting: &Setting<'_>, signal: impl Iterator<Item = f64>) -> Vec<f64> 
 
 /// Refuses air and light besides that are impossible, or that cannot be told apart from rows of the cube.
 fn check_between(setting: &Setting<'_>, nodes: usize) -> Result<()> {
-    let Setting { path, light_besides, surroundings, .. } = *setting;
-    let parts = path
-        .map(|path| [("transmittance of the air", &path.transmittance), ("its radiance", &path.radiance)]);
-    for (what, values) in parts
-        .iter()
-        .flatten()
-        .map(|(what, values)| (*what, values.as_slice()))
-        .chain([("light besides", light_besides)])
-    {
-        if values.len() != nodes && !(values.is_empty() && path.is_none()) && !values.is_empty() {
-            return Err(Error::Length { what: what.into(), found: values.len(), expected: nodes });
-        }
-        check::each(values, |x| (0.0..f64::INFINITY).contains(&x), |x| check::non_negative(what, x, ""))?;
+    let length = |what: &str, values: &[f64]| match values.len() {
+        found if found == nodes => Ok(()),
+        found => Err(Error::Length { what: what.into(), found, expected: nodes }),
+    };
+    if !setting.light_besides.is_empty() {
+        length("light besides", setting.light_besides)?;
+        // What is estimated about none may come out below it.
+        check::each(setting.light_besides, f64::is_finite, |x| check::finite("light besides", x, ""))?;
     }
-    if let Some(path) = path {
-        path.transmittance
-            .iter()
-            .try_for_each(|share| check::unit_interval("transmittance of the air", *share).map(|_| ()))?;
-        if surroundings.iter().any(|light| matches!(light, Light::Counts(_))) {
-            let found = "rows of the cube as a light, and air on the path";
-            return Err(Error::malformed(found, "give the light as a spectrum, or leave the air out"));
-        }
+    let Some(path) = setting.path else { return Ok(()) };
+    length("transmittance of the air", &path.transmittance)?;
+    length("radiance of the air", &path.radiance)?;
+    path.transmittance
+        .iter()
+        .try_for_each(|t| check::unit_interval("transmittance of the air", *t).map(|_| ()))?;
+    check::each(
+        &path.radiance,
+        |x| (0.0..f64::INFINITY).contains(&x),
+        |x| check::non_negative("radiance of the air", x, ""),
+    )?;
+    if setting.surroundings.iter().any(|light| matches!(light, Light::Counts(_))) {
+        let found = "rows of the cube as a light, and air on the path";
+        return Err(Error::malformed(found, "give the light as a spectrum, or leave the air out"));
     }
     Ok(())
 }

@@ -170,9 +170,8 @@ impl Told {
                 let mut radiance = vec![0.0; nodes.len()];
                 photon_radiance_into(nodes, *temperature_k, &mut radiance);
                 told.light_besides.resize(nodes.len(), 0.0);
-                // What is added cannot be less than nothing.
                 let each = told.light_besides.iter_mut().zip(&radiance);
-                each.for_each(|(s, b)| *s = amount.mul_add(*b, *s).max(0.0));
+                each.for_each(|(s, b)| *s = amount.mul_add(*b, *s));
             }
             Cause::Air { depth_per_m, temperature_k } => {
                 let mut radiance = vec![0.0; nodes.len()];

@@ -2,7 +2,7 @@
 
 pub(crate) mod judged;
 mod segmented;
-mod shared;
+pub(crate) mod shared;
 
 use crate::table::number;
 use crate::text::columns::{Columns, left, right};

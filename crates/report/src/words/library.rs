@@ -5,6 +5,7 @@ use crate::text::columns::{Columns, left, right};
 use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
 use crate::text::numbers::degrees;
+use crate::words::decompose::shared;
 use crate::words::pictures::thinned;
 use hadar::words::{fixed, quantity, share, significant, whole};
 use hadar_study::library::{LibraryFound, TruthOfClusters};
@@ -19,6 +20,7 @@ pub fn text(result: &LibraryFound) -> String {
     if let Some(truth) = &result.truth {
         out.push_str(&against(truth));
     }
+    out.push_str(&shared(result));
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
     out
@@ -107,6 +109,34 @@ fn against(truth: &TruthOfClusters) -> String {
             quantity(rmse, "K"),
             quantity(median, "K")
         );
+    }
+    out.push('\n');
+    out
+}
+
+/// What unknowns of the whole cube do.
+fn shared(result: &LibraryFound) -> String {
+    if result.shared.is_empty() {
+        return String::new();
+    }
+    let mut out =
+        "Unknown for the whole cube: in the deviations, as the pixels do not tell it here\n".to_owned();
+    for row in &result.shared {
+        let share_of = row.unit.is_empty();
+        let _ = write!(
+            out,
+            "  {}, known to {}{}: moves emissivities by {} rms",
+            shared::named(row.unknown, row.light, row.order),
+            significant(if share_of { 100.0 * row.sigma_stated } else { row.sigma_stated }, 2),
+            if share_of { " %".to_owned() } else { format!(" {}", row.unit) },
+            significant(row.emissivity_rms, 2)
+        );
+        match row.lost {
+            0 => out.push('\n'),
+            lost => {
+                let _ = writeln!(out, "; {lost} of the clusters are not found again with it");
+            }
+        }
     }
     out.push('\n');
     out

@@ -1,16 +1,15 @@
 //! Unknowns that the whole cube shares (`[unknown]`), estimated with its pixels.
 //!
-//! A key becomes one or more amounts of causes ([`Unknown`]): a shape of the sky three of them, so that its rms over the bands is what is
-//! stated, σₙ² = s² (2n + 1)/3 for Legendre's polynomial of order n; a temperature one for each light that is a surface. The sky is `vision.sky`,
-//! else the darkest light. Estimated first from few pixels, then from [`LOOKED`].
+//! First from few pixels, then from [`LOOKED`]; what is asked for is in [`crate::shared_unknown`].
 
 use super::DecomposeStudy;
-use super::judged::{hottest_k, said};
+use super::judged::said;
 use crate::cube_sample::{LOOKED, some};
+use crate::shared_unknown::Of;
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
-use hadar_estimate::decompose::{Cause, Light, Method, Options, Shared, Told, Unknown, estimate};
-use hadar_scenario::decompose::{LightSource, SharedUnknown};
+use hadar_estimate::decompose::{Cause, Method, Options, Shared, Told, Unknown, estimate};
+use hadar_scenario::decompose::SharedUnknown;
 use serde::Serialize;
 
 /// Pixels of the first rounds.
@@ -90,7 +89,15 @@ impl Estimated {
                 "write gain = 0.02, the deviation of one for the whole cube",
             );
         }
-        let unknowns = unknowns(study, &stated)?;
+        let unknowns = Of {
+            told: &study.told,
+            environment: &study.scenario.environment,
+            sky: study.scenario.vision.sky,
+            spectra: &study.spectra,
+            air: study.air.as_ref(),
+            source: &study.scenario.source,
+        }
+        .unknowns(&stated)?;
         let of = |most: usize| -> Result<Cube> {
             Ok(match &study.cube {
                 Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref(), most)?)),
@@ -144,66 +151,4 @@ impl Estimated {
             told: self.is_told(),
         }
     }
-}
-
-/// What is unknown, as amounts of causes.
-fn unknowns(study: &DecomposeStudy, stated: &SharedUnknown) -> Result<Vec<Unknown>> {
-    let (told, lights) = (&study.told, &study.told.surroundings);
-    let mut all = Vec::new();
-    let mut add = |cause: Cause, sigma: f64| all.push(Unknown { cause, sigma });
-    let lacks = |key: &str, found: &str| {
-        let error = Error::malformed(found, "write an [[environment]] that it is said of, or leave it out");
-        Err(error.at(study.scenario.place(key)))
-    };
-    if let Some(sigma) = stated.gain {
-        add(Cause::Gain, sigma);
-    }
-    if let Some(sigma) = stated.wavelength_shift_cm1 {
-        add(Cause::WavelengthShift(study.spectra.clone()), sigma);
-    }
-    let of_sky = [("sky_scale", stated.sky_scale), ("sky_shape", stated.sky_shape)];
-    if let Some((key, _)) = of_sky.iter().find(|(_, sigma)| sigma.is_some()) {
-        let strength = |light: &Light| -> f64 {
-            match light {
-                Light::Radiance(radiance) => {
-                    told.bands.weigh(radiance).iter().zip(&told.counts_per_radiance).map(|(s, k)| s * k).sum()
-                }
-                Light::Counts(counts) => counts.iter().sum(),
-            }
-        };
-        let darkest = lights.iter().enumerate().min_by(|a, b| strength(a.1).total_cmp(&strength(b.1)));
-        let Some(sky) = study.scenario.vision.sky.or(darkest.map(|(sky, _)| sky)) else {
-            return lacks(&format!("unknown.{key}"), "a sky of a cube without surroundings");
-        };
-        if let Some(sigma) = stated.sky_scale {
-            add(Cause::LightScale(sky), sigma);
-        }
-        if let Some(sigma) = stated.sky_shape {
-            for order in 1..4 {
-                add(Cause::LightShape { light: sky, order }, sigma * ((2 * order + 1) as f64 / 3.0).sqrt());
-            }
-        }
-    }
-    if let Some(sigma) = stated.light_temperature_k {
-        let surfaces =
-            study.scenario.environment.iter().enumerate().filter_map(|(light, source)| match source {
-                LightSource::Surface { temperature_k, .. } => Some((light, *temperature_k)),
-                _ => None,
-            });
-        let surfaces: Vec<_> = surfaces.collect();
-        if surfaces.is_empty() {
-            return lacks("unknown.light_temperature", "no surroundings with a temperature");
-        }
-        for (light, temperature_k) in surfaces {
-            add(Cause::LightTemperature { light, temperature_k }, sigma);
-        }
-    }
-    if let Some(sigma) = stated.missing_light {
-        add(Cause::LightMissing { temperature_k: hottest_k(study) }, sigma);
-    }
-    if let Some((sigma, (air, distance_m))) = stated.air_m.zip(study.air.as_ref()) {
-        let (_, depth_per_m) = air.table.optical_depth_and_growth(told.bands.nodes_cm1(), *distance_m)?;
-        add(Cause::Air { depth_per_m, temperature_k: air.temperature_k }, sigma);
-    }
-    Ok(all)
 }

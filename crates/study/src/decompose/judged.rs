@@ -14,6 +14,7 @@ use super::DecomposeStudy;
 use super::estimated::{AGAINST, Estimated};
 use crate::cube_sample::{LOOKED, some};
 use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits};
+use crate::shared_unknown::hottest_k;
 use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
 use hadar::error::Result;
@@ -36,8 +37,6 @@ const UNFIT: f64 = 0.5;
 const MAY_BE: f64 = 0.5;
 /// Temperature of the standard atmosphere at the ground, K.
 const AIR_K: f64 = 288.15;
-/// A temperature of a light that may be missing where none is found, K.
-const MISSING_K: f64 = 293.15;
 
 /// What was asked of some pixels, and what is to be put into the deviations.
 #[derive(Debug, Default)]
@@ -279,7 +278,7 @@ fn against(shared: &Shared) -> Vec<CauseRow> {
         .collect()
 }
 
-pub(super) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
+pub(crate) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
     match cause {
         Cause::Gain => ("gain", None, None, ""),
         Cause::WavelengthShift(_) => ("wavelength-shift", None, None, "cm^-1"),
@@ -291,15 +290,6 @@ pub(super) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>
         Cause::Air { .. } => ("air", None, None, "m"),
         Cause::Band(band) => ("band", None, Some(*band), ""),
     }
-}
-
-/// Temperature of the warmest light that has one, K.
-pub(super) fn hottest_k(study: &DecomposeStudy) -> f64 {
-    let warm = study.scenario.environment.iter().filter_map(|source| match source {
-        LightSource::Surface { temperature_k, .. } => Some(*temperature_k),
-        _ => None,
-    });
-    warm.reduce(f64::max).unwrap_or(MISSING_K)
 }
 
 /// What may be otherwise than told in a study.
@@ -317,7 +307,7 @@ fn causes(study: &DecomposeStudy, setting: &Setting<'_>, exact: bool) -> Vec<Cau
     if setting.lighting_total.is_some() {
         all.push(Cause::LightingTotal);
     }
-    all.push(Cause::LightMissing { temperature_k: hottest_k(study) });
+    all.push(Cause::LightMissing { temperature_k: hottest_k(&study.scenario.environment) });
     // Where the table of the air does not reach the bands, it cannot be told.
     let (depth, temperature_k) = match &study.air {
         Some((air, distance_m)) => {

@@ -6,21 +6,17 @@ use crate::Warning;
 use crate::air::Air;
 use crate::budget::Takes;
 use crate::cube_bad::BadFound;
-use crate::heat_cube::{Measured, Said, columns, sent};
+use crate::heat_cube::{Measured, Said, columns};
+use crate::shared_unknown::{path, spectra};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar::order;
-use hadar::spectrum::{Bands, interpolated};
-use hadar_estimate::decompose::{Light, Path, SpatialPrior, Spectra, Told};
+use hadar_estimate::decompose::{Light, SpatialPrior, Spectra, Told};
 use hadar_estimate::segmentation::Categories;
 use hadar_formats::cube::Found;
 use hadar_formats::spectra::measured;
 use hadar_scenario::{DecomposeScenario, MaterialRef, Spread};
 use std::sync::Arc;
-
-/// Parts of a step between two bands in which spectra are read for a shift.
-const BETWEEN: usize = 8;
 
 /// A decomposition scenario with everything it names looked up and checked.
 #[derive(Debug)]
@@ -100,8 +96,9 @@ impl DecomposeStudy {
             let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
             return Err(at(&format!("environment[{rows}]"))(Error::malformed(found, instead)));
         }
-        let spectra =
-            spectra(scenario, library, (&bands, &emissivities, &lights), (&materials, air.as_ref()));
+        let each: Vec<&Material> = materials.iter().map(|one| &one.material).collect();
+        let of = (&each[..], &scenario.environment[..], library);
+        let spectra = spectra((&bands, &emissivities, &lights), of, air.as_ref());
         let names: Vec<String> = materials.iter().map(|one| one.material.name().to_owned()).collect();
         let entries = materials.last().map_or(0, |last| last.entry + 1);
         if let Some(prior) = &scenario.library.prior
@@ -197,49 +194,6 @@ impl DecomposeStudy {
             Error::At { place, .. } if place.path.is_some() => error,
             _ => error.in_file(&self.scenario.cube.data),
         }
-    }
-}
-
-/// The air at the nodes.
-fn path((air, distance_m): &(Air, f64), nodes: &[f64]) -> Result<Path> {
-    Ok(Path {
-        transmittance: air.table.transmittance(nodes, *distance_m)?,
-        radiance: air.table.path_radiance(nodes, *distance_m, air.temperature_k)?,
-    })
-}
-
-/// All spectra on a finer grid, a band wider at both ends where they reach so far; else they go on as they end.
-fn spectra(
-    scenario: &DecomposeScenario,
-    library: &Library,
-    (bands, emissivities, lights): (&Bands, &[Vec<f64>], &[Light]),
-    (materials, air): (&[Listed], Option<&(Air, f64)>),
-) -> Spectra {
-    let nodes = bands.nodes_cm1();
-    let widest = bands.widths_cm1().into_iter().fold(0.0, f64::max);
-    let parts = if bands.one_node_per_band() { BETWEEN } else { 1 };
-    let grid_cm1 = Spectra::grid(nodes, parts, widest);
-    let (low, high) = bands.range_cm1();
-    let inside: Vec<f64> = grid_cm1.iter().map(|nu| nu.clamp(low, high)).collect();
-    let on_grid = |read: &dyn Fn(&[f64]) -> Option<Vec<f64>>, at_nodes: &[f64]| {
-        read(&grid_cm1).or_else(|| read(&inside)).unwrap_or_else(|| {
-            let mut rows: Vec<(f64, f64)> = nodes.iter().copied().zip(at_nodes.iter().copied()).collect();
-            order::ascending(&mut rows, |row| row.0);
-            let (xs, ys): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
-            inside.iter().map(|nu| interpolated(&xs, &ys, *nu)).collect()
-        })
-    };
-    let each = materials.iter().zip(emissivities);
-    let surroundings = scenario.environment.iter().zip(lights).map(|(source, light)| match light {
-        Light::Radiance(radiance) => on_grid(&|nodes| sent(source, nodes, library).ok().flatten(), radiance),
-        Light::Counts(_) => Vec::new(),
-    });
-    let between = air.and_then(|air| path(air, &grid_cm1).or_else(|_| path(air, &inside)).ok());
-    Spectra {
-        library: each.map(|(one, e)| on_grid(&|nodes| one.material.emissivity(nodes).ok(), e)).collect(),
-        surroundings: surroundings.collect(),
-        path: between,
-        grid_cm1,
     }
 }
 

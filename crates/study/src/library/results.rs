@@ -1,5 +1,6 @@
 //! What is said of a library that was made out of a cube.
 
+use super::SharedOfLibrary;
 use crate::Warning;
 use crate::decompose::{FlagCount, There, flags};
 use crate::heat_cube::Measured;
@@ -45,6 +46,9 @@ pub struct LibraryFound {
     pub flags: Vec<FlagCount>,
     /// What emissivities may be off by, errors of the library and spread of its pixels, over the emissivities, both as root mean squares.
     pub emissivity_error: f64,
+    /// What unknowns that the whole cube shares do to the emissivities; their deviations hold it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shared: Vec<SharedOfLibrary>,
     /// How good it is, where that is known.
     pub truth: Option<TruthOfClusters>,
     /// What was done and what was spared.
@@ -141,6 +145,7 @@ pub(super) fn summary(
     measured: &Measured,
     found: Found,
     truth: Option<TruthOfClusters>,
+    shared: Vec<SharedOfLibrary>,
     (misfits, mut warnings): (Vec<usize>, Vec<Warning>),
 ) -> LibraryFound {
     let Found { clusters, prior, tried, drawn, without_nem, maps, .. } = found;
@@ -194,6 +199,7 @@ pub(super) fn summary(
         prior,
         flags: skipped,
         emissivity_error: if weight > 0.0 { f64::sqrt(square / weight) } else { 0.0 },
+        shared,
         truth,
         stats: maps.spared.work(),
         warnings,

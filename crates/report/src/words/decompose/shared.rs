@@ -53,12 +53,17 @@ fn line(row: &SharedRow, all: &[SharedRow]) -> String {
 }
 
 fn name(row: &SharedRow) -> String {
-    let light = row.light.map_or_else(String::new, |k| format!(" of environment[{k}]"));
-    match row.unknown {
+    named(row.unknown, row.light, row.order)
+}
+
+/// An unknown of the whole cube by its name.
+pub(crate) fn named(unknown: &str, light: Option<usize>, order: Option<usize>) -> String {
+    let light = light.map_or_else(String::new, |k| format!(" of environment[{k}]"));
+    match unknown {
         "gain" => "gain".to_owned(),
         "wavelength-shift" => "wavelength shift".to_owned(),
         "light-scale" => format!("strength{light}"),
-        "light-shape" => format!("shape{light}, Legendre polynomial {}", row.order.unwrap_or(1)),
+        "light-shape" => format!("shape{light}, Legendre polynomial {}", order.unwrap_or(1)),
         "light-temperature" => format!("temperature{light}"),
         "light-missing" => "V of a light besides".to_owned(),
         "air" => "length of the air's path".to_owned(),

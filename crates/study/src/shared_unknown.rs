@@ -1,0 +1,155 @@
+//! What has one value for a whole cube and is not known exactly (`[unknown]`), as amounts of causes.
+//!
+//! A key becomes one or more amounts: a shape of the sky three of them, so that its rms over the bands is what is stated,
+//! σₙ² = s² (2n + 1)/3 for Legendre's polynomial of order n; a temperature one for each light that is a surface. The sky is the one that is named,
+//! else the darkest light.
+
+use crate::air::Air;
+use crate::heat_cube::sent;
+use hadar::error::{Error, Result};
+use hadar::material::{Library, Material};
+use hadar::order;
+use hadar::spectrum::{Bands, interpolated};
+use hadar_estimate::decompose::{Cause, Light, Path, Spectra, Told, Unknown};
+use hadar_scenario::Source;
+use hadar_scenario::decompose::{LightSource, SharedUnknown};
+use std::sync::Arc;
+
+/// Parts of a step between two bands in which spectra are read for a shift.
+const BETWEEN: usize = 8;
+/// A temperature of a light that may be missing where none is found, K.
+const MISSING_K: f64 = 293.15;
+
+/// Of what it is said.
+#[derive(Debug)]
+pub(super) struct Of<'a> {
+    pub(super) told: &'a Told,
+    pub(super) environment: &'a [LightSource],
+    /// Which of them is named the sky.
+    pub(super) sky: Option<usize>,
+    pub(super) spectra: &'a Arc<Spectra>,
+    pub(super) air: Option<&'a (Air, f64)>,
+    pub(super) source: &'a Source,
+}
+
+impl Of<'_> {
+    /// What is unknown, as amounts of causes.
+    pub(super) fn unknowns(&self, stated: &SharedUnknown) -> Result<Vec<Unknown>> {
+        let (told, lights) = (self.told, &self.told.surroundings);
+        let mut all = Vec::new();
+        let mut add = |cause: Cause, sigma: f64| all.push(Unknown { cause, sigma });
+        let lacks = |key: &str, found: &str| {
+            let error =
+                Error::malformed(found, "write an [[environment]] that it is said of, or leave it out");
+            Err(error.at(self.source.place(key)))
+        };
+        if let Some(sigma) = stated.gain {
+            add(Cause::Gain, sigma);
+        }
+        if let Some(sigma) = stated.wavelength_shift_cm1 {
+            add(Cause::WavelengthShift(self.spectra.clone()), sigma);
+        }
+        let of_sky = [("sky_scale", stated.sky_scale), ("sky_shape", stated.sky_shape)];
+        if let Some((key, _)) = of_sky.iter().find(|(_, sigma)| sigma.is_some()) {
+            let strength = |light: &Light| -> f64 {
+                match light {
+                    Light::Radiance(radiance) => told
+                        .bands
+                        .weigh(radiance)
+                        .iter()
+                        .zip(&told.counts_per_radiance)
+                        .map(|(s, k)| s * k)
+                        .sum(),
+                    Light::Counts(counts) => counts.iter().sum(),
+                }
+            };
+            let darkest = lights.iter().enumerate().min_by(|a, b| strength(a.1).total_cmp(&strength(b.1)));
+            let Some(sky) = self.sky.or(darkest.map(|(sky, _)| sky)) else {
+                return lacks(&format!("unknown.{key}"), "a sky of a cube without surroundings");
+            };
+            if let Some(sigma) = stated.sky_scale {
+                add(Cause::LightScale(sky), sigma);
+            }
+            if let Some(sigma) = stated.sky_shape {
+                for order in 1..4 {
+                    add(
+                        Cause::LightShape { light: sky, order },
+                        sigma * ((2 * order + 1) as f64 / 3.0).sqrt(),
+                    );
+                }
+            }
+        }
+        if let Some(sigma) = stated.light_temperature_k {
+            let surfaces = self.environment.iter().enumerate().filter_map(|(light, source)| match source {
+                LightSource::Surface { temperature_k, .. } => Some((light, *temperature_k)),
+                _ => None,
+            });
+            let surfaces: Vec<_> = surfaces.collect();
+            if surfaces.is_empty() {
+                return lacks("unknown.light_temperature", "no surroundings with a temperature");
+            }
+            for (light, temperature_k) in surfaces {
+                add(Cause::LightTemperature { light, temperature_k }, sigma);
+            }
+        }
+        if let Some(sigma) = stated.missing_light {
+            add(Cause::LightMissing { temperature_k: hottest_k(self.environment) }, sigma);
+        }
+        if let Some((sigma, (air, distance_m))) = stated.air_m.zip(self.air) {
+            let (_, depth_per_m) = air.table.optical_depth_and_growth(told.bands.nodes_cm1(), *distance_m)?;
+            add(Cause::Air { depth_per_m, temperature_k: air.temperature_k }, sigma);
+        }
+        Ok(all)
+    }
+}
+
+/// Temperature of the warmest light that has one, K.
+pub(super) fn hottest_k(environment: &[LightSource]) -> f64 {
+    let warm = environment.iter().filter_map(|source| match source {
+        LightSource::Surface { temperature_k, .. } => Some(*temperature_k),
+        _ => None,
+    });
+    warm.reduce(f64::max).unwrap_or(MISSING_K)
+}
+
+/// The air at the nodes.
+pub(super) fn path((air, distance_m): &(Air, f64), nodes: &[f64]) -> Result<Path> {
+    Ok(Path {
+        transmittance: air.table.transmittance(nodes, *distance_m)?,
+        radiance: air.table.path_radiance(nodes, *distance_m, air.temperature_k)?,
+    })
+}
+
+/// All spectra on a finer grid, a band wider at both ends where they reach so far; else they go on as they end.
+pub(super) fn spectra(
+    (bands, emissivities, lights): (&Bands, &[Vec<f64>], &[Light]),
+    (materials, environment, library): (&[&Material], &[LightSource], &Library),
+    air: Option<&(Air, f64)>,
+) -> Spectra {
+    let nodes = bands.nodes_cm1();
+    let widest = bands.widths_cm1().into_iter().fold(0.0, f64::max);
+    let parts = if bands.one_node_per_band() { BETWEEN } else { 1 };
+    let grid_cm1 = Spectra::grid(nodes, parts, widest);
+    let (low, high) = bands.range_cm1();
+    let inside: Vec<f64> = grid_cm1.iter().map(|nu| nu.clamp(low, high)).collect();
+    let on_grid = |read: &dyn Fn(&[f64]) -> Option<Vec<f64>>, at_nodes: &[f64]| {
+        read(&grid_cm1).or_else(|| read(&inside)).unwrap_or_else(|| {
+            let mut rows: Vec<(f64, f64)> = nodes.iter().copied().zip(at_nodes.iter().copied()).collect();
+            order::ascending(&mut rows, |row| row.0);
+            let (xs, ys): (Vec<f64>, Vec<f64>) = rows.into_iter().unzip();
+            inside.iter().map(|nu| interpolated(&xs, &ys, *nu)).collect()
+        })
+    };
+    let each = materials.iter().zip(emissivities);
+    let surroundings = environment.iter().zip(lights).map(|(source, light)| match light {
+        Light::Radiance(radiance) => on_grid(&|nodes| sent(source, nodes, library).ok().flatten(), radiance),
+        Light::Counts(_) => Vec::new(),
+    });
+    let between = air.and_then(|air| path(air, &grid_cm1).or_else(|_| path(air, &inside)).ok());
+    Spectra {
+        library: each.map(|(one, e)| on_grid(&|nodes| one.emissivity(nodes).ok(), e)).collect(),
+        surroundings: surroundings.collect(),
+        path: between,
+        grid_cm1,
+    }
+}
