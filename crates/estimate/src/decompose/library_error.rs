@@ -35,6 +35,8 @@ const LADDER: [f64; 5] = [0.5, 0.25, 0.125, 0.0625, 0.0];
 const BESIDE: f64 = CUT + 6.0;
 /// Cost beyond what a material has at another share from which on a share is not looked at again: more than steps still bring.
 const WORSE: f64 = 10.0;
+/// Share of the χ² that a step promises which all further steps leave: C is that of the state at hand, and its contrast may grow.
+const HOPE: f64 = 0.25;
 /// Length of the last step, squared, in deviations, of the fit that is told.
 const TOLD: f64 = 1e-3 * COMPARED;
 /// Fewest counts of a model.
@@ -92,8 +94,10 @@ struct Asked {
     start: State,
     /// The last step is this short, squared.
     short: f64,
-    /// Cost from which on it is not looked at again.
-    hopeless: f64,
+    /// What a material must not cost at least, of which χ² may still lose most, to be looked at again.
+    beside: f64,
+    /// What it must not cost.
+    worse: f64,
 }
 
 /// A fit under way.
@@ -184,7 +188,8 @@ impl Workplace {
         start: State,
         to: &mut Sums,
     ) -> (Fit, usize) {
-        self.queue.push(Asked { kind: 0, m, share: 1.0, start, short: TOLD, hopeless: f64::INFINITY });
+        let none = f64::INFINITY;
+        self.queue.push(Asked { kind: 0, m, share: 1.0, start, short: TOLD, beside: none, worse: none });
         self.done.clear();
         let looks = self.run(model, errors, shifted, to);
         let nothing = Fit { state: start, deviance: f64::INFINITY, chi_square: f64::INFINITY };
@@ -207,6 +212,8 @@ impl Workplace {
                 .step_by(BEFORE + vectors)
                 .for_each(|n| n.fill(1.0));
         }
+        let rows: &mut [f64] = &mut self.rows;
+        let described: &mut [f64] = &mut self.state;
         let mut looks = 0;
         loop {
             hadar::stop::check();
@@ -219,30 +226,49 @@ impl Workplace {
                         looks: 0,
                     });
                 }
-                let Some(Lane { asked, state, .. }) = lane else { continue };
-                describe(model, asked, state, errors.relative, shifted, &mut self.state);
-                for (k, values) in self.state.chunks_exact(width).enumerate() {
+                let Some(Lane { asked, state, looks, .. }) = lane else { continue };
+                describe(model, asked, state, errors.relative, shifted, described);
+                // What a lighting changes does not depend on the state of a calibrated camera.
+                let changed = if model.gain || *looks == 0 { BEFORE + 1 + count } else { BEFORE + 2 };
+                for (k, values) in described.chunks_exact(width).take(changed).enumerate() {
                     for (value, place) in values.iter().zip(&errors.law.places) {
-                        self.rows[place * stride + k * LANES + i] = *value;
+                        rows[place * stride + k * LANES + i] = *value;
                     }
                 }
             }
             if self.lanes.iter().all(Option::is_none) {
                 return looks;
             }
-            filter(&errors.law, &self.rows, vectors, &mut self.found);
+            filter(&errors.law, rows, vectors, &mut self.found);
             for i in 0..LANES {
                 let Some(mut lane) = self.lanes[i] else { continue };
                 let least = take(&self.found, i, count, to);
                 looks += 1;
                 lane.looks += 1;
-                self.lanes[i] = match lane.step(model, to) {
+                self.lanes[i] = match lane.step(model, least, to) {
                     Some(fit) => {
                         self.done.push((lane.asked, fit, least));
                         None
                     }
                     None => Some(lane),
                 };
+            }
+        }
+    }
+}
+
+impl Workplace {
+    /// Takes what is done into the fits of the kinds, the cost of each the least of any share.
+    fn collect(&mut self, handicap: &[f64], fits: &mut [(usize, Fit)]) {
+        for (Asked { kind, share, .. }, fit, least) in self.done.drain(..) {
+            let (deviance, (_, best)) = (fit.deviance + handicap[kind], &mut fits[kind]);
+            if share == 1.0 {
+                self.floors[kind] = self.floors[kind].min(fit.chi_square + least + handicap[kind]);
+                if deviance < best.deviance {
+                    *best = Fit { deviance, ..fit };
+                }
+            } else {
+                best.deviance = best.deviance.min(deviance);
             }
         }
     }
@@ -265,14 +291,16 @@ fn take(found: &Found, lane: usize, count: usize, to: &mut Sums) -> f64 {
 
 impl Lane {
     /// Goes on from what was seen; the fit where that is its end. The sums stay those before the last step.
-    fn step(&mut self, model: &Model, seen: &Sums) -> Option<Fit> {
+    fn step(&mut self, model: &Model, least: f64, seen: &Sums) -> Option<Fit> {
         let mut next = self.state;
         let step = next.step(seen, &model.limits());
         let less = step.square.max(0.0);
         let here = Fit { state: next, deviance: seen.deviance - less, chi_square: seen.chi_square - less };
         let short = step.square.is_nan() || step.square < self.asked.short;
+        let hopeless =
+            HOPE.mul_add(here.chi_square, least) > self.asked.beside || here.deviance > self.asked.worse;
         let worse = self.best.is_some_and(|best| seen.deviance > best.deviance + 1.0);
-        if short || worse || self.looks >= MOST_LOOKS || here.deviance > self.asked.hopeless {
+        if short || worse || self.looks >= MOST_LOOKS || hopeless {
             // C is that of the state at hand: where a step raises the cost, what was found before it stays.
             return Some(self.best.filter(|best| best.deviance < here.deviance).unwrap_or(here));
         }
@@ -286,89 +314,78 @@ impl Task {
     /// Fits all materials with errors of the library; deviances with the handicap of the prior.
     pub(super) fn fit_with_errors(&self, errors: &Errors, room: &mut Room, spared: &mut Spared) {
         let model = &self.model;
-        let Room { sums, workplace, screened, counts, shifted, fits, .. } = room;
-        let mut starts = [State::at(model.range_k[0]); MOST_STARTS];
+        let Room { sums, workplace, screened, counts, shifted, bounds, fits, .. } = room;
+        let nothing = State::at(model.range_k[0]);
+        let mut starts = [nothing; MOST_STARTS];
+        bounds.clear();
+        bounds.extend((0..self.kinds.len()).map(|kind| (0.0, kind)));
         if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
             screen.look(counts, shifted, seen);
+            bounds.iter_mut().for_each(|(bound, kind)| *bound = screen.outside(*kind, seen));
+            screen.nearest_first(bounds, seen);
         }
-        for (kind, &m) in self.kinds.iter().enumerate() {
-            let mut count = match (&self.screen, screened.as_mut()) {
-                (Some(screen), Some(seen)) => screen.starts(model, kind, seen, &mut starts),
-                _ => 0,
-            };
-            if count == 0 {
-                starts[0] = self.scan(kind, shifted, sums, spared);
-                count = 1;
-            }
-            let hopeless = f64::INFINITY;
-            let asked =
-                |start: &State| Asked { kind, m, share: 1.0, start: *start, short: COMPARED, hopeless };
-            workplace.queue.extend(starts[..count].iter().map(asked));
-        }
-        workplace.done.clear();
-        let mut looks = workplace.run(model, errors, shifted, sums);
-        let nothing = Fit { state: starts[0], deviance: f64::INFINITY, chi_square: f64::INFINITY };
+        let nothing = Fit { state: nothing, deviance: f64::INFINITY, chi_square: f64::INFINITY };
         fits.clear();
         fits.extend((0..self.kinds.len()).map(|kind| (kind, nothing)));
         workplace.floors.clear();
         workplace.floors.resize(self.kinds.len(), f64::INFINITY);
-        for (Asked { kind, .. }, fit, least) in workplace.done.drain(..) {
-            let handicap = self.handicap[kind];
-            workplace.floors[kind] = workplace.floors[kind].min(fit.chi_square + least + handicap);
-            if fit.deviance + handicap < fits[kind].1.deviance {
-                fits[kind].1 = Fit { deviance: fit.deviance + handicap, ..fit };
-            }
-        }
-        // The best one first: what it costs at the best share excludes most.
-        let (first, _) = self.best_of(errors, fits);
-        for others in [false, true] {
-            let (_, best) = self.best_of(errors, fits);
-            let beside = if self.skip { best + BESIDE } else { f64::INFINITY };
-            for (kind, fit) in fits.iter() {
-                if (*kind != first) == others && workplace.floors[*kind] <= beside {
-                    let (m, hopeless) = (self.kinds[*kind], fit.deviance - self.handicap[*kind] + WORSE);
-                    let asked = LADDER.map(|share| Asked {
-                        kind: *kind,
-                        m,
-                        share,
-                        start: fit.state,
-                        short: COMPARED,
-                        hopeless,
-                    });
-                    workplace.queue.extend(asked);
+        // The nearest one first: what it costs at its best share excludes most of the others.
+        let (nearest, others) = bounds.split_at(1);
+        let mut beside = f64::INFINITY;
+        for some in [nearest, others] {
+            for (_, kind) in some {
+                let mut count = match (&self.screen, screened.as_mut()) {
+                    (Some(screen), Some(seen)) => screen.starts(model, *kind, seen, &mut starts),
+                    _ => 0,
+                };
+                if count == 0 {
+                    starts[0] = self.scan(*kind, shifted, sums, spared);
+                    count = 1;
                 }
+                let beside = beside - self.handicap[*kind];
+                let asked = |start: &State| self.asked(*kind, *start, [beside, f64::INFINITY]);
+                workplace.queue.extend(starts[..count].iter().map(asked));
             }
-            looks += workplace.run(model, errors, shifted, sums);
-            for (Asked { kind, .. }, fit, _) in workplace.done.drain(..) {
-                let least = &mut fits[kind].1.deviance;
-                *least = least.min(fit.deviance + self.handicap[kind]);
+            spared.looks += workplace.run(model, errors, shifted, sums) as u64;
+            workplace.collect(&self.handicap, fits);
+            let (best, is_fitting) = self.best_of(errors, fits);
+            let within = if self.skip { best + BESIDE } else { f64::INFINITY };
+            for (_, kind) in some.iter().filter(|(_, kind)| workplace.floors[*kind] <= within) {
+                let (_, fit) = fits[*kind];
+                let worse = fit.deviance - self.handicap[*kind] + WORSE;
+                let asked = self.asked(*kind, fit.state, [f64::INFINITY, worse]);
+                workplace.queue.extend(LADDER.map(|share| Asked { share, ..asked }));
+            }
+            spared.looks += workplace.run(model, errors, shifted, sums) as u64;
+            workplace.collect(&self.handicap, fits);
+            // One that does not fit may cost less than one that does and count for no more.
+            if self.skip && is_fitting {
+                beside = self.best_of(errors, fits).0 + BESIDE;
             }
         }
         spared.fitted += self.kinds.len() as u64;
-        spared.looks += looks as u64;
         spared.equal += self.alike.iter().map(|alike| *alike as u64 - 1).sum::<u64>();
-        self.doubt_misfits(errors, fits);
-    }
-
-    fn is_misfit(&self, errors: &Errors, fit: &Fit) -> bool {
-        fit.chi_square > errors.misfits.get(self.freedom(&fit.state)).copied().unwrap_or(f64::INFINITY)
-    }
-
-    /// The kind that costs least of those that fit, or of all where none does; what it costs.
-    fn best_of(&self, errors: &Errors, fits: &[(usize, Fit)]) -> (usize, f64) {
-        let least = |so_far: (usize, f64), (kind, fit): &(usize, Fit)| {
-            if fit.deviance < so_far.1 { (*kind, fit.deviance) } else { so_far }
-        };
-        let none = (0, f64::INFINITY);
-        let fitting = fits.iter().filter(|(_, fit)| !self.is_misfit(errors, fit)).fold(none, least);
-        if fitting.1.is_finite() { fitting } else { fits.iter().fold(none, least) }
-    }
-
-    /// With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is scattered is
-    /// smaller: it never counts for more.
-    fn doubt_misfits(&self, errors: &Errors, fits: &mut [(usize, Fit)]) {
-        let (_, least) = self.best_of(errors, fits);
+        let (least, _) = self.best_of(errors, fits);
+        // With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is
+        // scattered is smaller: it never counts for more.
         fits.iter_mut().for_each(|(_, fit)| fit.deviance = fit.deviance.max(least));
+    }
+
+    fn asked(&self, kind: usize, start: State, [beside, worse]: [f64; 2]) -> Asked {
+        Asked { kind, m: self.kinds[kind], share: 1.0, start, short: COMPARED, beside, worse }
+    }
+
+    /// The least cost of those that fit, or of all where none does, and whether one does.
+    fn best_of(&self, errors: &Errors, fits: &[(usize, Fit)]) -> (f64, bool) {
+        let (mut fitting, mut all) = (f64::INFINITY, f64::INFINITY);
+        for (_, fit) in fits {
+            all = all.min(fit.deviance);
+            let most = errors.misfits.get(self.freedom(&fit.state)).copied().unwrap_or(f64::INFINITY);
+            if fit.deviance < fitting && fit.chi_square <= most {
+                fitting = fit.deviance;
+            }
+        }
+        if fitting.is_finite() { (fitting, true) } else { (all, false) }
     }
 }
 

@@ -169,7 +169,7 @@ pub(super) struct Room {
     pub(super) counts: Aligned,
     pub(super) shifted: Aligned,
     mean: Vec<f64>,
-    bounds: Vec<(f64, usize)>,
+    pub(super) bounds: Vec<(f64, usize)>,
     /// Kinds that count of the pixel at hand, the best first.
     pub(super) fits: Vec<(usize, Fit)>,
     /// Shares of the categories in the posterior of the pixel at hand.

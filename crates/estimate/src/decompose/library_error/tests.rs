@@ -143,7 +143,8 @@ fn the_filter_gives_what_the_whole_covariance_gives() {
         (state.mixture[0], state.mixture[1]) = (1.0 - v, v);
         let errors = Errors::new(&model, STATED).unwrap();
         let mut place = Workplace::default();
-        place.queue.push(Asked { kind: 0, m, share, start: state, short: f64::INFINITY, hopeless: 0.0 });
+        let asked = Asked { kind: 0, m, share, start: state, short: f64::INFINITY, beside: 0.0, worse: 0.0 };
+        place.queue.push(asked);
         let mut found = Sums::default();
         assert_eq!(place.run(&model, &errors, &shifted, &mut found), 1);
         let factor = scene.covariance(m, t, v, share).cholesky().unwrap();
