@@ -24,7 +24,8 @@ use super::model::{Hermite, Model};
 use super::pixel::{CUT, NO_FIT, Room, Spared, Task};
 use super::screen::MOST_STARTS;
 use super::step::State;
-use filter::{BEFORE, Found, Law, filter, room_for};
+use filter::{BEFORE, Found, Law, filter, logarithm_of_all, room_for};
+use hadar::correlation::matern;
 use hadar::error::{Result, check};
 use hadar::simd::{Aligned, LANES, dispatched};
 use hadar::statistics::chi_square_survival;
@@ -56,6 +57,8 @@ pub struct LibraryError {
 pub(super) struct Errors {
     relative: f64,
     law: Law,
+    /// No eigenvalue of the covariance of the relative errors is larger.
+    pub(super) largest: f64,
     /// χ² from which on nothing fits, of each number of degrees of freedom.
     misfits: Vec<f64>,
 }
@@ -66,7 +69,10 @@ impl Errors {
         check::positive("error of the emissivities", relative, "")?;
         check::positive("correlation of the errors of the emissivities", correlation_cm1, "cm^-1")?;
         let misfits = (0..=model.used.len()).map(misfit).collect();
-        Ok(Self { relative, law: Law::new(&model.centres_cm1, correlation_cm1), misfits })
+        let nu = &model.centres_cm1;
+        let row = |a: &f64| nu.iter().map(|b| matern(a - b, correlation_cm1)).sum::<f64>();
+        let largest = relative * relative * nu.iter().map(row).fold(0.0, f64::max);
+        Ok(Self { relative, law: Law::new(nu, correlation_cm1), largest, misfits })
     }
 }
 
@@ -118,9 +124,9 @@ pub(super) struct Workplace {
     done: Vec<(Asked, Fit, f64)>,
     /// What each kind costs at least.
     floors: Vec<f64>,
-    /// One state: N′, reach, r and the columns.
+    /// One state, `[…][band]`: N′, reach, r and the columns.
     state: Aligned,
-    /// All lanes: `[band][N′, reach, r, columns][lane]`.
+    /// All lanes: `[N′, reach, r, columns][band][lane]`.
     rows: Aligned,
     found: Found,
 }
@@ -190,27 +196,21 @@ impl Workplace {
     ) -> (Fit, usize) {
         let none = f64::INFINITY;
         self.queue.push(Asked { kind: 0, m, share: 1.0, start, short: TOLD, beside: none, worse: none });
-        self.done.clear();
         let looks = self.run(model, errors, shifted, to);
         let nothing = Fit { state: start, deviance: f64::INFINITY, chi_square: f64::INFINITY };
-        (self.done.first().map_or(nothing, |(_, fit, _)| *fit), looks)
+        (self.done.pop().map_or(nothing, |(_, fit, _)| fit), looks)
     }
 
     /// Brings all that is queued to its end; how many looks that took.
     fn run(&mut self, model: &Model, errors: &Errors, shifted: &[f64], to: &mut Sums) -> usize {
-        let (width, bands, count) = (model.width, model.used.len(), model.unknowns());
+        let (width, count) = (model.width, model.unknowns());
         let vectors = room_for(count + 1);
-        let stride = (BEFORE + vectors) * LANES;
-        if self.rows.len() != bands * stride {
+        let plane = width * LANES;
+        if self.rows.len() != (BEFORE + vectors) * plane {
             self.state = Aligned::zeros(width * (BEFORE + count + 1));
-            self.rows = Aligned::zeros(bands * stride);
+            self.rows = Aligned::zeros((BEFORE + vectors) * plane);
             // What an idle lane holds must be numbers.
-            self.rows
-                .as_chunks_mut::<LANES>()
-                .0
-                .iter_mut()
-                .step_by(BEFORE + vectors)
-                .for_each(|n| n.fill(1.0));
+            self.rows[..plane].fill(1.0);
         }
         let rows: &mut [f64] = &mut self.rows;
         let described: &mut [f64] = &mut self.state;
@@ -230,9 +230,10 @@ impl Workplace {
                 describe(model, asked, state, errors.relative, shifted, described);
                 // What a lighting changes does not depend on the state of a calibrated camera.
                 let changed = if model.gain || *looks == 0 { BEFORE + 1 + count } else { BEFORE + 2 };
-                for (k, values) in described.chunks_exact(width).take(changed).enumerate() {
-                    for (value, place) in values.iter().zip(&errors.law.places) {
-                        rows[place * stride + k * LANES + i] = *value;
+                let planes = rows.chunks_exact_mut(plane).zip(described.chunks_exact(width));
+                for (plane, values) in planes.take(changed) {
+                    for (chunk, value) in plane.as_chunks_mut::<LANES>().0.iter_mut().zip(values) {
+                        chunk[i] = *value;
                     }
                 }
             }
@@ -331,9 +332,16 @@ impl Task {
         workplace.floors.resize(self.kinds.len(), f64::INFINITY);
         // The nearest one first: what it costs at its best share excludes most of the others.
         let (nearest, others) = bounds.split_at(1);
-        let mut beside = f64::INFINITY;
+        let (mut beside, mut reach) = (f64::INFINITY, f64::INFINITY);
         for some in [nearest, others] {
             for (_, kind) in some {
+                if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut())
+                    && (screen.is_beyond(*kind, reach, seen) || screen.is_beyond_within(*kind, reach, seen))
+                {
+                    spared.excluded += 1;
+                    continue;
+                }
+                spared.fitted += 1;
                 let mut count = match (&self.screen, screened.as_mut()) {
                     (Some(screen), Some(seen)) => screen.starts(model, *kind, seen, &mut starts),
                     _ => 0,
@@ -361,9 +369,12 @@ impl Task {
             // One that does not fit may cost less than one that does and count for no more.
             if self.skip && is_fitting {
                 beside = self.best_of(errors, fits).0 + BESIDE;
+                if let (Some(screen), Some(seen)) = (&self.screen, screened.as_ref()) {
+                    let most = screen.most_chi_square(beside - logarithm_of_all(shifted), shifted);
+                    reach = screen.reach(most, seen);
+                }
             }
         }
-        spared.fitted += self.kinds.len() as u64;
         spared.equal += self.alike.iter().map(|alike| *alike as u64 - 1).sum::<u64>();
         let (least, _) = self.best_of(errors, fits);
         // With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is

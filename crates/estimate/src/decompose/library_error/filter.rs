@@ -21,6 +21,8 @@ pub(super) const BEFORE: usize = 2;
 /// From one band to the next.
 #[derive(Debug)]
 struct Step {
+    /// To this one.
+    band: usize,
     decay: f64,
     apart: f64,
     half_square: f64,
@@ -31,21 +33,23 @@ struct Step {
 /// Covariance of z: q ∫ e⁻²ᵗ (t²/2, t, 1)ᵀ(t²/2, t, 1) dt with q = 16/3, so that f has variance 1.
 const STATIONARY: [f64; 6] = [1.0, 1.0, 2.0 / 3.0, 4.0 / 3.0, 4.0 / 3.0, 8.0 / 3.0];
 
-/// The law of the errors at the bands, in the order of their wavenumbers.
+/// The law of the errors from band to band, in the order of their wavenumbers.
 #[derive(Debug)]
 pub(super) struct Law {
     steps: Vec<Step>,
-    /// Where in that order each band is.
-    pub(super) places: Vec<usize>,
 }
 
 impl Law {
     pub(super) fn new(centres_cm1: &[f64], length_cm1: f64) -> Self {
         let mut order: Vec<usize> = (0..centres_cm1.len()).collect();
         order.sort_by(|a, b| centres_cm1[*a].total_cmp(&centres_cm1[*b]));
-        let mut places = vec![0; order.len()];
-        order.iter().enumerate().for_each(|(place, band)| places[*band] = place);
-        let first = Step { decay: 0.0, apart: 0.0, half_square: 0.0, noise: STATIONARY };
+        let first = order.first().map(|&band| Step {
+            band,
+            decay: 0.0,
+            apart: 0.0,
+            half_square: 0.0,
+            noise: STATIONARY,
+        });
         let step = |pair: &[usize]| {
             // Beyond 100 nothing is left of e⁻ᵈ d⁴.
             let apart = (QUARTER * (centres_cm1[pair[1]] - centres_cm1[pair[0]]) / length_cm1).min(100.0);
@@ -53,10 +57,9 @@ impl Law {
             let decay = libm::exp(-apart);
             let kept = moved(STATIONARY, apart, half_square, |factor, a, b| factor * a + b);
             let noise = std::array::from_fn(|i| STATIONARY[i] - decay * decay * kept[i]);
-            Step { decay, apart, half_square, noise }
+            Step { band: pair[1], decay, apart, half_square, noise }
         };
-        let steps = std::iter::once(first).chain(order.windows(2).map(step)).collect();
-        Self { steps, places }
+        Self { steps: first.into_iter().chain(order.windows(2).map(step)).collect() }
     }
 }
 
@@ -127,13 +130,20 @@ impl Logarithm {
     }
 }
 
+/// Σ ln of positive numbers in whole chunks.
+pub(super) fn logarithm_of_all(values: &[f64]) -> f64 {
+    let mut product = Logarithm::NONE;
+    values.as_chunks::<LANES>().0.iter().for_each(|chunk| product.add(*chunk));
+    (0..LANES).map(|lane| product.value(lane)).sum()
+}
+
 /// Vectors for which the filter has room: a few, or all.
 pub(super) fn room_for(vectors: usize) -> usize {
     if vectors <= 4 { vectors } else { MOST_VECTORS }
 }
 
 dispatched! {
-    /// Of rows of `[band][N′, reach, vectors…][lane]`, the vectors as many as there is [`room_for`].
+    /// Of rows of `[N′, reach, vectors…][band][lane]`, the vectors as many as there is [`room_for`].
     pub(super) fn filter<'a>(law: &'a Law, rows: &'a [f64], vectors: usize, to: &'a mut Found) {
         match vectors {
             2 => whiten::<2>(law, rows, to),
@@ -152,11 +162,14 @@ fn whiten<const V: usize>(law: &Law, rows: &[f64], to: &mut Found) {
     let mut states = [[none; 3]; V];
     let mut products = [[none; V]; V];
     let (mut whole, mut least) = (Logarithm::NONE, Logarithm::NONE);
-    for (step, row) in law.steps.iter().zip(rows.as_chunks::<LANES>().0.chunks_exact(BEFORE + V)) {
-        let Step { decay, apart, half_square, noise } = *step;
+    let rows = rows.as_chunks::<LANES>().0;
+    let width = rows.len() / (BEFORE + V);
+    let at = |k: usize, band: usize| rows[k * width + band];
+    for step in &law.steps {
+        let Step { band, decay, apart, half_square, noise } = *step;
         let kept = moved(p, apart, half_square, fused);
         p = std::array::from_fn(|i| fused(decay * decay, kept[i], [noise[i]; LANES]));
-        let (mean, reach) = (row[0], row[1]);
+        let (mean, reach) = (at(0, band), at(1, band));
         p[0] = p[0].map(|p| if p > 0.0 { p } else { 0.0 });
         let gain = [product(reach, p[0]), product(reach, p[1]), product(reach, p[2])];
         let variance = added(reach, gain[0], mean);
@@ -173,7 +186,7 @@ fn whiten<const V: usize>(law: &Law, rows: &[f64], to: &mut Found) {
                 times(decay, c),
             ];
             let minus = reach.map(|reach| -reach);
-            innovations[v] = added(minus, before[0], row[BEFORE + v]);
+            innovations[v] = added(minus, before[0], at(BEFORE + v, band));
             weighted[v] = product(innovations[v], weight);
             states[v] = std::array::from_fn(|i| added(gain[i], weighted[v], before[i]));
         }
