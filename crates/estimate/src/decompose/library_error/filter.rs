@@ -119,8 +119,8 @@ impl Logarithm {
         const BITS: u32 = f64::MANTISSA_DIGITS - 1;
         const ONE: u64 = 1.0_f64.to_bits();
         let bits = product(self.mantissa, factor).map(f64::to_bits);
-        for i in 0..LANES {
-            self.exponent[i] += (bits[i] >> BITS) as i64 - (ONE >> BITS) as i64;
+        for (exponent, bits) in self.exponent.iter_mut().zip(bits) {
+            *exponent += (bits >> BITS) as i64 - (ONE >> BITS) as i64;
         }
         self.mantissa = bits.map(|bits| f64::from_bits(bits & ((1 << BITS) - 1) | ONE));
     }
