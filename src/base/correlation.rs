@@ -22,7 +22,7 @@ const MOST_PLACES: usize = 4096;
 const FAR: f64 = 800.0;
 
 /// x at which (1 + x + x²/3) e⁻ˣ is a quarter.
-const QUARTER: f64 = 3.55;
+pub const QUARTER: f64 = 3.55;
 
 /// The correlation of two places that are `apart`, with `length` where it is a quarter, in the same unit.
 pub fn matern(apart: f64, length: f64) -> f64 {

@@ -177,12 +177,14 @@ impl Clone for Aligned {
 impl std::ops::Deref for Aligned {
     type Target = [f64];
 
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.storage[self.start..self.start + self.len]
     }
 }
 
 impl std::ops::DerefMut for Aligned {
+    #[inline]
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.storage[self.start..self.start + self.len]
     }

@@ -2,9 +2,7 @@
 //!
 //! With errors δ of the emissivity in each band, of covariance Σ, a pixel's counts have the covariance
 //! C = diag(N′) + D Σ D, D_w = κ_w ∫ (B(T) − X) over band w: what a change of the emissivity changes. The cost is the Gaussian
-//! rᵀC⁻¹r + ln det C, C at the state at hand. Σ is written as its few large modes and a remainder on the diagonal, so that
-//! C = V + M Mᵀ with diagonal V: products with C⁻¹ are those with V⁻¹ less the squares of h = L⁻¹ Mᵀ V⁻¹ x, where
-//! L Lᵀ = 1 + Mᵀ V⁻¹ M (Woodbury); nothing is inverted.
+//! rᵀC⁻¹r + ln det C, C at the state at hand, without any mode left out ([`filter`]).
 //!
 //! Σ_vw = s² e_v e_w (1 + x + x²/3) e⁻ˣ, x = 3.55 |ν_v − ν_w|/ℓ (Matérn, 5/2): errors of laboratory spectra are smooth, but not
 //! without an end. s: root mean square error as a share of the emissivity e, ℓ: where the correlation has fallen to a quarter.
@@ -12,27 +10,36 @@
 //! What is stated of s is the most that a spectrum is off; one material's may be better than another's. Among materials each is
 //! therefore worth what its cost is at the best s between 0 and the stated one ([`LADDER`]): else a library that is better than its user
 //! says would lose, by ln det C, against a mirror of surroundings that are taken for exact. Temperature, deviations and χ² are those at
-//! the stated s.
+//! the stated s. As χ² is least with all of the errors and ln det C without any, χ² + Σ ln N′ at the stated s is what a material costs at
+//! least: one that costs more even so is fitted at no other.
 //!
 //! Assumptions: the errors of the materials are Gaussian and independent of each other; each pixel is taken for itself, so that what
 //! pixels of one material share of an error does not average out in them.
 
-use super::fit::{COMPARED, Fit, MOST_LOOKS};
-use super::kernel::{Sums, weighted};
-use super::model::{Hermite, Model};
-use super::step::State;
-use hadar::correlation::{covariance, eigen, matern};
-use hadar::error::{Result, check};
-use hadar::simd::{LANES, added, dispatched, fold};
+mod filter;
 
-/// Modes smaller than this share of the largest go to the diagonal.
-const SMALL_MODE: f64 = 1e-3;
-/// Shares of the stated error at which materials are compared, besides all of it and none.
-const LADDER: [f64; 4] = [0.5, 0.25, 0.125, 0.0625];
-/// Cost beyond the best one at which a first look is the last: a step may promise less than many of them bring.
-const HOPELESS: f64 = 200.0;
-/// Cost beyond the best one from which on the share of the errors is no matter: more than what counts ([`super::pixel::CUT`]).
-const BESIDE: f64 = 30.0;
+use super::fit::{COMPARED, Fit, MOST_LOOKS};
+use super::kernel::Sums;
+use super::model::{Hermite, Model};
+use super::pixel::{CUT, NO_FIT, Room, Spared, Task};
+use super::screen::MOST_STARTS;
+use super::step::State;
+use filter::{BEFORE, Found, Law, filter, logarithm_of_all, room_for};
+use hadar::correlation::matern;
+use hadar::error::{Result, check};
+use hadar::simd::{Aligned, LANES, dispatched};
+use hadar::statistics::chi_square_survival;
+
+/// Shares of the stated error at which materials are compared, besides all of it.
+const LADDER: [f64; 5] = [0.5, 0.25, 0.125, 0.0625, 0.0];
+/// Cost beyond the best one from which on the share of the errors is no matter: more than what counts.
+const BESIDE: f64 = CUT + 6.0;
+/// Cost beyond what a material has at another share from which on a share is not looked at again: more than steps still bring.
+const WORSE: f64 = 10.0;
+/// Share of the χ² that a step promises which all further steps leave: C is that of the state at hand, and its contrast may grow.
+const HOPE: f64 = 0.25;
+/// Length of the last step, squared, in deviations, of the fit that is told.
+const TOLD: f64 = 1e-3 * COMPARED;
 /// Fewest counts of a model.
 const FEWEST: f64 = 1e-6;
 
@@ -45,275 +52,352 @@ pub struct LibraryError {
     pub correlation_cm1: f64,
 }
 
-/// Σ of a [`LibraryError`] in the bands that count.
-#[derive(Debug)]
-pub(super) struct Modes {
-    /// √eigenvalue × eigenvector, one after the other, as wide as the model.
-    modes: Vec<Vec<f64>>,
-    /// Variance that they leave in each band.
-    rest: Vec<f64>,
-}
-
-impl Modes {
-    pub(super) fn new(model: &Model, error: LibraryError) -> Result<Self> {
-        check::positive("error of the emissivities", error.relative, "")?;
-        check::positive("correlation of the errors of the emissivities", error.correlation_cm1, "cm^-1")?;
-        let nu = &model.centres_cm1;
-        let s = error.relative;
-        let eigen =
-            eigen(covariance(nu.len(), |i, j| s * s * matern(nu[i] - nu[j], error.correlation_cm1))?)?;
-        let largest = eigen.eigenvalues.max();
-        let mut rest = vec![0.0; model.width];
-        rest[..nu.len()].fill(s * s);
-        let mut modes = Vec::new();
-        for (k, &value) in eigen.eigenvalues.iter().enumerate() {
-            if value > SMALL_MODE * largest {
-                let mut mode = vec![0.0; model.width];
-                for (w, mode) in mode[..nu.len()].iter_mut().enumerate() {
-                    *mode = value.sqrt() * eigen.eigenvectors[(w, k)];
-                    rest[w] = f64::max(rest[w] - *mode * *mode, 0.0);
-                }
-                modes.push(mode);
-            }
-        }
-        Ok(Self { modes, rest })
-    }
-
-    /// Of a share of the error; of none, what costs next to nothing.
-    fn smaller(&self, share: f64) -> Self {
-        let of = |mode: &Vec<f64>| mode.iter().map(|x| share * x).collect();
-        Self {
-            modes: self.modes.iter().filter(|_| share > 0.0).map(of).collect(),
-            rest: self.rest.iter().map(|var| share * share * var).collect(),
-        }
-    }
-}
-
-/// The stated errors, and the smaller ones at which materials are compared.
+/// A [`LibraryError`] in the bands that count.
 #[derive(Debug)]
 pub(super) struct Errors {
-    pub(super) stated: Modes,
-    smaller: Vec<Modes>,
-    none: Modes,
+    relative: f64,
+    law: Law,
+    /// No eigenvalue of the covariance of the relative errors is larger.
+    pub(super) largest: f64,
+    /// χ² from which on nothing fits, of each number of degrees of freedom.
+    misfits: Vec<f64>,
 }
 
 impl Errors {
     pub(super) fn new(model: &Model, error: LibraryError) -> Result<Self> {
-        let stated = Modes::new(model, error)?;
-        let smaller = LADDER.iter().map(|share| stated.smaller(*share)).collect();
-        let none = stated.smaller(0.0);
-        Ok(Self { stated, smaller, none })
+        let LibraryError { relative, correlation_cm1 } = error;
+        check::positive("error of the emissivities", relative, "")?;
+        check::positive("correlation of the errors of the emissivities", correlation_cm1, "cm^-1")?;
+        let misfits = (0..=model.used.len()).map(misfit).collect();
+        let nu = &model.centres_cm1;
+        let row = |a: &f64| nu.iter().map(|b| matern(a - b, correlation_cm1)).sum::<f64>();
+        let largest = relative * relative * nu.iter().map(row).fold(0.0, f64::max);
+        Ok(Self { relative, law: Law::new(nu, correlation_cm1), largest, misfits })
     }
+}
+
+/// χ² whose p-value is [`NO_FIT`]; none without a degree of freedom.
+fn misfit(freedom: usize) -> f64 {
+    if freedom == 0 {
+        return f64::INFINITY;
+    }
+    let (mut low, mut high) = (0.0, 100.0 + 10.0 * freedom as f64);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        let side = if chi_square_survival(middle, freedom as f64) < NO_FIT { &mut high } else { &mut low };
+        *side = middle;
+    }
+    high
+}
+
+/// A fit that is asked for.
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    kind: usize,
+    m: usize,
+    /// Of the stated errors.
+    share: f64,
+    start: State,
+    /// The last step is this short, squared.
+    short: f64,
+    /// What a material must not cost at least, of which χ² may still lose most, to be looked at again.
+    beside: f64,
+    /// What it must not cost.
+    worse: f64,
+}
+
+/// A fit under way.
+#[derive(Debug, Clone, Copy)]
+struct Lane {
+    asked: Asked,
+    state: State,
+    best: Option<Fit>,
+    looks: usize,
 }
 
 /// Room for one pixel's work.
 #[derive(Debug, Default)]
 pub(super) struct Workplace {
-    mean: Vec<f64>,
-    /// Σ ln of the counts: ln det C were there no errors.
-    least_logarithm: f64,
-    /// 1/V.
-    weight: Vec<f64>,
-    /// r, then the columns.
-    vectors: Vec<Vec<f64>>,
-    /// M, mode by mode.
-    scaled: Vec<Vec<f64>>,
-    /// L, row by row, with zeros behind each.
-    factor: Vec<Vec<f64>>,
-    /// h of each vector.
-    images: Vec<Vec<f64>>,
+    queue: Vec<Asked>,
+    lanes: [Option<Lane>; LANES],
+    /// Fits that came to their end, with Σ ln N′ there.
+    done: Vec<(Asked, Fit, f64)>,
+    /// What each kind costs at least.
+    floors: Vec<f64>,
+    /// One state, `[…][band]`: N′, reach, r and the columns.
+    state: Aligned,
+    /// All lanes: `[N′, reach, r, columns][band][lane]`.
+    rows: Aligned,
+    found: Found,
 }
 
 dispatched! {
-    /// Cost, slope and information at a state.
-    fn look<'a>(
-        place: &'a mut Workplace,
-        model: &'a Model,
-        modes: &'a Modes,
-        m: usize,
-        shifted: &'a [f64],
-        state: &'a State,
-        to: &'a mut Sums,
-    ) {
-        place.sums(model, modes, m, shifted, state, to);
+    /// N′, what the errors reach, r and the columns at a state, one after the other.
+    fn describe<'a>(model: &'a Model, asked: &'a Asked, state: &'a State, size: f64, shifted: &'a [f64], to: &'a mut [f64]) {
+        let (m, width) = (asked.m, model.width);
+        let mixture = &state.mixture[..model.vertices];
+        let place = model.place(state.temperature_k);
+        let hermite = Hermite::at(place.share);
+        let scale = model.scale(mixture);
+        let (mean, rest) = to.split_at_mut(width);
+        let (reach, rest) = rest.split_at_mut(width);
+        let (residual, columns) = rest.split_at_mut(width);
+        let (slope, columns) = columns.split_at_mut(width);
+        mix(hermite.value, model.emission_of_blackbody(place.row), reach);
+        reach.iter_mut().for_each(|reach| *reach *= scale);
+        for (j, u) in mixture.iter().enumerate() {
+            reach.iter_mut().zip(model.light(j)).for_each(|(reach, light)| *reach = (-u).mul_add(*light, *reach));
+        }
+        let factor = size * asked.share;
+        reach.iter_mut().zip(model.emissivity(m)).for_each(|(reach, e)| *reach *= factor * e);
+        let [v0, s0, v1, s1, factor] = model.emission(m, place.row);
+        mix(hermite.value, [v0, s0, v1, s1], mean);
+        mix(hermite.slope, [v0, s0, v1, s1], slope);
+        let per_kelvin = scale / place.step_k;
+        for ((mean, slope), factor) in mean.iter_mut().zip(slope).zip(factor) {
+            (*mean, *slope) = (*mean * factor, *slope * factor * per_kelvin);
+        }
+        for (to, from) in columns.chunks_exact_mut(width).zip(model.columns(m)) {
+            match model.gain {
+                true => to.iter_mut().zip(from.iter().zip(&*mean)).for_each(|(to, (c, value))| *to = c + value),
+                false => to.copy_from_slice(from),
+            }
+        }
+        mean.iter_mut().zip(&*model.var_added).for_each(|(mean, var)| *mean = scale.mul_add(*mean, *var));
+        for (j, u) in mixture.iter().enumerate() {
+            mean.iter_mut().zip(model.scattered_of(m, j)).for_each(|(mean, c)| *mean = u.mul_add(*c, *mean));
+        }
+        for ((mean, residual), n) in mean.iter_mut().zip(residual).zip(shifted) {
+            *mean = if *mean > FEWEST { *mean } else { FEWEST };
+            *residual = n - *mean;
+        }
+    }
+}
+
+/// Values or slopes of the table, mixed in these shares.
+#[inline(always)]
+fn mix(shares: [f64; 4], [a, b, c, d]: [&[f64]; 4], to: &mut [f64]) {
+    let [p, q, r, s] = shares;
+    for ((to, a), (b, (c, d))) in to.iter_mut().zip(a).zip(b.iter().zip(c.iter().zip(d))) {
+        *to = p.mul_add(*a, q.mul_add(*b, r.mul_add(*c, s * d)));
     }
 }
 
 impl Workplace {
-    #[inline(always)]
-    fn sums(
-        &mut self,
-        model: &Model,
-        modes: &Modes,
-        m: usize,
-        shifted: &[f64],
-        state: &State,
-        to: &mut Sums,
-    ) {
-        let width = model.width;
-        let used = model.used.len();
-        let mixture = &state.mixture[..model.vertices];
-        let place = model.place(state.temperature_k);
-        let hermite = Hermite::at(place.share);
-        let [v0, s0, v1, s1, factor] = model.emission(m, place.row);
-        let scale = model.scale(mixture);
-        let blackbody = model.blackbody(state.temperature_k);
-        let count = model.unknowns();
-        self.mean.resize(width, 0.0);
-        self.weight.resize(width, 0.0);
-        self.vectors.resize_with(count + 1, Vec::new);
-        self.vectors.iter_mut().for_each(|vector| vector.resize(width, 0.0));
-        let mut deviance = 0.0;
-        self.least_logarithm = 0.0;
-        let mut reach = vec![0.0; width];
-        for w in 0..used {
-            let mix = |[a, b, c, d]: [f64; 4]| factor[w] * (a * v0[w] + b * s0[w] + c * v1[w] + d * s1[w]);
-            let value = mix(hermite.value);
-            self.vectors[1][w] = scale * mix(hermite.slope) / place.step_k;
-            let (mut mean, mut surroundings) = (scale.mul_add(value, model.var_added[w]), 0.0);
-            for (j, u) in mixture.iter().enumerate() {
-                mean = u.mul_add(model.scattered_of(m, j)[w], mean);
-                surroundings = u.mul_add(model.light(j)[w], surroundings);
-            }
-            for (i, column) in model.columns(m).enumerate() {
-                self.vectors[2 + i][w] = column[w] + if model.gain { value } else { 0.0 };
-            }
-            let mean = mean.max(FEWEST);
-            reach[w] = model.emissivity(m)[w] * scale.mul_add(blackbody[w], -surroundings);
-            let variance = (modes.rest[w] * reach[w]).mul_add(reach[w], mean);
-            self.vectors[0][w] = shifted[w] - mean;
-            self.weight[w] = 1.0 / variance;
-            deviance += libm::log(variance);
-            self.least_logarithm += libm::log(mean);
-        }
-        let rank = modes.modes.len();
-        self.scaled.resize_with(rank, Vec::new);
-        for (scaled, mode) in self.scaled.iter_mut().zip(&modes.modes) {
-            scaled.clear();
-            scaled.extend(mode.iter().zip(&reach).map(|(mode, reach)| mode * reach));
-        }
-        // Rows are filled up with zeros to whole chunks.
-        let padded = rank.next_multiple_of(LANES);
-        self.factor.resize_with(rank, Vec::new);
-        for i in 0..rank {
-            let mut row = std::mem::take(&mut self.factor[i]);
-            row.clear();
-            row.resize(padded, 0.0);
-            for j in 0..=i {
-                let own =
-                    weighted(&self.scaled[i], &self.scaled[j], &self.weight) + f64::from(u8::from(i == j));
-                let other: &[f64] = if j == i { &row } else { &self.factor[j] };
-                let rest = own - dot(&row, other, j);
-                // At least 1 on the diagonal: Mᵀ V⁻¹ M adds no less than nothing.
-                row[j] = if i == j { rest.max(1.0).sqrt() } else { rest / self.factor[j][j] };
-            }
-            deviance += 2.0 * libm::log(row[i]);
-            self.factor[i] = row;
-        }
-        self.images.resize_with(count + 1, Vec::new);
-        for (image, vector) in self.images.iter_mut().zip(&self.vectors) {
-            image.clear();
-            image.resize(padded, 0.0);
-            for i in 0..rank {
-                let along = weighted(&self.scaled[i], vector, &self.weight);
-                image[i] = (along - dot(&self.factor[i], image, i)) / self.factor[i][i];
-            }
-        }
-        to.chi_square = self.product(0, 0);
-        to.deviance = to.chi_square + deviance;
-        for i in 0..count {
-            to.slope[i] = self.product(0, i + 1);
-            for j in 0..=i {
-                let each = self.product(i + 1, j + 1);
-                (to.information[i][j], to.information[j][i]) = (each, each);
-            }
-        }
-    }
-
-    /// aᵀ C⁻¹ b of two vectors.
-    #[inline(always)]
-    fn product(&self, a: usize, b: usize) -> f64 {
-        weighted(&self.vectors[a], &self.vectors[b], &self.weight)
-            - dot(&self.images[a], &self.images[b], usize::MAX)
-    }
-
-    /// The best state of a material with the stated errors from one that is best without any; its `deviance` is the cost at the
-    /// best share of the errors. Not looked for to the end where it cannot come near `best`, the cost of another material.
-    pub(super) fn compared(
+    /// The best state of a material from a start, with the stated errors; `to` is what was seen at the last look.
+    pub(super) fn fit(
         &mut self,
         model: &Model,
         errors: &Errors,
         m: usize,
         shifted: &[f64],
-        (start, best): (State, f64),
+        start: State,
         to: &mut Sums,
     ) -> (Fit, usize) {
-        let (mut found, mut looks) =
-            self.fit(model, &errors.stated, m, shifted, (start, best + HOPELESS), to);
-        // χ² is least with all of the errors, ln det C without any.
-        if found.chi_square + self.least_logarithm > best + BESIDE {
-            return (found, looks);
-        }
-        let (exact, more) = self.fit(model, &errors.none, m, shifted, (start, f64::INFINITY), to);
-        looks += more;
-        let (mut before, mut state) = (found.deviance, found.state);
-        for modes in &errors.smaller {
-            let (less, more) = self.fit(model, modes, m, shifted, (state, f64::INFINITY), to);
-            looks += more;
-            found.deviance = found.deviance.min(less.deviance);
-            if less.deviance > before {
-                break;
-            }
-            (before, state) = (less.deviance, less.state);
-        }
-        found.deviance = found.deviance.min(exact.deviance);
-        (found, looks)
+        let none = f64::INFINITY;
+        self.queue.push(Asked { kind: 0, m, share: 1.0, start, short: TOLD, beside: none, worse: none });
+        let looks = self.run(model, errors, shifted, to);
+        let nothing = Fit { state: start, deviance: f64::INFINITY, chi_square: f64::INFINITY };
+        (self.done.pop().map_or(nothing, |(_, fit, _)| fit), looks)
     }
 
-    /// The best state of a material from a start, or the first one where even the best that a step promises costs more than
-    /// `hopeless` whatever the share of the errors; its `deviance` is the cost. The sums are those before the last step.
-    pub(super) fn fit(
-        &mut self,
-        model: &Model,
-        modes: &Modes,
-        m: usize,
-        shifted: &[f64],
-        (start, hopeless): (State, f64),
-        to: &mut Sums,
-    ) -> (Fit, usize) {
-        let limits = model.limits();
-        let mut state = start;
-        let mut best: Option<Fit> = None;
+    /// Brings all that is queued to its end; how many looks that took.
+    fn run(&mut self, model: &Model, errors: &Errors, shifted: &[f64], to: &mut Sums) -> usize {
+        let (width, count) = (model.width, model.unknowns());
+        let vectors = room_for(count + 1);
+        let plane = width * LANES;
+        if self.rows.len() != (BEFORE + vectors) * plane {
+            self.state = Aligned::zeros(width * (BEFORE + count + 1));
+            self.rows = Aligned::zeros((BEFORE + vectors) * plane);
+            // What an idle lane holds must be numbers.
+            self.rows[..plane].fill(1.0);
+        }
+        let rows: &mut [f64] = &mut self.rows;
+        let described: &mut [f64] = &mut self.state;
         let mut looks = 0;
         loop {
             hadar::stop::check();
-            look(self, model, modes, m, shifted, &state, to);
-            looks += 1;
-            let mut next = state;
-            let step = next.step(to, &limits);
-            let less = step.square.max(0.0);
-            let (deviance, chi_square) = (to.deviance - less, to.chi_square - less);
-            let here = Fit { state: next, deviance, chi_square };
-            let is_hopeless = chi_square + self.least_logarithm > hopeless;
-            let short = step.square.is_nan() || step.square < 0.01 * COMPARED || is_hopeless;
-            if short || looks >= MOST_LOOKS || best.is_some_and(|best| to.deviance > best.deviance + 1.0) {
-                // C is that of the state at hand: where a step raises the cost, what was found before it stays.
-                return (best.filter(|best| best.deviance < here.deviance).unwrap_or(here), looks);
+            for (i, lane) in self.lanes.iter_mut().enumerate() {
+                if lane.is_none() {
+                    *lane = self.queue.pop().map(|asked| Lane {
+                        asked,
+                        state: asked.start,
+                        best: None,
+                        looks: 0,
+                    });
+                }
+                let Some(Lane { asked, state, looks, .. }) = lane else { continue };
+                describe(model, asked, state, errors.relative, shifted, described);
+                // What a lighting changes does not depend on the state of a calibrated camera.
+                let changed = if model.gain || *looks == 0 { BEFORE + 1 + count } else { BEFORE + 2 };
+                let planes = rows.chunks_exact_mut(plane).zip(described.chunks_exact(width));
+                for (plane, values) in planes.take(changed) {
+                    for (chunk, value) in plane.as_chunks_mut::<LANES>().0.iter_mut().zip(values) {
+                        chunk[i] = *value;
+                    }
+                }
             }
-            best = Some(Fit { state, deviance: to.deviance, chi_square: to.chi_square });
-            state = next;
+            if self.lanes.iter().all(Option::is_none) {
+                return looks;
+            }
+            filter(&errors.law, rows, vectors, &mut self.found);
+            for i in 0..LANES {
+                let Some(mut lane) = self.lanes[i] else { continue };
+                let least = take(&self.found, i, count, to);
+                looks += 1;
+                lane.looks += 1;
+                self.lanes[i] = match lane.step(model, least, to) {
+                    Some(fit) => {
+                        self.done.push((lane.asked, fit, least));
+                        None
+                    }
+                    None => Some(lane),
+                };
+            }
         }
     }
 }
 
-/// Σ a b of the first `count` of two rows of whole chunks, of which one is 0 in the rest of the last chunk.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64], count: usize) -> f64 {
-    let mut sum = [0.0; LANES];
-    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0).take(count.div_ceil(LANES)) {
-        sum = added(*a, *b, sum);
+impl Workplace {
+    /// Takes what is done into the fits of the kinds, the cost of each the least of any share.
+    fn collect(&mut self, handicap: &[f64], fits: &mut [(usize, Fit)]) {
+        for (Asked { kind, share, .. }, fit, least) in self.done.drain(..) {
+            let (deviance, (_, best)) = (fit.deviance + handicap[kind], &mut fits[kind]);
+            if share == 1.0 {
+                self.floors[kind] = self.floors[kind].min(fit.chi_square + least + handicap[kind]);
+                if deviance < best.deviance {
+                    *best = Fit { deviance, ..fit };
+                }
+            } else {
+                best.deviance = best.deviance.min(deviance);
+            }
+        }
     }
-    fold(&sum)
+}
+
+/// The sums of a lane; Σ ln N′.
+fn take(found: &Found, lane: usize, count: usize, to: &mut Sums) -> f64 {
+    let (whole, least) = found.logarithms(lane);
+    to.chi_square = found.products[0][0][lane];
+    to.deviance = to.chi_square + whole;
+    for i in 0..count {
+        to.slope[i] = found.products[0][i + 1][lane];
+        for j in i..count {
+            let each = found.products[i + 1][j + 1][lane];
+            (to.information[i][j], to.information[j][i]) = (each, each);
+        }
+    }
+    least
+}
+
+impl Lane {
+    /// Goes on from what was seen; the fit where that is its end. The sums stay those before the last step.
+    fn step(&mut self, model: &Model, least: f64, seen: &Sums) -> Option<Fit> {
+        let mut next = self.state;
+        let step = next.step(seen, &model.limits());
+        let less = step.square.max(0.0);
+        let here = Fit { state: next, deviance: seen.deviance - less, chi_square: seen.chi_square - less };
+        let short = step.square.is_nan() || step.square < self.asked.short;
+        let hopeless =
+            HOPE.mul_add(here.chi_square, least) > self.asked.beside || here.deviance > self.asked.worse;
+        let worse = self.best.is_some_and(|best| seen.deviance > best.deviance + 1.0);
+        if short || worse || self.looks >= MOST_LOOKS || hopeless {
+            // C is that of the state at hand: where a step raises the cost, what was found before it stays.
+            return Some(self.best.filter(|best| best.deviance < here.deviance).unwrap_or(here));
+        }
+        self.best = Some(Fit { state: self.state, deviance: seen.deviance, chi_square: seen.chi_square });
+        self.state = next;
+        None
+    }
+}
+
+impl Task {
+    /// Fits all materials with errors of the library; deviances with the handicap of the prior.
+    pub(super) fn fit_with_errors(&self, errors: &Errors, room: &mut Room, spared: &mut Spared) {
+        let model = &self.model;
+        let Room { sums, workplace, screened, counts, shifted, bounds, fits, .. } = room;
+        let nothing = State::at(model.range_k[0]);
+        let mut starts = [nothing; MOST_STARTS];
+        bounds.clear();
+        bounds.extend((0..self.kinds.len()).map(|kind| (0.0, kind)));
+        if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
+            screen.look(counts, shifted, seen);
+            bounds.iter_mut().for_each(|(bound, kind)| *bound = screen.outside(*kind, seen));
+            screen.nearest_first(bounds, seen);
+        }
+        let nothing = Fit { state: nothing, deviance: f64::INFINITY, chi_square: f64::INFINITY };
+        fits.clear();
+        fits.extend((0..self.kinds.len()).map(|kind| (kind, nothing)));
+        workplace.floors.clear();
+        workplace.floors.resize(self.kinds.len(), f64::INFINITY);
+        // The nearest one first: what it costs at its best share excludes most of the others.
+        let (nearest, others) = bounds.split_at(1);
+        let (mut beside, mut reach) = (f64::INFINITY, f64::INFINITY);
+        for some in [nearest, others] {
+            for (_, kind) in some {
+                if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut())
+                    && (screen.is_beyond(*kind, reach, seen) || screen.is_beyond_within(*kind, reach, seen))
+                {
+                    spared.excluded += 1;
+                    continue;
+                }
+                spared.fitted += 1;
+                let mut count = match (&self.screen, screened.as_mut()) {
+                    (Some(screen), Some(seen)) => screen.starts(model, *kind, seen, &mut starts),
+                    _ => 0,
+                };
+                if count == 0 {
+                    starts[0] = self.scan(*kind, shifted, sums, spared);
+                    count = 1;
+                }
+                let beside = beside - self.handicap[*kind];
+                let asked = |start: &State| self.asked(*kind, *start, [beside, f64::INFINITY]);
+                workplace.queue.extend(starts[..count].iter().map(asked));
+            }
+            spared.looks += workplace.run(model, errors, shifted, sums) as u64;
+            workplace.collect(&self.handicap, fits);
+            let (best, is_fitting) = self.best_of(errors, fits);
+            let within = if self.skip { best + BESIDE } else { f64::INFINITY };
+            for (_, kind) in some.iter().filter(|(_, kind)| workplace.floors[*kind] <= within) {
+                let (_, fit) = fits[*kind];
+                let worse = fit.deviance - self.handicap[*kind] + WORSE;
+                let asked = self.asked(*kind, fit.state, [f64::INFINITY, worse]);
+                workplace.queue.extend(LADDER.map(|share| Asked { share, ..asked }));
+            }
+            spared.looks += workplace.run(model, errors, shifted, sums) as u64;
+            workplace.collect(&self.handicap, fits);
+            // One that does not fit may cost less than one that does and count for no more.
+            if self.skip && is_fitting {
+                beside = self.best_of(errors, fits).0 + BESIDE;
+                if let (Some(screen), Some(seen)) = (&self.screen, screened.as_ref()) {
+                    let most = screen.most_chi_square(beside - logarithm_of_all(shifted), shifted);
+                    reach = screen.reach(most, seen);
+                }
+            }
+        }
+        spared.equal += self.alike.iter().map(|alike| *alike as u64 - 1).sum::<u64>();
+        let (least, _) = self.best_of(errors, fits);
+        // With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is
+        // scattered is smaller: it never counts for more.
+        fits.iter_mut().for_each(|(_, fit)| fit.deviance = fit.deviance.max(least));
+    }
+
+    fn asked(&self, kind: usize, start: State, [beside, worse]: [f64; 2]) -> Asked {
+        Asked { kind, m: self.kinds[kind], share: 1.0, start, short: COMPARED, beside, worse }
+    }
+
+    /// The least cost of those that fit, or of all where none does, and whether one does.
+    fn best_of(&self, errors: &Errors, fits: &[(usize, Fit)]) -> (f64, bool) {
+        let (mut fitting, mut all) = (f64::INFINITY, f64::INFINITY);
+        for (_, fit) in fits {
+            all = all.min(fit.deviance);
+            let most = errors.misfits.get(self.freedom(&fit.state)).copied().unwrap_or(f64::INFINITY);
+            if fit.deviance < fitting && fit.chi_square <= most {
+                fitting = fit.deviance;
+            }
+        }
+        if fitting.is_finite() { (fitting, true) } else { (all, false) }
+    }
 }
 
 #[cfg(test)]

@@ -246,8 +246,9 @@ impl Task {
         }
         let most = prior.iter().copied().fold(0.0, f64::max);
         let handicap: Vec<f64> = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
-        let screen = (!model.gain).then(|| Screen::new(&model, &kinds));
         let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
+        let largest = errors.as_ref().map_or(0.0, |errors| errors.largest);
+        let screen = (!model.gain).then(|| Screen::new(&model, &kinds, largest));
         let members = Members::new(&options.categories, &kind_of, &alike, &handicap)?;
         Ok(Self { errors, model, screen, members, kinds, alike, handicap, skip: options.skipping.skips() })
     }

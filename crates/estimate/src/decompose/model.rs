@@ -362,15 +362,20 @@ impl Model {
         [part(0), part(1), part(2), part(3), &self.factor[m * self.width..][..self.width]]
     }
 
+    /// Two rows of the table of a blackbody, each values and slopes.
+    pub(super) fn emission_of_blackbody(&self, row: usize) -> [&[f64]; 4] {
+        let len = 2 * self.width;
+        let last = self.table.len() / ((self.steps + 1) * len) - 1;
+        let at = (last * (self.steps + 1) + row) * len;
+        std::array::from_fn(|i| &self.table[at + i * self.width..][..self.width])
+    }
+
     /// Counts of a blackbody at a temperature.
     pub(super) fn blackbody(&self, temperature_k: f64) -> Vec<f64> {
         let place = self.place(temperature_k);
         let [a, b, c, d] = Hermite::at(place.share).value;
-        let len = 2 * self.width;
-        let last = self.table.len() / ((self.steps + 1) * len) - 1;
-        let rows = &self.table[(last * (self.steps + 1) + place.row) * len..][..2 * len];
-        let part = |i: usize, w: usize| rows[i * self.width + w];
-        (0..self.width).map(|w| a * part(0, w) + b * part(1, w) + c * part(2, w) + d * part(3, w)).collect()
+        let [p, q, r, s] = self.emission_of_blackbody(place.row);
+        (0..self.width).map(|w| a * p[w] + b * q[w] + c * r[w] + d * s[w]).collect()
     }
 
     /// Mean emissivity of material `m` in each band.

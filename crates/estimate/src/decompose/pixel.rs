@@ -165,11 +165,11 @@ pub(super) struct Task {
 pub(super) struct Room {
     pub(super) sums: Sums,
     pub(super) workplace: Workplace,
-    screened: Option<Screened>,
-    counts: Aligned,
+    pub(super) screened: Option<Screened>,
+    pub(super) counts: Aligned,
     pub(super) shifted: Aligned,
     mean: Vec<f64>,
-    bounds: Vec<(f64, usize)>,
+    pub(super) bounds: Vec<(f64, usize)>,
     /// Kinds that count of the pixel at hand, the best first.
     pub(super) fits: Vec<(usize, Fit)>,
     /// Shares of the categories in the posterior of the pixel at hand.
@@ -214,9 +214,9 @@ impl Task {
         for (to, (n, var)) in room.shifted.iter_mut().zip(room.counts.iter().zip(&*model.var_added)) {
             *to = (n + var).max(0.0);
         }
-        self.fit_all(room, spared);
-        if self.errors.is_some() {
-            self.doubt_misfits(&mut room.fits);
+        match &self.errors {
+            None => self.fit_all(room, spared),
+            Some(errors) => self.fit_with_errors(errors, room, spared),
         }
         let best = room.fits.iter().map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
         room.fits.retain(|(_, fit)| fit.deviance <= best + CUT);
@@ -235,17 +235,15 @@ impl Task {
     /// Fits what no bound excludes; deviances with the handicap of the prior.
     fn fit_all(&self, room: &mut Room, spared: &mut Spared) {
         hadar::stop::check();
-        let Room { sums, workplace, screened, counts, shifted, bounds, fits, .. } = room;
+        let Room { sums, screened, counts, shifted, bounds, fits, .. } = room;
         fits.clear();
         bounds.clear();
         let mut best = f64::INFINITY;
         let mut starts = [State::at(self.model.range_k[0]); MOST_STARTS];
-        let beside = |best: f64| if self.skip { best } else { f64::INFINITY };
         if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
             screen.look(counts, shifted, seen);
             bounds.extend((0..self.kinds.len()).map(|kind| (screen.outside(kind, seen), kind)));
             screen.nearest_first(bounds, seen);
-            let skips = self.skip && self.errors.is_none();
             // Without what the prior takes off: farther than need be.
             let mut reach = f64::INFINITY;
             let mut place = 0;
@@ -261,15 +259,9 @@ impl Task {
                     starts[0] = self.scan(kind, shifted, sums, spared);
                     count = 1;
                 }
-                let found = self.least(
-                    kind,
-                    &starts[..count],
-                    shifted,
-                    (&mut *sums, &mut *workplace, beside(best)),
-                    spared,
-                );
+                let found = self.least(kind, &starts[..count], shifted, sums, spared);
                 fits.push((kind, found));
-                if skips && found.deviance < best {
+                if self.skip && found.deviance < best {
                     reach = screen.reach(found.deviance.max(0.0) + CUT, seen);
                 }
                 best = best.min(found.deviance);
@@ -291,8 +283,7 @@ impl Task {
         } else {
             for kind in 0..self.kinds.len() {
                 let start = self.scan(kind, shifted, sums, spared);
-                let found =
-                    self.least(kind, &[start], shifted, (&mut *sums, &mut *workplace, f64::INFINITY), spared);
+                let found = self.least(kind, &[start], shifted, sums, spared);
                 fits.push((kind, found));
             }
         }
@@ -305,19 +296,14 @@ impl Task {
         kind: usize,
         starts: &[State],
         shifted: &[f64],
-        (sums, workplace, beside): (&mut Sums, &mut Workplace, f64),
+        sums: &mut Sums,
         spared: &mut Spared,
     ) -> Fit {
         spared.fitted += 1;
         let mut best: Option<Fit> = None;
         for start in starts {
             let (model, m) = (&self.model, self.kinds[kind]);
-            let (mut found, mut looks) = fit(model, m, shifted, *start, COMPARED, sums);
-            if let Some(errors) = &self.errors {
-                let more;
-                (found, more) = workplace.compared(model, errors, m, shifted, (found.state, beside), sums);
-                looks += more;
-            }
+            let (found, looks) = fit(model, m, shifted, *start, COMPARED, sums);
             spared.looks += looks as u64;
             spared.unfinished += u64::from(looks >= MOST_LOOKS);
             if best.is_none_or(|best| found.deviance < best.deviance) {
@@ -334,7 +320,7 @@ impl Task {
     }
 
     /// A start where no space of few dimensions holds the material: the best of some temperatures, each with its best mixture.
-    fn scan(&self, kind: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
+    pub(super) fn scan(&self, kind: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
         hadar::stop::check();
         let model = &self.model;
         let [low, high] = model.range_k;
@@ -358,26 +344,17 @@ impl Task {
         best.1
     }
 
-    /// Probability of a larger residual; NaN where as many unknowns as bands fit everything, which says nothing.
-    fn p_value(&self, state: &State, chi_square: f64) -> f64 {
+    /// Degrees of freedom that a state leaves to its residual.
+    pub(super) fn freedom(&self, state: &State) -> usize {
         let model = &self.model;
         let free = (0..model.vertices).filter(|&j| state.free[j]).count();
         let unknowns = usize::from(!state.held) + free - usize::from(!model.gain).min(free);
-        let freedom = model.used.len() as f64 - unknowns as f64;
-        chi_square_survival(chi_square, freedom)
+        model.used.len().saturating_sub(unknowns)
     }
 
-    /// With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is scattered is
-    /// smaller: it never counts for more.
-    fn doubt_misfits(&self, fits: &mut [(usize, Fit)]) {
-        let is_misfit = |fit: &Fit| self.p_value(&fit.state, fit.chi_square) < NO_FIT;
-        let fitting = |(_, fit): &&(usize, Fit)| fit.deviance.is_finite() && !is_misfit(fit);
-        let least = fits.iter().filter(fitting).map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
-        if least.is_finite() {
-            for (_, fit) in fits.iter_mut().filter(|(_, fit)| fit.deviance <= least) {
-                fit.deviance = least;
-            }
-        }
+    /// Probability of a larger residual; NaN where as many unknowns as bands fit everything, which says nothing.
+    fn p_value(&self, state: &State, chi_square: f64) -> f64 {
+        chi_square_survival(chi_square, self.freedom(state) as f64)
     }
 
     fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
@@ -403,14 +380,7 @@ impl Task {
         let m = self.kinds[kind];
         let (fit, looks) = match &self.errors {
             None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
-            Some(errors) => room.workplace.fit(
-                model,
-                &errors.stated,
-                m,
-                &room.shifted,
-                (fit.state, f64::INFINITY),
-                &mut room.sums,
-            ),
+            Some(errors) => room.workplace.fit(model, errors, m, &room.shifted, fit.state, &mut room.sums),
         };
         spared.looks += looks as u64;
         let sums = &room.sums;

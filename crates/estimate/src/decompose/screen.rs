@@ -9,6 +9,10 @@
 //!
 //! N′ ≤ (1 + δ) n′ in every band of a fit that is not worse than `cut`, since D ≥ (N′ − n′)²/N′ of each band alone.
 //!
+//! With errors of the library ([`super::library_error`]) variances are at most N′ + ε max(N′, X)², ε the largest eigenvalue of the
+//! covariance of the relative errors and X the brightest of the surroundings: what errors reach is N′ − X. v and n′ above are of that form
+//! too, and N′ + ε max(N′, X)² ≤ (1 + δ)² (n′ + ε max(n′, X)²).
+//!
 //! Within the space the curve is replaced by chords between some temperatures, from which it is away by a sag at most. The distance of
 //! the coordinates from each chord, and from the values that the lighting allows beside it, adds to the bound; where it is least, a fit
 //! begins.
@@ -34,6 +38,9 @@ pub(super) struct Screen {
     /// What is taken off the counts, and 1/√v.
     reference: Aligned,
     whitening: Aligned,
+    /// ε, and X of each band.
+    error: f64,
+    brightest: Aligned,
     /// Directions of a space, those of the lighting first.
     rank: usize,
     lights: usize,
@@ -68,9 +75,11 @@ pub(super) struct Screened {
     square: f64,
     /// Squared distance from the space of each material.
     outside: Vec<f64>,
-    /// min v/n′.
+    /// min v/n′, with ε its likes.
     lightest: f64,
     least: f64,
+    /// max (X/n′)².
+    glare: f64,
     /// The least of the costs of each material whose chords were looked at, else NaN.
     nearest: Vec<f64>,
 }
@@ -81,13 +90,19 @@ const ROUNDING: f64 = 2e-14;
 impl Screen {
     /// For materials `kinds` of the model. It is laid out for a blackbody in the middle of the range of temperatures, not for what the cube
     /// holds: no pixel changes how another one is rounded.
-    pub(super) fn new(model: &Model, kinds: &[usize]) -> Self {
+    pub(super) fn new(model: &Model, kinds: &[usize], error: f64) -> Self {
         let width = model.width;
+        let mut brightest = Aligned::zeros(width);
+        for j in 0..model.vertices {
+            brightest.iter_mut().zip(model.light(j)).for_each(|(most, light)| *most = most.max(*light));
+        }
         let mut whitening = Aligned::zeros(width);
         let mut reference = Aligned::zeros(width);
         let [low, high] = model.range_k;
         for (w, &mean) in model.blackbody(0.5 * (low + high)).iter().enumerate() {
-            whitening[w] = 1.0 / (mean.max(0.0) + model.var_added[w]).max(1.0).sqrt();
+            let shot = (mean.max(0.0) + model.var_added[w]).max(1.0);
+            let most = shot.max(brightest[w]);
+            whitening[w] = 1.0 / (error * most).mul_add(most, shot).sqrt();
             reference[w] = mean.max(0.0);
         }
         let rows = model.rows();
@@ -106,6 +121,8 @@ impl Screen {
             used: model.used.len(),
             reference,
             whitening,
+            error,
+            brightest,
             rank,
             lights,
             columns,
@@ -156,6 +173,7 @@ impl Screen {
             outside: vec![0.0; self.left_out.len()],
             lightest: 0.0,
             least: 0.0,
+            glare: 0.0,
             nearest: vec![f64::NAN; self.left_out.len()],
         }
     }
@@ -171,11 +189,31 @@ impl Screen {
         nearest.fill(f64::NAN);
     }
 
-    /// The farthest that a fit which costs no more than `cut` may be from the counts: √(cut/f), with N′ ≤ n′ + cut/2 + √(cut²/4 + cut n′).
+    /// The farthest that a fit which costs no more than `cut` may be from the counts: √(cut/f), δ from
+    /// δ² = cut [(1 + δ)/n′ + ε (1 + δ)² + ε (X/n′)²].
     pub(super) fn reach(&self, cut: f64, seen: &Screened) -> f64 {
-        let half = 0.5 * cut;
-        let excess = (half + (half * half + cut * seen.least).sqrt()) / seen.least;
-        (cut * (1.0 + excess) / seen.lightest).sqrt()
+        let left = 1.0 - cut * self.error;
+        if left <= 0.0 {
+            return f64::INFINITY;
+        }
+        let half = 0.5 * cut * (1.0 + 2.0 * self.error * seen.least);
+        let alone = cut * seen.least * self.error.mul_add((1.0 + seen.glare) * seen.least, 1.0);
+        let excess = (half + (half * half + left * alone).sqrt()) / (left * seen.least);
+        let grown = if self.error > 0.0 { (1.0 + excess).powi(2) } else { 1.0 + excess };
+        (cut * grown / seen.lightest).sqrt()
+    }
+
+    /// The most that χ² of a fit may be where χ² + Σ ln (N′/n′) is `excess`: with variances of at most u n′², Σ |ln (N′/n′)| is at most
+    /// 3 √(χ² Σ u) of bands with N′ above n′/16, and below it a band adds more to χ² than it takes of the logarithms.
+    pub(super) fn most_chi_square(&self, excess: f64, shifted: &[f64]) -> f64 {
+        let each = shifted[..self.used].iter().zip(&*self.brightest).map(|(n, bright)| {
+            let most = n.max(*bright) / n;
+            (self.error * most).mul_add(most, 1.0 / n)
+        });
+        let (sum, largest) = each.fold((0.0, 0.0), |(sum, most): (f64, f64), u| (sum + u, most.max(u)));
+        let half = 1.5 * sum.sqrt();
+        let most = (half + (half * half + excess.max(0.0)).sqrt()).powi(2);
+        if largest <= 0.02 { most } else { f64::INFINITY }
     }
 
     /// Whether a material is farther away than that, whatever its temperature and lighting.
@@ -305,6 +343,7 @@ dispatched! {
     fn project<'a>(screen: &'a Screen, counts: &'a [f64], shifted: &'a [f64], to: &'a mut Screened) {
         let width = counts.len();
         let (mut square, mut lightest, mut least) = ([0.0; LANES], f64::INFINITY, f64::INFINITY);
+        let mut glare = 0.0;
         for at in (0..width).step_by(LANES) {
             let white: Chunk = std::array::from_fn(|i| {
                 (counts[at + i] - screen.reference[at + i]) * screen.whitening[at + i]
@@ -314,14 +353,19 @@ dispatched! {
                 to.white[at + i] = white[i];
                 let root = screen.whitening[at + i];
                 if at + i < screen.used {
-                    lightest = f64::min(lightest, 1.0 / (root * root * shifted[at + i]));
-                    least = f64::min(least, shifted[at + i]);
+                    let (n, bright) = (shifted[at + i], screen.brightest[at + i]);
+                    let most = f64::max(n, bright);
+                    let variance = (screen.error * most).mul_add(most, n);
+                    lightest = f64::min(lightest, 1.0 / (root * root * variance));
+                    least = f64::min(least, n);
+                    glare = f64::max(glare, bright / n);
                 }
             }
         }
         to.square = fold(&square);
         to.lightest = lightest;
         to.least = least;
+        to.glare = glare * glare;
         // Four chunks of columns stay in registers while the bands go by.
         const TILE: usize = 4 * LANES;
         let mut at = 0;

@@ -72,9 +72,7 @@ impl Task {
                     sums(model, asked, &mut room.sums);
                 }
                 Some(errors) => {
-                    let start = (state, f64::INFINITY);
-                    let (fit, _) =
-                        room.workplace.fit(model, &errors.stated, m, &room.shifted, start, &mut room.sums);
+                    let (fit, _) = room.workplace.fit(model, errors, m, &room.shifted, state, &mut room.sums);
                     state = fit.state;
                 }
             }
