@@ -39,7 +39,7 @@ use hadar::statistics::chi_square_survival;
 const FAR: f64 = 4.0;
 
 /// Share of a cause's information from which on it is one of its own beside those that are estimated with the pixels.
-const ONE: f64 = 1e-6;
+const ONE: f64 = 1e-4;
 
 /// Rows whose sums are in memory at once.
 const ROWS: usize = 16;
@@ -148,12 +148,15 @@ impl Together {
     fn beside(&mut self, shared: &Shared) {
         let count = self.shared;
         let kept = self.score.len() - count;
+        // What is left of their own equations where they were settled.
+        let rest_of_shared = shared.rest(&self.score[kept..]);
         for a in 0..kept {
             let row = |of: &[f64], a: usize| -> Vec<f64> { of[a * count..][..count].to_vec() };
             let (information, library, moved) =
                 (row(&self.cross.information, a), row(&self.cross.of_library, a), row(&self.cross.moved, a));
             // By how much the shared ones follow a unit of the cause.
             let follow = shared.image(&information);
+            self.score[a] -= dot(&follow, &rest_of_shared);
             let own = self.information[a];
             let rest = own - dot(&information, &follow);
             // What is left of one that a shared unknown is as well is rounding.
