@@ -151,14 +151,6 @@ fn impossible_unknowns_are_refused_by_their_key() {
         let told = folder.refusal(&["decompose", "a.toml"]);
         assert!(told.contains(key) && told.contains(says), "{told}");
     }
-    // Two that are one are named: the only light's strength, and a factor of all of it.
-    let one = SCENARIO.split("[[environment]]\ntemperature").next().unwrap();
-    let rest = "[library]\npath = \"library.csv\"\n[unknown]\ntemperature = [\"250 K\", \"340 K\"]\nlighting_total = 1.0\n";
-    let twice = "light_temperature = \"2 K\"\nmissing_light = 0.05\n";
-    let ground = one.replace("spectrum = \"light.csv\"\ncolumn = \"sky\"", "temperature = \"20 degC\"");
-    folder.file("a.toml", &format!("{ground}{rest}{twice}sky_scale = 0.05\n"));
-    let text = folder.run(&["decompose", "a.toml"]).stdout;
-    assert!(text.contains("the pixels do not tell it from"), "{text}");
 }
 
 /// Emissivities that were found under a sky told 3 % too bright: their deviations hold the truth where that is stated, and miss it where not.
