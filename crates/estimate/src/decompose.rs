@@ -57,5 +57,5 @@ pub use possible::CANDIDATE_SHARE;
 pub use shared::{Shared, Unknown, estimate};
 pub use spatial::{Spatial, SpatialPrior};
 pub use texture_information::{TextureInformation, texture_information};
-pub use together::widen;
+pub use together::{ToHold, widen};
 pub use told::{Spectra, Told};

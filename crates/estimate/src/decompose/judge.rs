@@ -80,6 +80,8 @@ pub struct Together {
     lean: Vec<f64>,
     /// The last of the causes, which are estimated with the pixels ([`super::shared`]).
     shared: usize,
+    /// By how much each of these follows a unit of each cause, if it was taken for nothing.
+    follow: Vec<Vec<f64>>,
     /// J, the same of `of_library` and of `moved`, of each cause with each of the shared ones: `[cause][shared]`.
     pub(super) cross: Cross,
 }
@@ -167,6 +169,7 @@ impl Together {
             };
             self.of_library[a] = square(&self.cross.of_library, self.of_library[a], &library);
             self.moved[a] = square(&self.cross.moved, self.moved[a], &moved);
+            self.follow.push(follow);
         }
         [&mut self.score, &mut self.information, &mut self.of_library, &mut self.moved]
             .into_iter()
@@ -191,6 +194,12 @@ impl Together {
         let estimate = self.alone(cause).map_or(0.0, |found| found.estimate.abs());
         let square = self.moved.get(cause).copied().unwrap_or(0.0) / self.pixels.max(1) as f64;
         estimate * square.sqrt()
+    }
+
+    /// By how much each of the unknowns that were estimated with the pixels is off for a unit of a cause; nothing without such.
+    #[must_use]
+    pub fn follow(&self, cause: usize) -> &[f64] {
+        self.follow.get(cause).map_or(&[], Vec::as_slice)
     }
 
     /// Deviations of the mean p-value below that of a right model.

@@ -18,6 +18,17 @@ use super::tangent::{Tangent, Tangents, dot};
 use hadar::error::{Error, Result, check};
 use rayon::prelude::*;
 
+/// A cause that deviations have to hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToHold {
+    /// What may be otherwise.
+    pub cause: Cause,
+    /// How much of it.
+    pub amount: f64,
+    /// By how much shared unknowns are off for a unit of it ([`super::Together::follow`]).
+    pub follow: Vec<f64>,
+}
+
 /// Widens the deviations of the temperatures by an error of deviation `together` in each band (counts; none if empty), the same number of
 /// deviations in all bands and pixels, by the largest of what the amounts of some causes do to each, and by what is not known of unknowns
 /// that the whole cube shares.
@@ -28,7 +39,7 @@ pub fn widen(
     setting: &Setting<'_>,
     maps: &mut Maps,
     together: &[f64],
-    causes: &[(Cause, f64)],
+    causes: &[ToHold],
     shared: Option<&Shared>,
 ) -> Result<()> {
     let (bands, lights) = (setting.bands.len(), setting.surroundings.len());
@@ -47,8 +58,7 @@ pub fn widen(
     let tangents = Tangents::new(setting)?;
     let row = tangents.of_temperature();
     let effect = |cause: &Cause| Effect::new(cause, setting, &tangents);
-    let effects = causes.iter().map(|(cause, amount)| Ok((effect(cause)?, *amount)));
-    let effects = effects.collect::<Result<Vec<(Effect, f64)>>>()?;
+    let effects = causes.iter().map(|one| effect(&one.cause)).collect::<Result<Vec<_>>>()?;
     let together_estimated = shared.map_or_else(Vec::new, Shared::causes);
     let estimated = together_estimated.iter().map(effect).collect::<Result<Vec<_>>>()?;
     let Maps { material, temperature_k, temperature_sigma_k, lighting, .. } = maps;
@@ -73,9 +83,12 @@ pub fn widen(
             effect.slope(&tangents, (m, at_k, lit), tangent, slope);
             dot(&g, slope)
         };
-        let moved = effects.iter().map(|(effect, amount)| (moved_by(effect) * amount).abs());
-        let moved = moved.fold(0.0, f64::max);
         let by_shared: Vec<f64> = estimated.iter().map(&mut moved_by).collect();
+        let moved = effects.iter().zip(causes).map(|(effect, one)| {
+            let followed = dot(&by_shared, &one.follow);
+            ((moved_by(effect) - followed) * one.amount).abs()
+        });
+        let moved = moved.fold(0.0, f64::max);
         let by_shared = shared.map_or(0.0, |shared| shared.sigma_of(&by_shared));
         *sigma_k = f64::from(*sigma_k).hypot(off).hypot(moved).hypot(by_shared) as f32;
     };
