@@ -11,7 +11,7 @@ use hadar::scene::{State, Surroundings};
 use hadar::statistics::Statistics;
 use hadar_estimate::decompose::{Light, Maps, NO_MATERIAL, Options, Setting, decompose};
 use hadar_estimate::segmentation::{
-    Agreement, ByBrightness, Categories, NO_CATEGORY, Part, Rule, segment, smoothed,
+    Agreement, ByBrightness, Categories, NO_CATEGORY, Part, Rule, Told, claims, segment, smoothed,
 };
 use hadar_report::plot::{Axis, Painted, Picture, Rgb, categorical};
 use hadar_report::table::Table;
@@ -31,6 +31,12 @@ const DRAWS: usize = 40;
 const TABLED: usize = 4;
 /// The colour of no category.
 const NONE: Rgb = (190, 190, 190);
+/// Of what is undecided, and of what matters then.
+const PALE: Rgb = (235, 235, 235);
+const DARK: Rgb = (40, 40, 40);
+/// Codes of [`Night::claimed`] beside those of the categories.
+const UNDECIDED: u8 = 254;
+const NOT_EXCLUDED: u8 = 253;
 
 pub(super) struct Night {
     study: RenderStudy,
@@ -73,7 +79,9 @@ impl Night {
         let material = |(material, surface): (&u16, &u8)| if *surface == 0 { sky } else { *material };
         let truth_material = view.material.iter().zip(&view.surface).map(material).collect();
         let counts = view.counts.clone();
-        let maps = taken_apart(&study, &rendered.radiances, &rendered.emissivities, rendered.shape, counts)?;
+        let options = Options { categories: categories.sets(), ..Options::default() };
+        let scene = (&rendered.radiances[..], &rendered.emissivities[..]);
+        let maps = taken_apart(&study, scene, rendered.shape, counts, &options)?;
         Ok(Self { study, maps, thermal, categories, truth, truth_material, specs, rendered })
     }
 
@@ -96,6 +104,20 @@ impl Night {
             &segment(&self.maps.fitting_material(), self.columns(), &self.categories, rule)?,
             self.columns(),
         )
+    }
+
+    /// What the materials that are left by 95 % tell, and no more: [`UNDECIDED`] where that is nothing, [`NOT_EXCLUDED`] where a category is among
+    /// what 99 % leave besides.
+    pub(super) fn claimed(&self, not_excluded: &str) -> Result<Vec<u8>> {
+        let safety = self.category(not_excluded).map_or(0, |place| 1 << place);
+        let Maps { possible_95, common_95, possible_99, .. } = &self.maps;
+        let found = claims(possible_95, common_95, self.columns(), &self.categories, Rule::Regions, safety)?;
+        let one = |(i, category): (usize, &u8)| match found.told[i] {
+            Told::Undecided if possible_99[i] & safety != 0 => NOT_EXCLUDED,
+            Told::Undecided => UNDECIDED,
+            _ => *category,
+        };
+        Ok(found.category.iter().enumerate().map(one).collect())
     }
 
     /// By the materials that are there; pixels of several have none.
@@ -188,7 +210,8 @@ impl Night {
             let all = chosen.par_iter().enumerate().map_init(solver, one).collect::<Result<Vec<_>>>()?;
             let counts: Vec<f32> = all.iter().flat_map(|(_, counts)| counts).copied().collect();
             let shape = Shape::new(2 * all.len(), DRAWS, bands.len())?;
-            let maps = taken_apart(&self.study, &self.rendered.radiances, &library, shape, counts)?;
+            let scene = (&self.rendered.radiances[..], &library[..]);
+            let maps = taken_apart(&self.study, scene, shape, counts, &Options::default())?;
             let is_right = |(i, found): (usize, &u16)| usize::from(*found) == (own + i / DRAWS % 2) % 2;
             let told = maps.material.iter().enumerate().filter(|one| is_right(*one)).count();
             right += 0.5 * told as f64 / maps.material.len() as f64;
@@ -201,6 +224,8 @@ impl Night {
     pub(super) fn painted(&self, title: impl Into<String>, map: &[u8]) -> Picture {
         let colour = |category: &u8| match usize::from(*category) {
             place if place < self.specs.len() => categorical(place),
+            _ if *category == NOT_EXCLUDED => DARK,
+            _ if *category == UNDECIDED => PALE,
             _ => NONE,
         };
         let pixels = map.iter().map(colour).collect();
@@ -219,6 +244,16 @@ impl Night {
         keys.chain([(NONE, "none".to_owned())]).collect()
     }
 
+    /// The same with those of [`Night::claimed`].
+    pub(super) fn keys_of_claimed(&self, not_excluded: &str) -> Vec<(Rgb, String)> {
+        let mut keys = self.keys();
+        keys.extend([
+            (PALE, "undecided".to_owned()),
+            (DARK, format!("undecided: a {not_excluded} cannot be excluded")),
+        ]);
+        keys
+    }
+
     /// Maps of categories, a row for one in [`TABLED`] rows and columns.
     pub(super) fn table(&self, maps: &[(&str, &[u8])]) -> Table {
         let header = ["row", "column", "thermal_counts"].into_iter().chain(maps.iter().map(|map| map.0));
@@ -229,7 +264,12 @@ impl Night {
                 continue;
             }
             let of = |(_, map): &(&str, &[u8])| {
-                names.get(usize::from(map[i])).map_or_else(String::new, |name| (*name).to_owned())
+                let name = match map[i] {
+                    UNDECIDED => Some("undecided"),
+                    NOT_EXCLUDED => Some("undecided, not excluded"),
+                    place => names.get(usize::from(place)).copied(),
+                };
+                name.unwrap_or_default().to_owned()
             };
             let place = [(i / self.columns()).to_string(), (i % self.columns()).to_string()];
             table.push(
@@ -242,10 +282,10 @@ impl Night {
 
 fn taken_apart(
     study: &RenderStudy,
-    radiances: &[Vec<f64>],
-    library: &[Vec<f64>],
+    (radiances, library): (&[Vec<f64>], &[Vec<f64>]),
     shape: Shape,
     counts: Vec<f32>,
+    options: &Options,
 ) -> Result<Maps> {
     let cube = Cube::F32(Box::new(MemoryCube::new(shape, counts)?));
     let lights: Vec<Light> = radiances.iter().cloned().map(Light::Radiance).collect();
@@ -265,5 +305,5 @@ fn taken_apart(
         path: None,
         light_besides: &[],
     };
-    decompose(&setting, &Options::default(), &cube, &|_| ())
+    decompose(&setting, options, &cube, &|_| ())
 }
