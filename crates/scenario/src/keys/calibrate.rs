@@ -1,6 +1,6 @@
 //! Tables of a calibration.
 
-use super::cube::{AXES, VARIABLE};
+use super::cube::{AXES, BAD_BANDS, VARIABLE};
 use super::key::Silent::{Is, Means, Refused};
 use super::key::{
     A_SHARE, COUNT, KELVIN, KELVIN_FROM_ZERO, Key, POSITIVE, POSITIVE_SHARE, TIME, Table, Value, WAVENUMBER,
@@ -220,6 +220,7 @@ const FRAMES_KEYS: &[Key] = &[
     ),
     VARIABLE,
     AXES,
+    BAD_BANDS,
 ];
 /// `[cube]` as it was measured.
 pub(crate) static FRAMES: Table = Table::of("Cubes as they were measured.", &[FRAMES_KEYS]);
