@@ -9,6 +9,7 @@ mod band_order;
 mod band_sum;
 mod invalid;
 
+pub use band_order::Ordered;
 pub use band_sum::panchromatic;
 pub use invalid::first_invalid;
 
@@ -121,6 +122,26 @@ pub trait Rows<S: Sample>: Debug + Send + Sync {
     /// # Errors
     /// Rows beyond the last one; a file that cannot be read.
     fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]>;
+}
+
+impl<S: Sample, R: Rows<S> + ?Sized> Rows<S> for &R {
+    fn shape(&self) -> Shape {
+        (**self).shape()
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        (**self).read(rows, buffer)
+    }
+}
+
+impl<S: Sample> Rows<S> for Box<dyn Rows<S> + '_> {
+    fn shape(&self) -> Shape {
+        self.as_ref().shape()
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        self.as_ref().read(rows, buffer)
+    }
 }
 
 /// A cube of either kind of sample.

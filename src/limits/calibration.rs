@@ -3,9 +3,11 @@
 //! * [`determined`]: how many directions of a response curve readings determine, and how well each value is known;
 //! * [`filter_wheel`]: readings of blackbodies behind filters as scores of the response (paper S49–S51);
 //! * [`blackbody`]: response and offset of a spectrometer, and the radiance measured with it (S52–S56);
+//! * [`sent`]: what a blackbody sends that is not quite black;
 //! * [`surface`]: emissivity and surroundings from a surface at several temperatures (S57, S58).
 
 pub mod blackbody;
 pub mod determined;
 pub mod filter_wheel;
+pub mod sent;
 pub mod surface;

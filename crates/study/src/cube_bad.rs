@@ -58,16 +58,20 @@ impl BadFound {
     /// What the reader must know of it; pixels that miss a sample are told where they are counted.
     pub(super) fn warnings(&self, shape: Shape) -> Vec<Warning> {
         let of = shape.rows() * shape.columns();
-        let bands = ["missing", "stuck"].into_iter().filter_map(|why| {
-            let bands: Vec<usize> =
-                self.bands.iter().filter(|bad| bad.why == why).map(|bad| bad.band).collect();
-            (!bands.is_empty()).then_some(Warning::BandsFoundBad { bands, why })
-        });
+        let bands = bands_found(&self.bands);
         let found = self.pixels.iter().filter(|bad| bad.why != "missing" && bad.why != "named");
         bands
             .chain(found.map(|bad| Warning::PixelsFoundBad { pixels: bad.pixels, of, why: bad.why }))
             .collect()
     }
+}
+
+/// What the reader must know of bands that were found to be bad.
+pub(super) fn bands_found(found: &[BadBand]) -> impl Iterator<Item = Warning> + '_ {
+    ["missing", "stuck"].into_iter().filter_map(|why| {
+        let bands: Vec<usize> = found.iter().filter(|bad| bad.why == why).map(|bad| bad.band).collect();
+        (!bands.is_empty()).then_some(Warning::BandsFoundBad { bands, why })
+    })
 }
 
 /// Pixels that are bad for one reason.
@@ -106,6 +110,25 @@ pub(super) struct Readings<'a> {
     pub(super) keeps: bool,
     /// Whether the scale of the counts is unknown: nothing is too bright then, nor too dark.
     pub(super) gain: bool,
+}
+
+/// Bands without readings of a cube of which nothing is known but that its samples scatter, besides those that are left out.
+pub(super) fn bands_without_readings(cube: &Cube, bad_bands: &[usize]) -> Result<Vec<BadBand>> {
+    let bands = cube.shape().bands();
+    let (none, noise) = (vec![0.0; bands], vec![1.0; bands]);
+    let readings = Readings {
+        bad_bands,
+        units_per_count: 1.0,
+        var_added: &noise,
+        least: &none,
+        most: &none,
+        keeps: false,
+        gain: true,
+    };
+    match cube {
+        Cube::F32(rows) => Ok(readings.bands(&some(rows.as_ref(), LOOKED)?)),
+        Cube::F64(rows) => Ok(readings.bands(&some(rows.as_ref(), LOOKED)?)),
+    }
 }
 
 impl Readings<'_> {

@@ -51,6 +51,25 @@ impl InOrder {
         of_file
     }
 
+    /// Bands that are left out, as is said (`named`, in the order of the file) and as the file says, in rising wavenumber.
+    ///
+    /// # Errors
+    /// A band that is not there, or all of them.
+    pub(super) fn bad_bands(&self, named: &[usize]) -> Result<Vec<usize>> {
+        let bands = self.order.len();
+        if let Some(bad) = named.iter().find(|band| **band >= bands) {
+            let found = format!("band {bad} of {bands}");
+            return Err(Error::malformed(found, format!("count from 0 up to {}", bands - 1)));
+        }
+        let is_bad = |band: &usize| named.contains(band) || self.found.bad_bands.contains(band);
+        let bad: Vec<usize> = (0..bands).filter(|band| self.order.get(*band).is_some_and(is_bad)).collect();
+        if bad.len() == bands {
+            let instead = "leave some of them, or mend the list of the file";
+            return Err(Error::malformed("all bands are bad", instead));
+        }
+        Ok(bad)
+    }
+
     /// The bands as the file says them.
     ///
     /// # Errors

@@ -113,7 +113,7 @@ impl Said<'_> {
             camera_bands::check(camera, spec, &asked, &bands, &|key| self.source.place(key))?;
             bands = camera.received(&bands);
         }
-        let mut bad_bands = self.bad_bands(&opened, bands.len()).map_err(at("cube.bad_bands"))?;
+        let mut bad_bands = opened.bad_bands(&self.cube.bad_bands).map_err(at("cube.bad_bands"))?;
         let widths = bands.widths_cm1();
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
@@ -248,24 +248,6 @@ impl Said<'_> {
             _ => Ok(Light::Radiance(lit.unwrap_or_default())),
         })
         .collect()
-    }
-
-    /// Bands that are left out, as the scenario and the file say, in rising wavenumber.
-    fn bad_bands(&self, opened: &InOrder, bands: usize) -> Result<Vec<usize>> {
-        if let Some(bad) = self.cube.bad_bands.iter().find(|band| **band >= bands) {
-            let found = format!("band {bad} of {bands}");
-            return Err(Error::malformed(found, format!("count from 0 up to {}", bands - 1)));
-        }
-        let is_bad =
-            |band: usize| self.cube.bad_bands.contains(&band) || opened.found.bad_bands.contains(&band);
-        let is_bad = opened.rising(&(0..bands).map(is_bad).collect::<Vec<bool>>());
-        let bad = is_bad.into_iter().enumerate().filter(|(_, bad)| *bad);
-        let bad: Vec<usize> = bad.map(|(band, _)| band).collect();
-        if bad.len() == bands {
-            let instead = "leave some of them, or mend the list of the file";
-            return Err(Error::malformed("all bands are bad", instead));
-        }
-        Ok(bad)
     }
 }
 

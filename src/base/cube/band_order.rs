@@ -1,4 +1,4 @@
-//! The bands of a cube in another order.
+//! The bands of a cube in another order, or some of them.
 
 use super::{Cube, Rows, Sample, Shape};
 use crate::error::{Error, Result};
@@ -6,16 +6,35 @@ use std::ops::Range;
 
 /// A cube whose band `i` is the band `order[i]` of another.
 #[derive(Debug)]
-struct Ordered<S: Sample> {
-    cube: Box<dyn Rows<S>>,
+pub struct Ordered<'a, S: Sample> {
+    cube: Box<dyn Rows<S> + 'a>,
     order: Vec<usize>,
+    shape: Shape,
+}
+
+impl<'a, S: Sample> Ordered<'a, S> {
+    /// Band `i` of it is the band `order[i]` of `cube`.
+    ///
+    /// # Errors
+    /// No band, one that is not there, or one that is named twice.
+    pub fn new(cube: impl Rows<S> + 'a, order: Vec<usize>) -> Result<Self> {
+        let (mut sorted, shape) = (order.clone(), cube.shape());
+        sorted.sort_unstable();
+        let twice = sorted.windows(2).any(|pair| pair[0] == pair[1]);
+        if twice || sorted.last().is_none_or(|last| *last >= shape.bands()) {
+            let found = format!("an order of {} bands for {}", order.len(), shape.bands());
+            return Err(Error::malformed(found, "name every band that is wanted once"));
+        }
+        let shape = Shape::new(shape.rows(), shape.columns(), order.len())?;
+        Ok(Self { cube: Box::new(cube), order, shape })
+    }
 }
 
 impl Cube {
-    /// The cube with its bands in another order: band `i` of it is the band `order[i]` of this one.
+    /// The cube with bands in another order, or without some: band `i` of it is the band `order[i]` of this one.
     ///
     /// # Errors
-    /// An order that has not every band once.
+    /// No band, one that is not there, or one that is named twice.
     ///
     /// ```
     /// use hadar::cube::{Cube, MemoryCube, Shape};
@@ -25,25 +44,19 @@ impl Cube {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn with_bands(self, order: Vec<usize>) -> Result<Self> {
-        let mut sorted = order.clone();
-        sorted.sort_unstable();
-        if !sorted.iter().copied().eq(0..self.shape().bands()) {
-            let found = format!("an order of {} bands for {}", order.len(), self.shape().bands());
-            return Err(Error::malformed(found, "name every band once"));
-        }
-        if order.is_sorted() {
+        if order.iter().copied().eq(0..self.shape().bands()) {
             return Ok(self);
         }
         Ok(match self {
-            Self::F32(cube) => Self::F32(Box::new(Ordered { cube, order })),
-            Self::F64(cube) => Self::F64(Box::new(Ordered { cube, order })),
+            Self::F32(cube) => Self::F32(Box::new(Ordered::new(cube, order)?)),
+            Self::F64(cube) => Self::F64(Box::new(Ordered::new(cube, order)?)),
         })
     }
 }
 
-impl<S: Sample> Rows<S> for Ordered<S> {
+impl<S: Sample> Rows<S> for Ordered<'_, S> {
     fn shape(&self) -> Shape {
-        self.cube.shape()
+        self.shape
     }
 
     fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
@@ -51,7 +64,7 @@ impl<S: Sample> Rows<S> for Ordered<S> {
         let mut own = Vec::new();
         let samples = self.cube.read(rows, &mut own)?;
         buffer.clear();
-        for pixel in samples.chunks(self.order.len()) {
+        for pixel in samples.chunks(self.cube.shape().bands()) {
             buffer.extend(self.order.iter().filter_map(|band| pixel.get(*band)));
         }
         Ok(buffer)

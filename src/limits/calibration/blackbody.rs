@@ -4,6 +4,9 @@
 //!
 //! C_k = R B(T_k + δ_k) + ξ + ε_k,   ε_k normal of deviation σ_k, δ_k of deviation u_k and common to all channels.
 //!
+//! Of a blackbody that is not quite black B_k stands for what it sends, L_k, and B′_k δ_k for all that its errors of temperature,
+//! emissivity and surroundings move ([`super::sent`]).
+//!
 //! By least squares with weights w_k = 1/σ_k² (S55 and S56 for two temperatures), about the weighted mean B̄ of the radiances,
 //!
 //! R = Σ h_k C_k,  h_k = w_k (B_k − B̄)/Σ w (B − B̄)²;   C̄ = Σ w_k C_k/Σ w;   ξ = C̄ − R B̄,
@@ -19,17 +22,17 @@
 //!
 //! Units: counts for C, ξ, σ; photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ for B and S; K for T, u.
 //!
-//! Assumptions: emissivity 1 of the blackbodies; linear response; σ known; errors to first order.
+//! Assumptions: linear response; σ known; errors to first order, those of one blackbody independent of those of another.
 
+use super::sent::{Deviations, Sent, Unknown};
 use crate::error::{Error, Result, check};
-use crate::planck;
 use nalgebra::{DMatrix, DVector};
 
 /// Blackbodies that were read in some channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blackbodies {
-    temperatures_k: Vec<f64>,
-    errors_k: Vec<f64>,
+    sent: Vec<Sent>,
+    unknowns: Vec<Unknown>,
     channels: Vec<Channel>,
 }
 
@@ -41,7 +44,7 @@ pub struct Channel {
     pub mean_radiance: f64,
     /// B_k − B̄.
     pub apart: Vec<f64>,
-    /// ∂B/∂T at each temperature.
+    /// What each unknown moves of the radiance of its blackbody: B′ of a temperature.
     pub slope: Vec<f64>,
     /// σ_k, counts.
     pub sigma: Vec<f64>,
@@ -56,28 +59,16 @@ pub struct Channel {
 }
 
 impl Channel {
-    fn new(wavenumber_cm1: f64, temperatures_k: &[f64], sigma: Vec<f64>) -> Self {
-        let (mut radiance, mut slope) = (Vec::new(), Vec::new());
-        for t in temperatures_k {
-            radiance.push(planck::photon_radiance(wavenumber_cm1, *t));
-            slope.push(planck::photon_radiance_slope(wavenumber_cm1, *t));
-        }
+    fn new(wavenumber_cm1: f64, sent: &[Sent], unknowns: &[Unknown], sigma: Vec<f64>) -> Result<Self> {
+        let at = |of: &dyn Fn(&[f64], &mut [f64])| {
+            let mut out = [0.0];
+            of(&[wavenumber_cm1], &mut out);
+            out[0]
+        };
+        let slope = |one: &Unknown| at(&|nu, out| sent[one.blackbody].slope_into(one.of, nu, out));
         // Radiances from the first on, which lose nothing where temperatures are near each other.
-        let from_first: Vec<f64> = temperatures_k
-            .iter()
-            .map(|t| {
-                let mut out = [0.0];
-                let (first, more) = (temperatures_k[0], t - temperatures_k[0]);
-                planck::photon_radiance_difference_into(
-                    &[wavenumber_cm1],
-                    first,
-                    more,
-                    &radiance[..1],
-                    &mut out,
-                );
-                out[0]
-            })
-            .collect();
+        let from_first: Vec<f64> =
+            sent.iter().map(|one| at(&|nu, out| one.apart_into(&sent[0], nu, out))).collect();
         let least = sigma.iter().copied().fold(f64::INFINITY, f64::min);
         let weights: Vec<f64> = sigma.iter().map(|sigma| (least / sigma).powi(2)).collect();
         let total: f64 = weights.iter().sum();
@@ -85,18 +76,29 @@ impl Channel {
         let mean: f64 = share.iter().zip(&from_first).map(|(share, b)| share * b).sum();
         let apart: Vec<f64> = from_first.iter().map(|b| b - mean).collect();
         let spread: f64 = share.iter().zip(&apart).map(|(share, b)| share * b * b).sum();
+        if spread <= 0.0 {
+            let found = format!("all blackbodies send the same at {wavenumber_cm1} cm^-1");
+            return Err(Error::malformed(found, "give blackbodies whose temperatures differ more"));
+        }
         let gain = share.iter().zip(&apart).map(|(share, b)| share * b / spread).collect();
         let var_centre = least * least / total;
-        Self {
-            mean_radiance: radiance[0] + mean,
+        Ok(Self {
+            mean_radiance: at(&|nu, out| sent[0].radiance_into(nu, out)) + mean,
             apart,
-            slope,
+            slope: unknowns.iter().map(slope).collect(),
             sigma,
             share,
             gain,
             var_response: var_centre / spread,
             var_centre,
-        }
+        })
+    }
+
+    /// What each unknown moves, where a reading of its blackbody counts by its `weights`.
+    pub fn moved(&self, weights: impl Iterator<Item = f64>) -> Vec<f64> {
+        // Unknowns are those of all blackbodies, again and again.
+        let weights: Vec<f64> = weights.collect();
+        weights.iter().cycle().zip(&self.slope).map(|(weight, slope)| weight * slope).collect()
     }
 
     /// ℓ_k of a radiance.
@@ -130,20 +132,34 @@ impl Channel {
 }
 
 impl Blackbodies {
-    /// Blackbodies at these temperatures, uncertain by `errors_k`, read with deviations `sigma[blackbody][channel]` (counts) in channels
-    /// at these wavenumbers.
+    /// Black ones at these temperatures, uncertain by `errors_k`; all else as [`Self::of`].
     ///
     /// # Errors
-    /// No two temperatures that differ, numbers that are not positive, lists of another length.
+    /// As [`Self::of`].
     pub fn new(
         wavenumbers_cm1: &[f64],
         temperatures_k: Vec<f64>,
         errors_k: Vec<f64>,
         sigma: &[Vec<f64>],
     ) -> Result<Self> {
-        let count = temperatures_k.len();
+        let deviations: Vec<Deviations> = errors_k.into_iter().map(|u| [u, 0.0, 0.0]).collect();
+        Self::of(wavenumbers_cm1, temperatures_k.into_iter().map(Sent::black).collect(), &deviations, sigma)
+    }
+
+    /// Blackbodies with the deviations of their figures, read with deviations `sigma[blackbody][channel]` (counts) in channels at these
+    /// wavenumbers.
+    ///
+    /// # Errors
+    /// No two temperatures that differ, numbers that are not positive, lists of another length.
+    pub fn of(
+        wavenumbers_cm1: &[f64],
+        sent: Vec<Sent>,
+        deviations: &[Deviations],
+        sigma: &[Vec<f64>],
+    ) -> Result<Self> {
+        let count = sent.len();
         for (what, found, expected) in [
-            ("uncertainties of blackbodies", errors_k.len(), count),
+            ("uncertainties of blackbodies", deviations.len(), count),
             ("deviations of readings", sigma.len(), count),
         ] {
             if found != expected {
@@ -153,14 +169,14 @@ impl Blackbodies {
         wavenumbers_cm1
             .iter()
             .try_for_each(|nu| check::positive("wavenumber of a channel", *nu, "cm^-1").map(drop))?;
-        for (k, t) in temperatures_k.iter().enumerate() {
-            check::positive("temperature of a blackbody", *t, "K")?;
-            check::non_negative("uncertainty of a blackbody's temperature", errors_k[k], "K")?;
-            if sigma[k].len() != wavenumbers_cm1.len() {
+        let unknowns = Unknown::all(deviations)?;
+        for (one, sigma) in sent.iter().zip(sigma) {
+            one.check()?;
+            if sigma.len() != wavenumbers_cm1.len() {
                 let what = "deviations of a reading".into();
-                return Err(Error::Length { what, found: sigma[k].len(), expected: wavenumbers_cm1.len() });
+                return Err(Error::Length { what, found: sigma.len(), expected: wavenumbers_cm1.len() });
             }
-            sigma[k].iter().try_for_each(|sigma| {
+            sigma.iter().try_for_each(|sigma| {
                 check::positive("deviation of a reading", *sigma, "counts").map(drop)
             })?;
         }
@@ -171,27 +187,27 @@ impl Blackbodies {
                 "response and offset are two unknowns: give a second blackbody at another temperature",
             ));
         }
-        if temperatures_k.iter().all(|t| *t == temperatures_k[0]) {
-            let found = format!("blackbodies 1 and 2 are both at {} K", temperatures_k[0]);
+        if sent.iter().all(|one| one.temperature_k == sent[0].temperature_k) {
+            let found = format!("blackbodies 1 and 2 are both at {} K", sent[0].temperature_k);
             return Err(Error::malformed(found, "give two temperatures that differ"));
         }
         let channels = wavenumbers_cm1
             .iter()
             .enumerate()
-            .map(|(i, nu)| Channel::new(*nu, &temperatures_k, sigma.iter().map(|sigma| sigma[i]).collect()));
-        Ok(Self { channels: channels.collect(), errors_k, temperatures_k })
+            .map(|(i, nu)| Channel::new(*nu, &sent, &unknowns, sigma.iter().map(|sigma| sigma[i]).collect()));
+        Ok(Self { channels: channels.collect::<Result<_>>()?, unknowns, sent })
     }
 
-    /// Their temperatures, K.
+    /// What they are.
     #[must_use]
-    pub fn temperatures_k(&self) -> &[f64] {
-        &self.temperatures_k
+    pub fn sent(&self) -> &[Sent] {
+        &self.sent
     }
 
-    /// Deviations of their temperatures, K.
+    /// Their errors δ: of the temperatures first.
     #[must_use]
-    pub fn errors_k(&self) -> &[f64] {
-        &self.errors_k
+    pub fn unknowns(&self) -> &[Unknown] {
+        &self.unknowns
     }
 
     /// The channels.
@@ -204,13 +220,13 @@ impl Blackbodies {
     #[must_use]
     pub fn temperature_scores(&self, channel: usize, response: f64) -> Vec<Vec<f64>> {
         let channel = &self.channels[channel];
-        let count = self.temperatures_k.len();
-        let column = |k: usize| {
-            let mut column = vec![0.0; count];
-            column[k] = response * channel.slope[k] * self.errors_k[k] / channel.sigma[k];
+        let column = |(one, slope): (&Unknown, &f64)| {
+            let mut column = vec![0.0; self.sent.len()];
+            let k = one.blackbody;
+            column[k] = response * slope * one.deviation / channel.sigma[k];
             channel.left(&column)
         };
-        (0..count).map(column).collect()
+        self.unknowns.iter().zip(&channel.slope).map(column).collect()
     }
 
     /// The bound at the responses of the channels.
@@ -225,14 +241,14 @@ impl Blackbodies {
         if let Some(none) = response.iter().find(|r| !(r.is_finite() && **r != 0.0)) {
             return Err(Error::out_of_range("response of a channel", *none, "", "a number other than 0"));
         }
-        let count = self.temperatures_k.len();
-        let mut rows = DMatrix::zeros(count * self.channels.len() + count, count);
+        let (count, unknowns) = (self.sent.len(), self.unknowns.len());
+        let mut rows = DMatrix::zeros(count * self.channels.len() + unknowns, unknowns);
         for (c, response) in response.iter().enumerate() {
             for (k, column) in self.temperature_scores(c, *response).iter().enumerate() {
                 column.iter().enumerate().for_each(|(i, score)| rows[(c * count + i, k)] = *score);
             }
         }
-        (0..count).for_each(|k| rows[(count * self.channels.len() + k, k)] = 1.0);
+        (0..unknowns).for_each(|k| rows[(count * self.channels.len() + k, k)] = 1.0);
         Ok(Bound { factor: rows.qr().r(), response: response.to_vec() })
     }
 }
@@ -250,7 +266,7 @@ pub struct Bound {
 pub struct Parts {
     /// Of the noise of the blackbodies' readings.
     pub var_noise: f64,
-    /// Of their temperatures, common to all channels.
+    /// Of their temperatures (emissivities, surroundings), common to all channels.
     pub var_temperature: f64,
 }
 
@@ -263,26 +279,26 @@ impl Parts {
 }
 
 impl Bound {
-    /// Information on δ/u as its triangular factor.
-    #[must_use]
-    pub fn factor(&self) -> &DMatrix<f64> {
-        &self.factor
+    /// Variance of Σ g_k δ_k.
+    fn var_of(&self, of: &Blackbodies, sensitivity: &[f64]) -> f64 {
+        self.whitened(of, sensitivity).norm_squared()
     }
 
-    /// Variance of Σ g_k δ_k.
-    fn var_of(&self, of: &Blackbodies, sensitivity: impl Iterator<Item = f64>) -> f64 {
-        let scaled = sensitivity.zip(&of.errors_k).map(|(g, u)| g * u);
-        let mut row = DVector::from_iterator(of.errors_k.len(), scaled);
+    /// Σ g_k δ_k as a vector whose products with others are covariances.
+    #[must_use]
+    pub fn whitened(&self, of: &Blackbodies, sensitivity: &[f64]) -> DVector<f64> {
+        let scaled = sensitivity.iter().zip(&of.unknowns).map(|(g, one)| g * one.deviation);
+        let mut row = DVector::from_iterator(of.unknowns.len(), scaled);
         self.factor.tr_solve_upper_triangular_mut(&mut row);
-        row.norm_squared()
+        row
     }
 
     /// Of the response in a channel.
     #[must_use]
     pub fn response(&self, of: &Blackbodies, channel: usize) -> Parts {
         let (one, response) = (&of.channels[channel], self.response[channel]);
-        let sensitivity = one.gain.iter().zip(&one.slope).map(|(h, slope)| h * slope * response);
-        Parts { var_noise: one.var_response, var_temperature: self.var_of(of, sensitivity) }
+        let sensitivity = one.moved(one.gain.iter().map(|h| h * response));
+        Parts { var_noise: one.var_response, var_temperature: self.var_of(of, &sensitivity) }
     }
 
     /// Of the offset ξ in a channel, counts².
@@ -311,24 +327,25 @@ impl Bound {
     #[must_use]
     pub fn radiance(&self, of: &Blackbodies, channel: usize, radiance: f64) -> Parts {
         let one = &of.channels[channel];
-        let sensitivity = one.leverages(radiance).zip(&one.slope).map(|(l, slope)| l * slope);
+        let sensitivity = one.moved(one.leverages(radiance));
         Parts {
             var_noise: one.var_radiance(radiance, self.response[channel]),
-            var_temperature: self.var_of(of, sensitivity),
+            var_temperature: self.var_of(of, &sensitivity),
         }
     }
 
     /// Deviation of the temperature of blackbody k, K, after all channels.
     #[must_use]
     pub fn sigma_temperature_k(&self, of: &Blackbodies, blackbody: usize) -> f64 {
-        let one = (0..of.errors_k.len()).map(|k| f64::from(u8::from(k == blackbody)));
-        self.var_of(of, one).sqrt()
+        let one = (0..of.unknowns.len()).map(|k| f64::from(u8::from(k == blackbody)));
+        self.var_of(of, &one.collect::<Vec<_>>()).sqrt()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::planck;
     use nalgebra::Cholesky;
 
     const NU: [f64; 3] = [800.0, 950.0, 1200.0];
@@ -339,7 +356,10 @@ mod tests {
         let sigma: Vec<Vec<f64>> = (0..4)
             .map(|k| (0..3).map(|i| 0.01 * (1.0 + 0.3 * k as f64 + 0.2 * i as f64)).collect())
             .collect();
-        Blackbodies::new(&NU, temperatures, vec![0.05, 0.02, 0.08, 0.04], &sigma).unwrap()
+        let sent = temperatures.into_iter().zip([0.98, 1.0, 0.97, 0.95]);
+        let sent = sent.map(|(t, emissivity)| Sent { emissivity, surroundings_k: 295.0, ..Sent::black(t) });
+        let deviations = [[0.05, 0.005, 0.3], [0.02, 0.002, 0.3], [0.08, 0.01, 0.3], [0.04, 0.003, 0.3]];
+        Blackbodies::of(&NU, sent.collect(), &deviations, &sigma).unwrap()
     }
 
     /// All unknowns of all channels together, by the inverse of the whole information matrix, in scaled units.
@@ -347,21 +367,25 @@ mod tests {
     fn the_bound_is_that_of_all_channels_together() {
         let of = blackbodies();
         let bound = of.bound(&R).unwrap();
-        let (scale, t) = (1e18, of.temperatures_k().to_vec());
-        // Unknowns: R and ξ of three channels, then δ of four blackbodies.
-        let mut information = DMatrix::zeros(10, 10);
+        let (scale, sent) = (1e18, of.sent().to_vec());
+        // Unknowns: R and ξ of three channels, then δ of temperature, emissivity and surroundings of four blackbodies.
+        let mut information = DMatrix::zeros(18, 18);
         for (c, nu) in NU.iter().enumerate() {
             for k in 0..4 {
-                let mut score = DVector::zeros(10);
-                score[2 * c] = planck::photon_radiance(*nu, t[k]) / scale;
+                let mut score = DVector::zeros(18);
+                let Sent { temperature_k: t, emissivity: e, surroundings_k } = sent[k];
+                let b = |t: f64| planck::photon_radiance(*nu, t);
+                score[2 * c] = (e * b(t) + (1.0 - e) * b(surroundings_k)) / scale;
                 score[2 * c + 1] = 1.0;
-                score[6 + k] = R[c] * planck::photon_radiance_slope(*nu, t[k]);
+                score[6 + k] = R[c] * e * planck::photon_radiance_slope(*nu, t);
+                score[10 + k] = R[c] * (b(t) - b(surroundings_k));
+                score[14 + k] = R[c] * (1.0 - e) * planck::photon_radiance_slope(*nu, surroundings_k);
                 let sigma = of.channels()[c].sigma[k];
                 information += &score * score.transpose() / (sigma * sigma);
             }
         }
-        for k in 0..4 {
-            information[(6 + k, 6 + k)] += 1.0 / of.errors_k()[k].powi(2);
+        for (u, one) in of.unknowns().iter().enumerate() {
+            information[(6 + u, 6 + u)] += 1.0 / one.deviation.powi(2);
         }
         let covariance = Cholesky::new(information).unwrap().inverse();
         for c in 0..3 {

@@ -8,7 +8,8 @@
 //! paper takes the reading of a reference object off (S51), C(T_k, q) − C(T₀, q): all differences then share the noise of the
 //! reference. An unknown offset for each filter, to which every reading tells its part, the reference among them, is the same
 //! with these correlations right, and is what is done here: its span is removed from the scores. Blackbodies whose temperatures are
-//! uncertain by u_k have an unknown each, common to all filters, held by the row 1/u_k.
+//! uncertain by u_k have an unknown each, common to all filters, held by the row 1/u_k; emissivities and surroundings as well, B_j(T) being
+//! what a blackbody sends ([`super::sent`]).
 //!
 //! | symbol | unit |
 //! |---|---|
@@ -21,8 +22,8 @@
 //! Assumptions: σ of a reading is known and independent of r; the sum stands for the integral, as the paper has it.
 
 use super::determined::without;
+use super::sent::{Sent, Unknown};
 use crate::error::{Error, Result, check};
-use crate::planck;
 use nalgebra::DMatrix;
 
 /// Filters before a camera of unknown response.
@@ -39,8 +40,8 @@ pub struct FilterWheel {
 pub struct Reading {
     /// Which blackbody: readings of the same one have the same error of its temperature.
     pub blackbody: usize,
-    /// Its temperature, K.
-    pub temperature_k: f64,
+    /// What it sends.
+    pub sent: Sent,
     /// Which filter.
     pub filter: usize,
     /// Deviation of the reading, counts.
@@ -144,58 +145,66 @@ impl FilterWheel {
         None
     }
 
-    /// Scores of the response values, the offsets of all filters removed. `temperature_errors` are deviations of the blackbodies'
-    /// temperatures, K, with the response about which they are taken; none if they are exact.
+    /// Counts that each unknown of its blackbody moves a reading by, a camera of this response before it: none of other blackbodies.
+    pub fn moved<'a>(
+        &'a self,
+        reading: &'a Reading,
+        unknowns: &'a [Unknown],
+        response: &'a [f64],
+    ) -> impl Iterator<Item = f64> + 'a {
+        let mut slope = vec![0.0; self.centres_cm1.len()];
+        unknowns.iter().map(move |one| {
+            if one.blackbody != reading.blackbody {
+                return 0.0;
+            }
+            reading.sent.slope_into(one.of, &self.centres_cm1, &mut slope);
+            self.counts(reading.filter, response, &slope)
+        })
+    }
+
+    /// Refuses readings of filters and blackbodies that are not there.
     ///
     /// # Errors
-    /// A filter or blackbody that is not there, temperatures or deviations that are not positive.
-    pub fn scores(
-        &self,
-        readings: &[Reading],
-        temperature_errors: Option<(&[f64], &[f64])>,
-    ) -> Result<DMatrix<f64>> {
-        let values = self.centres_cm1.len();
-        let errors = temperature_errors.map_or(&[][..], |(errors, _)| errors);
+    /// Those, temperatures and deviations that are not positive.
+    pub fn check(&self, readings: &[Reading], unknowns: &[Unknown]) -> Result<()> {
         for reading in readings {
-            check::positive("temperature of a blackbody", reading.temperature_k, "K")?;
+            reading.sent.check()?;
             check::positive("deviation of a reading", reading.sigma, "counts")?;
-            if reading.filter >= self.filters() || (!errors.is_empty() && reading.blackbody >= errors.len()) {
+            let known = |one: &Unknown| one.blackbody == reading.blackbody;
+            if reading.filter >= self.filters() || !(unknowns.is_empty() || unknowns.iter().any(known)) {
                 let found = format!("filter {} of blackbody {}", reading.filter, reading.blackbody);
                 return Err(Error::malformed(found, "count both from 0"));
             }
         }
-        let rows = readings.len() + errors.len();
+        Ok(())
+    }
+
+    /// Scores of the response values, the offsets of all filters removed, and what is unknown of the blackbodies, with the response about
+    /// which that is taken; nothing if they are exact.
+    ///
+    /// # Errors
+    /// A filter or blackbody that is not there, temperatures or deviations that are not positive.
+    pub fn scores(&self, readings: &[Reading], errors: Option<(&[Unknown], &[f64])>) -> Result<DMatrix<f64>> {
+        let values = self.centres_cm1.len();
+        let (unknowns, response) = errors.unwrap_or_default();
+        self.check(readings, unknowns)?;
+        let rows = readings.len() + unknowns.len();
         let mut scores = DMatrix::zeros(rows, values);
-        let mut others = DMatrix::zeros(rows, self.filters() + errors.len());
-        let (mut base, mut apart, mut slope) = (vec![0.0; values], vec![0.0; values], vec![0.0; values]);
-        // Radiances from that of one temperature on: what they have in common is the offset's.
-        let origin_k = readings.first().map_or(1.0, |reading| reading.temperature_k);
-        planck::photon_radiance_into(&self.centres_cm1, origin_k, &mut base);
+        let mut others = DMatrix::zeros(rows, self.filters() + unknowns.len());
+        let mut apart = vec![0.0; values];
         for (i, reading) in readings.iter().enumerate() {
-            let warmer_k = reading.temperature_k - origin_k;
-            planck::photon_radiance_difference_into(&self.centres_cm1, origin_k, warmer_k, &base, &mut apart);
+            // Radiances from that of the first on: what they have in common is the offset's.
+            reading.sent.apart_into(&readings[0].sent, &self.centres_cm1, &mut apart);
             for j in 0..values {
                 scores[(i, j)] = self.weight(reading.filter, j) * apart[j] / reading.sigma;
             }
             others[(i, reading.filter)] = 1.0 / reading.sigma;
-            if let Some((_, response)) = temperature_errors {
-                let mut radiance = vec![0.0; values];
-                planck::photon_radiance_and_slope_into(
-                    &self.centres_cm1,
-                    reading.temperature_k,
-                    &mut radiance,
-                    &mut slope,
-                );
-                let per_kelvin = self.counts(reading.filter, response, &slope);
+            for (u, (moved, one)) in self.moved(reading, unknowns, response).zip(unknowns).enumerate() {
                 // In units of the deviation that is known beforehand.
-                let unit = errors[reading.blackbody];
-                others[(i, self.filters() + reading.blackbody)] = per_kelvin * unit / reading.sigma;
+                others[(i, self.filters() + u)] = moved * one.deviation / reading.sigma;
             }
         }
-        for k in 0..errors.len() {
-            check::non_negative("uncertainty of a blackbody's temperature", errors[k], "K")?;
-            others[(readings.len() + k, self.filters() + k)] = 1.0;
-        }
+        (0..unknowns.len()).for_each(|u| others[(readings.len() + u, self.filters() + u)] = 1.0);
         Ok(without(&scores, &others))
     }
 }
@@ -203,6 +212,7 @@ impl FilterWheel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::planck;
     use nalgebra::Cholesky;
 
     fn wheel() -> FilterWheel {
@@ -223,7 +233,7 @@ mod tests {
         for (k, t) in temperatures.iter().enumerate() {
             for q in 0..3 {
                 let sigma = 0.2 + 0.05 * (k + q) as f64;
-                readings.push(Reading { blackbody: k, temperature_k: *t, filter: q, sigma });
+                readings.push(Reading { blackbody: k, sent: Sent::black(*t), filter: q, sigma });
             }
         }
         let scores = wheel.scores(&readings, None).unwrap();
@@ -256,10 +266,11 @@ mod tests {
         let mut readings = Vec::new();
         for (k, t) in temperatures.iter().enumerate() {
             for q in 0..3 {
-                readings.push(Reading { blackbody: k, temperature_k: *t, filter: q, sigma: 0.3 });
+                readings.push(Reading { blackbody: k, sent: Sent::black(*t), filter: q, sigma: 0.3 });
             }
         }
-        let scores = wheel.scores(&readings, Some((&errors, &response))).unwrap();
+        let unknowns = Unknown::temperatures(&errors);
+        let scores = wheel.scores(&readings, Some((&unknowns, &response))).unwrap();
         let ours = scores.tr_mul(&scores);
         // Offsets stand in the covariance with a deviation beside which nothing counts.
         let slope: Vec<f64> = readings
@@ -268,7 +279,7 @@ mod tests {
                 let b: Vec<f64> = wheel
                     .centres_cm1()
                     .iter()
-                    .map(|nu| planck::photon_radiance_slope(*nu, r.temperature_k))
+                    .map(|nu| planck::photon_radiance_slope(*nu, r.sent.temperature_k))
                     .collect();
                 wheel.counts(r.filter, &response, &b)
             })
@@ -281,7 +292,7 @@ mod tests {
             own + offset + shared * slope[a] * slope[b]
         });
         let design = DMatrix::from_fn(9, 8, |i, j| {
-            let b = planck::photon_radiance(wheel.centres_cm1()[j], readings[i].temperature_k);
+            let b = planck::photon_radiance(wheel.centres_cm1()[j], readings[i].sent.temperature_k);
             wheel.weight(readings[i].filter, j) * b
         });
         let solved = Cholesky::new(covariance).unwrap().solve(&design);

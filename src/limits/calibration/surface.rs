@@ -70,29 +70,15 @@ pub fn errors(
     let both_noise =
         (off_own * own.var_response + emissivity * off * black.var_response) / (response * apart);
     // Temperatures: what each δ moves.
-    let e_own: Vec<f64> = own.gain.iter().zip(&own.slope).map(|(h, slope)| emissivity * h * slope).collect();
-    let x_own: Vec<f64> =
-        own.leverages(surroundings).zip(&own.slope).map(|(l, slope)| a * l * slope / apart).collect();
-    let e_black: Vec<f64> =
-        black.gain.iter().zip(&black.slope).map(|(h, slope)| -emissivity * h * slope).collect();
-    let x_black: Vec<f64> = black
-        .leverages(surroundings)
-        .zip(&black.slope)
-        .map(|(l, slope)| -response * l * slope / apart)
-        .collect();
+    let e_own = own.moved(own.gain.iter().map(|h| emissivity * h));
+    let x_own = own.moved(own.leverages(surroundings).map(|l| a * l / apart));
+    let e_black = black.moved(black.gain.iter().map(|h| -emissivity * h));
+    let x_black = black.moved(black.leverages(surroundings).map(|l| -response * l / apart));
     let product = |x: &[f64], y: &[f64]| -> f64 {
-        let u = readings.errors_k().iter();
+        let u = readings.unknowns().iter().map(|one| one.deviation);
         x.iter().zip(y).zip(u).map(|((x, y), u)| x * y * u * u).sum()
     };
-    let common = |x: &[f64], y: &[f64]| -> f64 {
-        let whiten = |g: &[f64]| {
-            let scaled = g.iter().zip(of.errors_k()).map(|(g, u)| g * u);
-            let mut row = nalgebra::DVector::from_iterator(g.len(), scaled);
-            bound.factor().tr_solve_upper_triangular_mut(&mut row);
-            row
-        };
-        whiten(x).dot(&whiten(y))
-    };
+    let common = |x: &[f64], y: &[f64]| bound.whitened(of, x).dot(&bound.whitened(of, y));
     Surface {
         emissivity: Parts {
             var_noise: e_noise,

@@ -181,6 +181,89 @@ fn stripes_are_taken_out_and_the_rest_stays() {
     assert!(clean.stdout.starts_with("No stripes: none of 24 rows is off"), "{}", clean.stdout);
 }
 
+/// A line alone is seen from the limit on that the answer states, and not below.
+#[test]
+fn what_would_have_been_seen_of_a_line_is_said() {
+    let folder = Folder::with("[cube]\ndata = \"cube.npy\"\n");
+    let samples = drawn(&wall().0, 0);
+    written(&folder, "cube.npy", BANDS, &samples);
+    let found = folder.json(&["calibrate", "stripes", "cube.npy"]);
+    for band in [2, 9] {
+        let [gain, off] = ["detectable_gain", "detectable"].map(|key| found[key][band].as_f64().unwrap());
+        let level = found["levels"][band].as_f64().unwrap();
+        assert!((gain * level / off - 1.0).abs() < 1e-12);
+        for (times, seen) in [(0.2, 0), (1.3, 1)] {
+            let mut striped = samples.clone();
+            let row = striped.iter_mut().skip(12 * COLUMNS * BANDS).take(COLUMNS * BANDS);
+            row.skip(band).step_by(BANDS).for_each(|sample| *sample *= 1.0 + times * gain);
+            written(&folder, "striped.npy", BANDS, &striped);
+            let found = folder.json(&["calibrate", "stripes", "striped.npy"]);
+            assert_eq!(found["striped"], seen, "{band} {times} {gain} {}", found["kept"]);
+        }
+    }
+}
+
+/// Every row has a gain of its own, the same in all bands: no row stands out, and it is not said that there are no stripes.
+#[test]
+fn stripes_of_every_row_are_not_called_none() {
+    let folder = Folder::with("[cube]\ndata = \"cube.npy\"\n");
+    let mut random = generator(6, 0);
+    let half = 0.02 * 3.0_f64.sqrt();
+    let gains: Vec<f64> = (0..ROWS).map(|_| 1.0 + random.random_range(-half..half)).collect();
+    let samples: Vec<f64> =
+        drawn(&wall().0, 0).iter().enumerate().map(|(i, x)| x * gains[i / BANDS / COLUMNS]).collect();
+    written(&folder, "cube.npy", BANDS, &samples);
+    let found = folder.json(&["calibrate", "stripes", "cube.npy", "--out", "out"]);
+    let warnings = found["warnings"].as_array().unwrap();
+    let own = warnings.iter().find(|one| one["code"] == "lines-differ").unwrap();
+    assert!(own["message"].as_str().unwrap().contains("stripes of every one of them explain that alike"));
+    // By 20 interior rows, the median of which knows a deviation of 2 % to a third.
+    let apart = found["apart"][7]["lines"].as_f64().unwrap();
+    assert!((apart / 0.02 - 1.0).abs() < 0.7, "{apart}");
+    let text = folder.run(&["calibrate", "stripes", "cube.npy"]).stdout;
+    assert!(!text.contains("No stripes"), "{text}");
+    let table = std::fs::read_to_string(folder.path().join("out/limits.csv")).unwrap();
+    assert!(table.starts_with("band,offset_seen,gain_seen,lines_differ,noise_explains\n0,"), "{table}");
+}
+
+/// A band without readings spoils no other one: it is named, and the others have the noise that they have without it.
+#[test]
+fn bands_without_readings_are_named_and_left_out() {
+    let folder = walls();
+    let without = |samples: &[f64], band: usize| -> Vec<f64> {
+        samples.iter().enumerate().filter(|(i, _)| i % BANDS != band).map(|(_, x)| *x).collect()
+    };
+    let samples = drawn(&wall().0, 0);
+    written(&folder, "without.npy", BANDS - 1, &without(&samples, 4));
+    let alone = folder.json(&["calibrate", "noise", "without.npy"]);
+    for (value, why) in [(f64::NAN, "missing"), (777.0, "stuck")] {
+        let mut spoilt = samples.clone();
+        spoilt.iter_mut().skip(4).step_by(BANDS).for_each(|sample| *sample = value);
+        written(&folder, "spoilt.npy", BANDS, &spoilt);
+        let found = folder.json(&["calibrate", "noise", "spoilt.npy", "--out", "noise"]);
+        assert_eq!(found["common"], alone["common"], "{why}");
+        let said = found["warnings"].to_string();
+        assert!(said.contains(&format!("bands 4 (from 0, in rising wavenumber) are {why}")), "{said}");
+        assert_eq!(found["bands"][5], alone["bands"][4]);
+        // A row for every band: a decomposition that leaves the band out takes it.
+        let table = std::fs::read_to_string(folder.path().join("noise/sigma.csv")).unwrap();
+        assert_eq!(table.lines().count(), BANDS + 1, "{table}");
+        assert!(!table.contains("NaN"), "{table}");
+        let stripes = folder.json(&["calibrate", "stripes", "spoilt.npy"]);
+        assert!(stripes["warnings"].to_string().contains("bands-found-bad"), "{}", stripes["warnings"]);
+        assert_eq!(stripes["levels"][4], serde_json::Value::Null);
+    }
+    // Named: not found, and the same.
+    folder.file("named.toml", "[cube]\ndata = \"spoilt.npy\"\nbad_bands = [4]\n[noise]\n");
+    let found = folder.json(&["calibrate", "noise", "named.toml", "--out", "named"]);
+    assert_eq!(found["common"], alone["common"]);
+    assert!(!found["warnings"].to_string().contains("bands-found-bad"));
+    assert_eq!(folder.json(&["calibrate", "noise", "named/scenario.toml"])["common"], alone["common"]);
+    folder.file("named.toml", "[cube]\ndata = \"spoilt.npy\"\nbad_bands = [15]\n[noise]\n");
+    let refusal = folder.refusal(&["calibrate", "noise", "named.toml"]);
+    assert!(refusal.contains("cube.bad_bands: band 15 of 15; count from 0 up to 14"), "{refusal}");
+}
+
 #[test]
 fn mistakes_are_one_message() {
     let folder = walls();

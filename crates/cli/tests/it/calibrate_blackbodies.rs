@@ -18,14 +18,17 @@ step = "20 cm^-1"
 [[blackbody]]
 temperature = "10 degC"
 uncertainty = "30 mK"
+emissivity = 1.0
 data = "cold.npy"
 [[blackbody]]
 temperature = "35 degC"
 uncertainty = "30 mK"
+emissivity = 1.0
 data = "mild.npy"
 [[blackbody]]
 temperature = "60 degC"
 uncertainty = "30 mK"
+emissivity = 1.0
 data = "warm.npy"
 [noise]
 sample = 2.0
@@ -197,7 +200,7 @@ fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
     let equal = SPECTROMETER.replace("35 degC", "10 degC").replace("60 degC", "10 degC");
     says(
         &equal,
-        &["a.toml:11: blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 283.15 K"],
+        &["a.toml:12: blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 283.15 K"],
     );
     let one = SPECTROMETER.split("[[blackbody]]\ntemperature = \"35").next().unwrap().to_owned();
     says(&(one + "[noise]\nsample = 2.0\n"), &["one temperature tells response and offset not apart"]);
@@ -291,6 +294,105 @@ fn a_response_that_is_hardly_known_is_said_to_be() {
     );
 }
 
+/// Blackbodies of an emissivity of 0.97 and 0.98 before a room of 22 °C, drawn by Planck's law.
+#[test]
+fn a_blackbody_that_is_not_quite_black_reflects_its_surroundings() {
+    let grey = |k: usize, e: f64, error: f64| {
+        let own = format!("emissivity = {e}\nemissivity_error = {error}\nsurroundings = \"22 degC\"\n");
+        let mut parts: Vec<String> = SPECTROMETER.split("emissivity = 1.0\n").map(str::to_owned).collect();
+        parts[k] += &own;
+        parts
+    };
+    let folder = spectrometer(SPECTROMETER);
+    let sent = |band: usize, t: f64, e: f64| {
+        let nu = wavenumber(band);
+        e * photon_radiance(nu, t) + (1.0 - e) * photon_radiance(nu, 295.15)
+    };
+    for (name, t, e) in [("cold.npy", 283.15, 0.97), ("warm.npy", 333.15, 0.98)] {
+        let samples: Vec<f64> = normal(64 * BANDS, 31)
+            .iter()
+            .enumerate()
+            .map(|(i, z)| {
+                let band = i % BANDS;
+                1e-15 * (1.0 + 0.3 * (band as f64 / 4.0).sin()) * sent(band, t, e) - 300.0 + 2.0 * z
+            })
+            .collect();
+        write(&folder, name, [8, 8, BANDS], &samples);
+    }
+    // The coldest and the warmest alone.
+    let (first, rest) = SPECTROMETER.split_once("[[blackbody]]\ntemperature = \"35").unwrap();
+    let two = format!("{first}[[blackbody]]{}", rest.split_once("[[blackbody]]").unwrap().1);
+    let [start, middle, end] =
+        <[&str; 3]>::try_from(two.split("emissivity = 1.0\n").collect::<Vec<_>>()).unwrap();
+    let own = |e: f64| format!("emissivity = {e}\nemissivity_error = 0.005\nsurroundings = \"22 degC\"\n");
+    folder.file("grey.toml", &format!("{start}{}{middle}{}{end}", own(0.97), own(0.98)));
+    folder.file("black.toml", &format!("{start}{middle}{end}"));
+    let found = folder.json(&["calibrate", "blackbody", "grey.toml", "--out", "grey"]);
+    let black = folder.json(&["calibrate", "blackbody", "black.toml", "--out", "black"]);
+    assert_eq!(codes(&found), Vec::<String>::new());
+    assert_eq!(codes(&black), ["blackbodies-taken-as-black"]);
+    let message = black["warnings"][0]["message"].as_str().unwrap();
+    assert!(
+        message.contains("one of 0.98 at 333.1 K") || message.contains("one of 0.98 at 333.2 K"),
+        "{message}"
+    );
+    // Where the scene is as warm as it says, and where blackbodies taken as black put it: 0.02 (B - B_s)/B' too warm near the warm one.
+    let means = ["grey", "black"].map(|out| {
+        let radiance = read(&folder.path().join(out).join("radiance.npy"));
+        let pixels = SIZE[0] * SIZE[1];
+        let off = |pixel: usize, band: usize| {
+            let joules = PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * wavenumber(band);
+            radiance[pixel * BANDS + band] / joules - photon_radiance(wavenumber(band), scene_k(pixel))
+        };
+        let slope = |band: usize| hadar::planck::photon_radiance_slope(wavenumber(band), 305.0);
+        let all = (0..pixels).flat_map(|pixel| (0..BANDS).map(move |band| (pixel, band)));
+        all.map(|(pixel, band)| off(pixel, band) / slope(band)).sum::<f64>() / (pixels * BANDS) as f64
+    });
+    // By hand, a line through both blackbodies that are taken for black, at the mean radiance of the scene.
+    let expected = (0..BANDS)
+        .map(|band| {
+            let nu = wavenumber(band);
+            let [cold, warm] = [283.15, 333.15].map(|t| photon_radiance(nu, t));
+            let [grey_cold, grey_warm] = [sent(band, 283.15, 0.97), sent(band, 333.15, 0.98)];
+            let scene = (0..600).map(|pixel| photon_radiance(nu, scene_k(pixel))).sum::<f64>() / 600.0;
+            let taken = cold + (scene - grey_cold) * (warm - cold) / (grey_warm - grey_cold);
+            (taken - scene) / hadar::planck::photon_radiance_slope(nu, 305.0)
+        })
+        .sum::<f64>()
+        / BANDS as f64;
+    assert!(
+        means[0].abs() < 0.02 && (means[1] - means[0] - expected).abs() < 0.01 * expected.abs(),
+        "{means:?} {expected}"
+    );
+    // At the radiance of a blackbody the error of all bands together is its own: of 30 mK and of 0.005.
+    for band in 0..BANDS {
+        let nu = wavenumber(band);
+        let joules = PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
+        let own = |t: f64, e: f64| {
+            let slope = hadar::planck::photon_radiance_slope(nu, t);
+            (0.03 * e * slope).hypot(0.005 * (photon_radiance(nu, t) - photon_radiance(nu, 295.15)))
+        };
+        let hand = joules * own(283.15, 0.97).max(own(333.15, 0.98));
+        let together = found["scene"]["sigma_together"][band].as_f64().unwrap();
+        assert!((together / hand - 1.0).abs() < 1e-6, "{band} {together} {hand}");
+    }
+    let again = folder.json(&["calibrate", "blackbody", "grey/scenario.toml"]);
+    assert_eq!(again["channels"], found["channels"]);
+    let says = |parts: Vec<String>, words: &str| {
+        folder.file("a.toml", &parts.concat());
+        let line = folder.refusal(&["calibrate", "blackbody", "a.toml"]);
+        assert!(line.contains(words), "{line}");
+    };
+    let without = |parts: Vec<String>| {
+        parts.iter().map(|part| part.replace("surroundings = \"22 degC\"\n", "")).collect()
+    };
+    says(
+        without(grey(1, 0.98, 0.0)),
+        "blackbody[1].surroundings: nothing says what a blackbody that is not quite black reflects",
+    );
+    says(grey(1, 1.2, 0.0), "above 0, at most 1");
+}
+
 /// Samples of a scene that are no numbers have no radiance; all others have what they had.
 #[test]
 fn a_scene_may_miss_samples() {
@@ -322,15 +424,19 @@ typical = "typical.csv"
 centre_half = 3
 [[blackbody]]
 temperature = "35 degC"
+emissivity = 1.0
 data = "bb0.npy"
 [[blackbody]]
 temperature = "60 degC"
+emissivity = 1.0
 data = "bb1.npy"
 [[blackbody]]
 temperature = "85 degC"
+emissivity = 1.0
 data = "bb2.npy"
 [[blackbody]]
 temperature = "110 degC"
+emissivity = 1.0
 data = "bb3.npy"
 [noise]
 sample = 1.0

@@ -120,6 +120,17 @@ impl Transfer {
         self.chi_square_reduced.is_nan() || self.chi_square_reduced <= self.chi_square_limit
     }
 
+    /// Of a cube of so many bands, of which those looked at were `of`: NaN for the others.
+    #[must_use]
+    pub fn among(mut self, of: &[usize], bands: usize) -> Self {
+        let nan = f64::NAN;
+        let [mean_of_all, mean, variance, sigma_variance, texture] = [nan; 5];
+        let none =
+            OfBand { line: None, mean_of_all, mean, variance, sigma_variance, texture, bins: Vec::new() };
+        self.bands = crate::calibrate::spread(self.bands, of, bands, none);
+        self
+    }
+
     /// The least variance that the common line has at a mean that was seen.
     #[must_use]
     pub fn least_variance(&self) -> f64 {

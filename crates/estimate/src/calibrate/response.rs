@@ -1,7 +1,7 @@
 //! The response of a camera from blackbodies read through filters, by least squares with a smooth curve expected.
 //!
 //! Unknown are the z of a response r = m + A z ([`CurvePrior`]: about the typical curve, smooth), an offset K_q of each filter and the
-//! errors δ_k of the blackbodies' temperatures in units of their deviation u_k. Rows, each in units of its deviation:
+//! errors δ_k of the blackbodies' temperatures (emissivities, surroundings) in units of their deviation u_k. Rows, each in units of its deviation:
 //!
 //! | rows | z | K | δ/u |
 //! |---|---|---|---|
@@ -23,6 +23,7 @@
 
 use hadar::calibration::determined::CurvePrior;
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::sent::{Of, Unknown};
 use hadar::error::{Error, Result, check};
 use hadar::planck;
 use nalgebra::{DMatrix, DVector};
@@ -40,8 +41,8 @@ pub struct Response {
     pub factor: DMatrix<f64>,
     /// K_q, counts, with ξ of the place.
     pub offsets: Vec<f64>,
-    /// Errors of the blackbodies' temperatures as found, K.
-    pub temperature_shifts_k: Vec<f64>,
+    /// Errors of the blackbodies as found, one of each unknown.
+    pub shifts: Vec<f64>,
     /// Σ of the squared residuals in units of their deviations, priors included.
     pub chi_square: f64,
     /// Its part of the readings alone.
@@ -79,7 +80,7 @@ pub struct FilterRadiance {
 }
 
 impl Response {
-    /// From readings and their counts. `errors_k` are deviations of the blackbodies' temperatures; none if they are exact.
+    /// From readings and their counts, and what is unknown of the blackbodies; nothing if they are exact.
     ///
     /// # Errors
     /// Lists of different lengths, readings that are no numbers, a filter or blackbody that is not there.
@@ -88,24 +89,16 @@ impl Response {
         prior: &CurvePrior,
         readings: &[Reading],
         counts: &[f64],
-        errors_k: &[f64],
+        unknowns: &[Unknown],
     ) -> Result<Self> {
         if readings.len() != counts.len() {
             let what = "counts of readings".into();
             return Err(Error::Length { what, found: counts.len(), expected: readings.len() });
         }
         counts.iter().try_for_each(|count| check::finite("count of a reading", *count, "").map(drop))?;
-        for reading in readings {
-            if reading.filter >= wheel.filters()
-                || (!errors_k.is_empty() && reading.blackbody >= errors_k.len())
-            {
-                let found = format!("filter {} of blackbody {}", reading.filter, reading.blackbody);
-                return Err(Error::malformed(found, "count both from 0"));
-            }
-            check::positive("deviation of a reading", reading.sigma, "counts")?;
-        }
-        let first = Self::pass(wheel, prior, readings, counts, (errors_k, prior.mean()))?;
-        Self::pass(wheel, prior, readings, counts, (errors_k, &first.values))
+        wheel.check(readings, unknowns)?;
+        let first = Self::pass(wheel, prior, readings, counts, (unknowns, prior.mean()))?;
+        Self::pass(wheel, prior, readings, counts, (unknowns, &first.values))
     }
 
     fn pass(
@@ -113,20 +106,19 @@ impl Response {
         prior: &CurvePrior,
         readings: &[Reading],
         counts: &[f64],
-        (errors_k, about): (&[f64], &[f64]),
+        (unknowns, about): (&[Unknown], &[f64]),
     ) -> Result<Self> {
-        let (n, filters, modes, temperatures) =
-            (readings.len(), wheel.filters(), prior.unknowns(), errors_k.len());
-        let columns = modes + filters + temperatures;
-        let mut rows = DMatrix::zeros(n + modes + temperatures, columns);
-        let mut right = DVector::zeros(n + modes + temperatures);
+        let (n, filters, modes, others) = (readings.len(), wheel.filters(), prior.unknowns(), unknowns.len());
+        let columns = modes + filters + others;
+        let mut rows = DMatrix::zeros(n + modes + others, columns);
+        let mut right = DVector::zeros(n + modes + others);
         let centres = wheel.centres_cm1();
-        let (mut radiance, mut slope) = (vec![0.0; centres.len()], vec![0.0; centres.len()]);
-        let (mut last_k, mut per_kelvin) = (f64::NAN, Vec::with_capacity(n));
+        let mut radiance = vec![0.0; centres.len()];
+        let (mut last, mut per_kelvin) = (None, Vec::with_capacity(n));
         for (i, (reading, count)) in readings.iter().zip(counts).enumerate() {
-            if reading.temperature_k != last_k {
-                last_k = check::positive("temperature of a blackbody", reading.temperature_k, "K")?;
-                planck::photon_radiance_and_slope_into(centres, last_k, &mut radiance, &mut slope);
+            if last != Some(reading.sent) {
+                last = Some(reading.sent);
+                reading.sent.radiance_into(centres, &mut radiance);
             }
             for (j, b) in radiance.iter().enumerate() {
                 let weight = wheel.weight(reading.filter, j) * b / reading.sigma;
@@ -135,15 +127,16 @@ impl Response {
                 }
             }
             rows[(i, modes + reading.filter)] = 1.0 / reading.sigma;
-            if temperatures > 0 {
-                rows[(i, modes + filters + reading.blackbody)] =
-                    wheel.counts(reading.filter, about, &slope) * errors_k[reading.blackbody] / reading.sigma;
+            for (u, (moved, one)) in wheel.moved(reading, unknowns, about).zip(unknowns).enumerate() {
+                rows[(i, modes + filters + u)] = moved * one.deviation / reading.sigma;
             }
-            per_kelvin.push(wheel.counts(reading.filter, about, &slope) / reading.sigma);
+            let warmer =
+                Unknown { blackbody: reading.blackbody, of: Of::Temperature, deviation: f64::INFINITY };
+            per_kelvin.extend(wheel.moved(reading, &[warmer], about).map(|moved| moved / reading.sigma));
             right[i] = (count - wheel.counts(reading.filter, prior.mean(), &radiance)) / reading.sigma;
         }
         (0..modes).for_each(|z| rows[(n + z, z)] = 1.0);
-        (0..temperatures).for_each(|k| rows[(n + modes + k, modes + filters + k)] = 1.0);
+        (0..others).for_each(|k| rows[(n + modes + k, modes + filters + k)] = 1.0);
         let kept = (rows.clone(), right.clone());
         let qr = rows.qr();
         qr.q_tr_mul(&mut right);
@@ -185,12 +178,12 @@ impl Response {
         if !factor.tr_solve_upper_triangular_mut(&mut covariance) {
             return Err(unread());
         }
-        let shifts = (0..temperatures).map(|k| solved[modes + filters + k] * errors_k[k]);
+        let shifts = (0..others).map(|u| solved[modes + filters + u] * unknowns[u].deviation);
         Ok(Self {
             values: prior.at(&solved.as_slice()[..modes]),
             factor: covariance.transpose(),
             offsets: (0..filters).map(|q| solved[modes + q]).collect(),
-            temperature_shifts_k: shifts.collect(),
+            shifts: shifts.collect(),
             chi_square: residual.norm_squared(),
             chi_square_readings: residual.rows(0, n).norm_squared(),
             freedom,
@@ -240,7 +233,7 @@ mod tests {
     #[test]
     fn deviations_of_the_estimate_are_those_of_the_bound() {
         let twin = FilterWheelTwin::prototype().unwrap();
-        let (readings, errors) = (twin.readings(0.05), vec![0.02; 31]);
+        let (readings, errors) = (twin.readings(0.05), Unknown::temperatures(&[0.02; 31]));
         let counts = twin.means(&readings, &twin.response, &vec![0.0; 31]);
         for errors in [&errors[..], &[]] {
             let found = Response::found(&twin.wheel, &twin.prior, &readings, &counts, errors).unwrap();

@@ -1,7 +1,7 @@
 //! Response and offset of a spectrometer from readings of blackbodies, and what is measured with them.
 //!
 //! Least squares of each channel with weights 1/σ² (paper S55, S56 for two temperatures); where there are more than two blackbodies, what
-//! the fits leave tells of the errors δ of their temperatures, common to all channels: least squares on the residuals with 1/u_k, and
+//! the fits leave tells of the errors δ of their temperatures, emissivities and surroundings, common to all channels: least squares on the residuals with 1/u_k, and
 //! the fits made anew, until nothing moves. Errors: [`Bound`] at the estimate.
 //!
 //! A radiance is S = B̄ + (C − C̄)/R; emissivity and surroundings of a surface at several temperatures are slope and meeting point of two
@@ -24,8 +24,8 @@ pub struct Calibration {
     pub response: Vec<f64>,
     /// C̄, counts: the reading of the radiance B̄.
     pub centre: Vec<f64>,
-    /// δ as found, K.
-    pub temperature_shifts_k: Vec<f64>,
+    /// δ of each unknown of the blackbodies as found, those of temperatures first.
+    pub shifts: Vec<f64>,
     /// Σ of squared residuals in units of their deviations, the prior of δ included; as many degrees of freedom as readings less two for
     /// each channel.
     pub chi_square: f64,
@@ -58,7 +58,7 @@ impl Calibration {
     /// Counts of another number or that are no numbers, a channel that responds to nothing.
     pub fn found(blackbodies: Blackbodies, counts: &[Vec<f64>]) -> Result<Self> {
         let (of, channels) = (&blackbodies, blackbodies.channels().len());
-        let count = of.temperatures_k().len();
+        let (count, unknowns) = (of.sent().len(), of.unknowns());
         if counts.len() != count || counts.iter().any(|counts| counts.len() != channels) {
             let what = "counts of blackbodies".into();
             let found = counts.iter().map(Vec::len).sum();
@@ -73,19 +73,21 @@ impl Calibration {
                 .iter()
                 .enumerate()
                 .map(|(c, channel)| {
-                    let corrected =
-                        (0..count).map(|k| counts[k][c] - response[c] * channel.slope[k] * shifts[k]);
-                    let [slope, centre] = line(channel, corrected);
+                    let mut corrected: Vec<f64> = counts.iter().map(|counts| counts[c]).collect();
+                    for (one, (slope, shift)) in unknowns.iter().zip(channel.slope.iter().zip(shifts)) {
+                        corrected[one.blackbody] -= response[c] * slope * shift;
+                    }
+                    let [slope, centre] = line(channel, corrected.into_iter());
                     (slope, centre)
                 })
                 .unzip()
         };
-        let mut shifts = vec![0.0; count];
+        let mut shifts = vec![0.0; unknowns.len()];
         let (mut response, mut centre) = fit(&vec![0.0; channels], &shifts);
-        let tells = count > 2 && of.errors_k().iter().any(|u| *u > 0.0);
+        let tells = count > 2 && unknowns.iter().any(|one| one.deviation > 0.0);
         for _ in 0..if tells { ROUNDS } else { 0 } {
-            let mut rows = DMatrix::zeros(count * channels + count, count);
-            let mut right = DVector::zeros(count * channels + count);
+            let mut rows = DMatrix::zeros(count * channels + unknowns.len(), unknowns.len());
+            let mut right = DVector::zeros(count * channels + unknowns.len());
             for (c, channel) in of.channels().iter().enumerate() {
                 for (k, column) in of.temperature_scores(c, response[c]).iter().enumerate() {
                     column.iter().enumerate().for_each(|(i, score)| rows[(c * count + i, k)] = *score);
@@ -95,27 +97,31 @@ impl Calibration {
                     (0..count).map(|k| (counts[k][c] - centre[c]) / channel.sigma[k]).collect();
                 channel.left(&whitened).iter().enumerate().for_each(|(i, x)| right[c * count + i] = *x);
             }
-            (0..count).for_each(|k| rows[(count * channels + k, k)] = 1.0);
+            (0..unknowns.len()).for_each(|k| rows[(count * channels + k, k)] = 1.0);
             let qr = rows.qr();
             qr.q_tr_mul(&mut right);
-            let mut solved = right.rows(0, count).clone_owned();
+            let mut solved = right.rows(0, unknowns.len()).clone_owned();
             qr.r().solve_upper_triangular_mut(&mut solved);
-            shifts = solved.iter().zip(of.errors_k()).map(|(x, u)| x * u).collect();
+            shifts = solved.iter().zip(unknowns).map(|(x, one)| x * one.deviation).collect();
             (response, centre) = fit(&response, &shifts);
         }
         let mut chi_square: f64 = shifts
             .iter()
-            .zip(of.errors_k())
-            .map(|(shift, u)| if *u > 0.0 { (shift / u).powi(2) } else { 0.0 })
+            .zip(unknowns)
+            .map(|(shift, one)| if one.deviation > 0.0 { (shift / one.deviation).powi(2) } else { 0.0 })
             .sum();
         for (c, channel) in of.channels().iter().enumerate() {
-            for k in 0..count {
-                let mean = centre[c] + response[c] * (channel.apart[k] + channel.slope[k] * shifts[k]);
+            let mut sent = channel.apart.clone();
+            for (one, (slope, shift)) in unknowns.iter().zip(channel.slope.iter().zip(&shifts)) {
+                sent[one.blackbody] += slope * shift;
+            }
+            for (k, sent) in sent.iter().enumerate() {
+                let mean = centre[c] + response[c] * sent;
                 chi_square += ((counts[k][c] - mean) / channel.sigma[k]).powi(2);
             }
         }
         let bound = of.bound(&response)?;
-        Ok(Self { response, centre, temperature_shifts_k: shifts, chi_square, bound, blackbodies })
+        Ok(Self { response, centre, shifts, chi_square, bound, blackbodies })
     }
 
     /// ξ of a channel, counts.
@@ -137,11 +143,9 @@ impl Calibration {
     /// Counts or channels of another number.
     pub fn surface(&self, readings: &Blackbodies, counts: &[Vec<f64>]) -> Result<Vec<SurfaceFound>> {
         let channels = self.response.len();
-        let expected = readings.temperatures_k().len() * channels;
+        let expected = readings.sent().len() * channels;
         let found = counts.iter().map(Vec::len).sum();
-        if readings.channels().len() != channels
-            || counts.len() != readings.temperatures_k().len()
-            || found != expected
+        if readings.channels().len() != channels || counts.len() != readings.sent().len() || found != expected
         {
             return Err(Error::Length { what: "counts of a surface".into(), found, expected });
         }

@@ -27,6 +27,7 @@
 //!
 //! Source: paper, supplement SV A, where streaks are detected and taken out by a linear transform; how is our own.
 
+mod apart;
 mod apply;
 mod common;
 mod filled;
@@ -37,6 +38,7 @@ mod scan;
 mod segments;
 mod steps;
 
+pub use apart::Apart;
 pub use found::{Axis, Destriped, Kept, Sought, Stripe, Why};
 
 use self::common::{Told, overlooked, told};
@@ -133,7 +135,12 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         }
         false => Vec::new(),
     };
-    let detectable = told.iter().map(|told| told.detectable).collect();
+    let apart = apart::apart(&looked, lines);
+    // What a line must be off by to be told from the others, and to be set apart in the first place.
+    let seen_from: Vec<f64> = parallel::map(bands, |band| looked[band].seen_from());
+    let detectable: Vec<f64> =
+        told.iter().zip(seen_from).map(|(told, from)| told.detectable.max(from)).collect();
+    let detectable_gain = detectable.iter().zip(&levels).map(|(off, level)| off / level.abs()).collect();
     let mut stripes: Vec<Stripe> = told
         .into_iter()
         .flat_map(|told| told.stripes)
@@ -147,7 +154,18 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         keep::beside_steps(&looked, lines, &left, &mut stripes, &mut kept);
     }
     kept.sort_by_key(|kept| (kept.line, kept.band));
-    Ok(Destriped { axis: sought.axis, lines, bands, stripes, left, kept, detectable, levels })
+    Ok(Destriped {
+        axis: sought.axis,
+        lines,
+        bands,
+        stripes,
+        left,
+        kept,
+        detectable,
+        detectable_gain,
+        apart,
+        levels,
+    })
 }
 
 /// Whether a line is off in most bands, and alike in neighbouring ones; of a striped one, whatever it is off by counts.

@@ -15,6 +15,7 @@
 use hadar::calibration::blackbody::Blackbodies;
 use hadar::calibration::determined::{CurvePrior, CurveSmoothness};
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::sent::{Of, Sent};
 use hadar::error::Result;
 use hadar::planck;
 use rand::rngs::ChaCha8Rng;
@@ -134,8 +135,8 @@ impl FilterWheelTwin {
     #[must_use]
     pub fn readings(&self, sigma: f64) -> Vec<Reading> {
         let of = |(k, t): (usize, &f64)| {
-            let (blackbody, temperature_k) = (k, *t);
-            (0..self.wheel.filters()).map(move |filter| Reading { blackbody, temperature_k, filter, sigma })
+            let (blackbody, sent) = (k, Sent::black(*t));
+            (0..self.wheel.filters()).map(move |filter| Reading { blackbody, sent, filter, sigma })
         };
         self.temperatures_k.iter().enumerate().flat_map(of).collect()
     }
@@ -146,8 +147,8 @@ impl FilterWheelTwin {
         let centres = self.wheel.centres_cm1();
         let mut radiance = vec![0.0; centres.len()];
         let mut mean = |reading: &Reading| {
-            let t = reading.temperature_k + shifts_k[reading.blackbody];
-            planck::photon_radiance_into(centres, t, &mut radiance);
+            let sent = reading.sent.shifted(Of::Temperature, shifts_k[reading.blackbody]);
+            sent.radiance_into(centres, &mut radiance);
             self.wheel.counts(reading.filter, response, &radiance) + self.offsets[reading.filter]
         };
         readings.iter().map(&mut mean).collect()

@@ -7,6 +7,7 @@
 //! The response of the filter-wheel camera is drawn from what is known of it beforehand, since that is part of its intervals: for one given
 //! response they hold more or less often, by the bias of its smoothness. A stream of the generator for each experiment.
 
+use hadar::calibration::sent::Unknown;
 use hadar::error::Result;
 use hadar::parallel;
 use hadar::planck;
@@ -161,13 +162,13 @@ pub(crate) fn filter_wheel(
     seed: u64,
 ) -> Result<FilterWheelCoverage> {
     let readings = twin.readings(sigma);
-    let errors = vec![temperature_error_k; twin.temperatures_k.len()];
+    let errors = Unknown::temperatures(&vec![temperature_error_k; twin.temperatures_k.len()]);
     let centres = twin.wheel.centres_cm1();
     let one = |stream: usize| -> Result<[f64; 2]> {
         let mut rng = generator(seed, stream as u64);
         let z: Vec<f64> = (0..twin.prior.unknowns()).map(|_| normal(&mut rng)).collect();
         let truth = twin.prior.at(&z);
-        let shifts: Vec<f64> = errors.iter().map(|u| u * normal(&mut rng)).collect();
+        let shifts: Vec<f64> = errors.iter().map(|one| one.deviation * normal(&mut rng)).collect();
         let mut counts = twin.means(&readings, &truth, &shifts);
         counts.iter_mut().for_each(|count| *count += sigma * normal(&mut rng));
         let errors = if temperature_error_k > 0.0 { &errors[..] } else { &[] };

@@ -14,6 +14,7 @@ use super::coverage::filter_wheel;
 use super::order::{Effort, Figures, Made, Order};
 use designs::Row;
 use hadar::calibration::determined::Determined;
+use hadar::calibration::sent::Unknown;
 use hadar::error::Result;
 use hadar::statistics::Statistics;
 use hadar_estimate::calibrate::response::Response;
@@ -32,9 +33,9 @@ pub(super) fn make(order: Order) -> Result<Made> {
     let twin = FilterWheelTwin::prototype()?;
     let sigma = 1.0 / PIXELS.sqrt();
     let readings = twin.readings(sigma);
-    let errors = vec![TEMPERATURE_ERROR_K; twin.temperatures_k.len()];
+    let errors = Unknown::temperatures(&vec![TEMPERATURE_ERROR_K; twin.temperatures_k.len()]);
     let truth = twin.response.as_slice();
-    let known = |sigma: f64, errors: Option<(&[f64], &[f64])>| {
+    let known = |sigma: f64, errors: Option<(&[Unknown], &[f64])>| {
         Determined::of(&twin.wheel.scores(&twin.readings(sigma), errors)?, &twin.prior)
     };
     let (exact, uncertain) = (known(sigma, None)?, known(sigma, Some((&errors, truth)))?);
@@ -73,7 +74,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
 }
 
 /// One calibration with drawn temperatures and readings.
-fn drawn(twin: &FilterWheelTwin, errors: &[f64], sigma: f64, seed: u64) -> Result<Response> {
+fn drawn(twin: &FilterWheelTwin, errors: &[Unknown], sigma: f64, seed: u64) -> Result<Response> {
     let readings = twin.readings(sigma);
     let mut rng = generator(seed, 1 << 30);
     // Normal numbers: readings of no photons with such noise.
@@ -84,7 +85,8 @@ fn drawn(twin: &FilterWheelTwin, errors: &[f64], sigma: f64, seed: u64) -> Resul
         draws.draw_into(&mut rng, &mut out);
         Ok(out)
     };
-    let shifts: Vec<f64> = normal(errors.len())?.iter().zip(errors).map(|(z, u)| z * u).collect();
+    let shifts: Vec<f64> =
+        normal(errors.len())?.iter().zip(errors).map(|(z, one)| z * one.deviation).collect();
     let mut counts = twin.means(&readings, &twin.response, &shifts);
     counts.iter_mut().zip(normal(readings.len())?).for_each(|(count, z)| *count += sigma * z);
     Response::found(&twin.wheel, &twin.prior, &readings, &counts, errors)

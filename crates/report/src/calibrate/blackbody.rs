@@ -63,9 +63,22 @@ fn response(result: &BlackbodyFound) -> Table {
 }
 
 fn temperatures(result: &BlackbodyFound) -> Table {
-    let mut table = Table::new(["temperature_k", "uncertainty_k", "found_off_by_k", "sigma_k"]);
+    let mut table = Table::new([
+        "temperature_k",
+        "uncertainty_k",
+        "found_off_by_k",
+        "sigma_k",
+        "emissivity",
+        "emissivity_error",
+        "surroundings_k",
+        "surroundings_uncertainty_k",
+    ]);
     for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
-        table.push([spec.temperature_k, spec.error_k(), *shift, *sigma].map(number).to_vec());
+        let (sent, [own, emissivity, surroundings]) = (spec.sent(), spec.deviations());
+        let grey = [sent.emissivity, emissivity, sent.surroundings_k, surroundings];
+        table.push(
+            [[sent.temperature_k, own, *shift, *sigma], grey].concat().into_iter().map(number).collect(),
+        );
     }
     table
 }

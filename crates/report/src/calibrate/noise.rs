@@ -70,9 +70,13 @@ fn variances(result: &NoiseFound) -> Table {
 /// electronic noise in it; the common line's where it holds, else the band's own, wider by its standard error.
 fn sigmas(result: &NoiseFound) -> Table {
     let mut table = Table::new(["band", "sigma", "electronic_sigma"]);
-    for (i, band) in result.transfer.bands.iter().enumerate() {
-        let common = result.usable.then_some(&result.transfer.common);
-        let variance = band.variance_at_mean(common).max(0.0);
+    let common = result.usable.then_some(&result.transfer.common);
+    let variances: Vec<f64> =
+        result.transfer.bands.iter().map(|band| band.variance_at_mean(common)).collect();
+    // A band that was left out has a row too, of the largest: the file has one for every band of the cube.
+    let most = variances.iter().copied().fold(0.0, f64::max);
+    for (i, variance) in variances.iter().enumerate() {
+        let variance = if variance.is_nan() { most } else { variance.max(0.0) };
         // Of what is not told apart, all is taken for electronic noise: too much rather than too little.
         let electronic = common.map_or(variance, |line| line.electronic).max(0.0);
         table.push(vec![i.to_string(), number(variance.sqrt()), number(electronic.sqrt())]);
@@ -83,7 +87,8 @@ fn sigmas(result: &NoiseFound) -> Table {
 /// Variance over mean, some bands.
 fn transfer(result: &NoiseFound) -> Plot {
     let bands = &result.transfer.bands;
-    let shown = some(bands.len(), MOST);
+    let looked_at: Vec<usize> = (0..bands.len()).filter(|band| !bands[*band].bins.is_empty()).collect();
+    let shown: Vec<usize> = some(looked_at.len(), MOST).iter().map(|place| looked_at[*place]).collect();
     let mut table = Table::new(["band", "mean", "variance", "variance_sigma", "common_line"]);
     let common = &result.transfer.common;
     let mut figure = LineFigure::new(

@@ -44,6 +44,7 @@ pub fn bundle(result: &StripesFound, format: CubeFormat) -> Result<Bundle> {
         npy_map(&size, &found.map(0.0, |stripe| stripe.sigma_common(stripe.level)))?,
     );
     bundle.add_table("left.csv", left(result))?;
+    bundle.add_table("limits.csv", limits(result))?;
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&[before_and_after(result)])?;
     Ok(bundle)
@@ -62,6 +63,21 @@ fn left(result: &StripesFound) -> Table {
             Why::Missing => "no samples",
         };
         table.push(vec![kept.line.to_string(), kept.band.to_string(), why.to_owned(), number(kept.off)]);
+    }
+    table
+}
+
+/// What would have been seen of a line alone, and how all lines differ, of every band.
+fn limits(result: &StripesFound) -> Table {
+    let (found, mut table) = (
+        &result.destriped,
+        Table::new(["band", "offset_seen", "gain_seen", "lines_differ", "noise_explains"]),
+    );
+    for (band, (offset, gain)) in found.detectable.iter().zip(&found.detectable_gain).enumerate() {
+        let apart = found.apart.get(band).copied().flatten();
+        let apart = apart.map_or([f64::NAN; 2], |one| [one.lines, one.noise]);
+        let numbers = [*offset, *gain, apart[0], apart[1]].map(number);
+        table.push(std::iter::once(band.to_string()).chain(numbers).collect());
     }
     table
 }

@@ -3,6 +3,7 @@
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, variable};
 use super::super::section::{Entry, Section};
+use hadar::calibration::sent::{Deviations, Sent};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use hadar::words::quantity;
@@ -23,6 +24,14 @@ pub struct BlackbodySpec {
     pub temperature_k: f64,
     /// Deviation of that temperature, K; none where nothing is said of it, and then it is taken as exact.
     pub uncertainty_k: Option<f64>,
+    /// Its emissivity; none where nothing is said of it, and then it is taken as black.
+    pub emissivity: Option<f64>,
+    /// Deviation of that emissivity.
+    pub emissivity_error: f64,
+    /// Temperature of what it reflects, K; of one that is black none is needed.
+    pub surroundings_k: Option<f64>,
+    /// Deviation of that temperature, K.
+    pub surroundings_error_k: f64,
     /// Its cube.
     pub data: CubeFile,
 }
@@ -60,9 +69,27 @@ impl BlackbodySpec {
         let section = entry.section()?;
         let temperature = section.require("temperature")?;
         let uncertainty = section.quantity("uncertainty")?;
+        let emissivity = section.number("emissivity")?;
+        let emissivity_error = section.number("emissivity_error")?.unwrap_or(0.0);
+        let surroundings_k = section.quantity("surroundings")?;
+        let surroundings_error_k = section.quantity("surroundings_uncertainty")?.unwrap_or(0.0);
+        let reflects = emissivity_error > 0.0 || surroundings_k.is_some() || surroundings_error_k > 0.0;
+        if emissivity.is_none() && reflects {
+            let found = "an emissivity that is not stated has no error, and reflects nothing";
+            return Err(section.fail("emissivity", Error::malformed(found, "write emissivity = 0.98")));
+        }
+        if surroundings_k.is_none() && (reflects || emissivity.is_some_and(|e| e < 1.0)) {
+            let found = "nothing says what a blackbody that is not quite black reflects";
+            let instead = "write surroundings = \"22 degC\", the temperature of what stands around it";
+            return Err(section.fail("surroundings", Error::malformed(found, instead)));
+        }
         Ok(Self {
             temperature_k: temperature.quantity()?,
             uncertainty_k: uncertainty,
+            emissivity,
+            emissivity_error,
+            surroundings_k,
+            surroundings_error_k,
             data: CubeFile::read(&section)?,
         })
     }
@@ -70,7 +97,33 @@ impl BlackbodySpec {
     pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
         let entries = self.data.written(paths);
         let entries = entries.put_quantity("temperature", Dimension::Temperature, Some(self.temperature_k));
-        entries.put_quantity("uncertainty", Dimension::TemperatureDifference, self.uncertainty_k)
+        let above_0 = |value: f64| Some(value).filter(|value| *value > 0.0);
+        entries
+            .put_quantity("uncertainty", Dimension::TemperatureDifference, self.uncertainty_k)
+            .put_if("emissivity", self.emissivity)
+            .put_if("emissivity_error", above_0(self.emissivity_error))
+            .put_quantity("surroundings", Dimension::Temperature, self.surroundings_k)
+            .put_quantity(
+                "surroundings_uncertainty",
+                Dimension::TemperatureDifference,
+                above_0(self.surroundings_error_k),
+            )
+    }
+
+    /// What it sends.
+    #[must_use]
+    pub fn sent(&self) -> Sent {
+        Sent {
+            temperature_k: self.temperature_k,
+            emissivity: self.emissivity.unwrap_or(1.0),
+            surroundings_k: self.surroundings_k.unwrap_or(self.temperature_k),
+        }
+    }
+
+    /// Deviations of its temperature, emissivity and surroundings.
+    #[must_use]
+    pub fn deviations(&self) -> Deviations {
+        [self.error_k(), self.emissivity_error, self.surroundings_error_k]
     }
 
     /// Deviation of its temperature as it is reckoned with, K.

@@ -1,5 +1,6 @@
 //! Cubes as they were measured (`[cube]` of a calibration): one, or several frames of the same scene.
 
+use super::super::decompose::read::bad_bands;
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, is_cube, variable};
 use super::super::section::Entry;
@@ -18,6 +19,8 @@ pub struct Frames {
     pub variable: Option<String>,
     /// Which of their dimensions is which.
     pub axes: Option<Axes>,
+    /// Bands that are left out, counted from 0 in the order of the file.
+    pub bad_bands: Vec<usize>,
 }
 
 impl Frames {
@@ -31,7 +34,7 @@ impl Frames {
     #[must_use]
     pub fn bare(paths: &[PathBuf]) -> Self {
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
-        Self { data: paths.iter().map(absolute).collect(), variable: None, axes: None }
+        Self { data: paths.iter().map(absolute).collect(), variable: None, axes: None, bad_bands: Vec::new() }
     }
 
     /// Where frames that no file names are named from: the folder of the first of them.
@@ -55,6 +58,7 @@ impl Frames {
             },
             variable: variable(&section)?,
             axes: axes(&section)?,
+            bad_bands: bad_bands(&section)?,
         })
     }
 
@@ -63,9 +67,11 @@ impl Frames {
             [one] => Value::from(paths.file(one)),
             several => Value::from(several.iter().map(|path| paths.file(path)).collect::<Vec<_>>()),
         };
+        let written = |bands: &[usize]| bands.iter().map(|band| *band as i64).collect::<Vec<_>>();
         Entries::default()
             .put("data", data)
             .put_if("variable", self.variable.clone())
             .put_if("axes", self.axes.map(|axes| axes.to_string()))
+            .put_if("bad_bands", (!self.bad_bands.is_empty()).then(|| written(&self.bad_bands)))
     }
 }

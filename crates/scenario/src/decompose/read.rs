@@ -123,15 +123,19 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
         axes: axes(&section)?,
         unit,
         noise,
-        bad_bands: section
-            .read("bad_bands", |entry| {
-                let items = entry.items("bad_bands = [0, 53]")?;
-                items.iter().map(|item| place(item, "53")).collect()
-            })?
-            .unwrap_or_default(),
+        bad_bands: bad_bands(&section)?,
         bad_pixels: section.read("bad_pixels", file)?,
         bad: section.choice("bad", &BAD)?.unwrap_or_default(),
     })
+}
+
+/// Bands that are left out (`bad_bands`).
+pub(crate) fn bad_bands(section: &Section<'_>) -> Result<Vec<usize>> {
+    let bands = section.read("bad_bands", |entry| {
+        let items = entry.items("bad_bands = [0, 53]")?;
+        items.iter().map(|item| place(item, "53")).collect()
+    })?;
+    Ok(bands.unwrap_or_default())
 }
 
 /// A place in a list that is counted from 0.

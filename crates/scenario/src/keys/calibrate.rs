@@ -1,8 +1,10 @@
 //! Tables of a calibration.
 
-use super::cube::{AXES, VARIABLE};
+use super::cube::{AXES, BAD_BANDS, VARIABLE};
 use super::key::Silent::{Is, Means, Refused};
-use super::key::{COUNT, KELVIN, KELVIN_FROM_ZERO, Key, POSITIVE, TIME, Table, Value, WAVENUMBER};
+use super::key::{
+    A_SHARE, COUNT, KELVIN, KELVIN_FROM_ZERO, Key, POSITIVE, POSITIVE_SHARE, TIME, Table, Value, WAVENUMBER,
+};
 use hadar::allowed::Allowed;
 
 const FINITE: Allowed = Allowed { holds: f64::is_finite, expected: "a finite number" };
@@ -113,6 +115,38 @@ const BLACKBODY_KEYS: &[Key] = &[
         "Standard deviation of that temperature.",
         "error of what was calibrated",
     ),
+    Key::row(
+        "emissivity",
+        POSITIVE_SHARE,
+        Means("it is black, with a warning"),
+        "0.98",
+        "Emissivity of the blackbody, the same in all bands.",
+        "L = e B(T) + (1 - e) B(T_s)",
+    ),
+    Key::row(
+        "emissivity_error",
+        A_SHARE,
+        Is("0.0"),
+        "0.005",
+        "Standard deviation of that emissivity.",
+        "error of what was calibrated, in all bands together",
+    ),
+    Key::row(
+        "surroundings",
+        KELVIN,
+        Means("it is black; must be there beside an emissivity below 1"),
+        "\"22 degC\"",
+        "Temperature of what the blackbody reflects.",
+        "L = e B(T) + (1 - e) B(T_s)",
+    ),
+    Key::row(
+        "surroundings_uncertainty",
+        KELVIN_FROM_ZERO,
+        Is("\"0 K\""),
+        "\"1 K\"",
+        "Standard deviation of that temperature.",
+        "error of what was calibrated, in all bands together",
+    ),
 ];
 /// `[[blackbody]]`.
 pub(crate) static BLACKBODY: Table =
@@ -186,6 +220,7 @@ const FRAMES_KEYS: &[Key] = &[
     ),
     VARIABLE,
     AXES,
+    BAD_BANDS,
 ];
 /// `[cube]` as it was measured.
 pub(crate) static FRAMES: Table = Table::of("Cubes as they were measured.", &[FRAMES_KEYS]);

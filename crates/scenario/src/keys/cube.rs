@@ -16,6 +16,14 @@ pub(super) const VARIABLE: Key = Key::row(
     "Name of the array in a file of several.",
     "which samples are read",
 );
+pub(super) const BAD_BANDS: Key = Key::row(
+    "bad_bands",
+    Value::List(&WHOLE),
+    Is("[]"),
+    "[0, 53]",
+    "Bands that are left out, counted from 0.",
+    "which samples are used",
+);
 pub(super) const AXES: Key = Key::row(
     "axes",
     Value::Text,
@@ -60,14 +68,7 @@ const CUBE_KEYS: &[Key] = &[
         "Deviation of the electronic noise of a sample, of radiances that of all noise, in the unit of the cube; or a file with a row for each band.",
         "weights of the samples",
     ),
-    Key::row(
-        "bad_bands",
-        Value::List(&WHOLE),
-        Is("[]"),
-        "[0, 53]",
-        "Bands that are left out, counted from 0.",
-        "which samples are used",
-    ),
+    BAD_BANDS,
     Key::row(
         "bad_pixels",
         Value::File,

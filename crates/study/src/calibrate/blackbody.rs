@@ -1,11 +1,12 @@
 //! Response and offset of a spectrometer by blackbodies, and the radiance of a scene.
 
 use super::scene_radiance::{DEAD, SceneFound, Spectrometer, beyond};
-use super::stated::uncertainty_not_stated;
+use super::stated::{taken_as_black, uncertainty_not_stated};
 use super::whole::{at, means};
 use crate::cube_bands::InOrder;
 use crate::{Warning, bands};
 use hadar::calibration::blackbody::{Blackbodies, Parts};
+use hadar::calibration::sent::Deviations;
 use hadar::cube::Cube;
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
@@ -161,12 +162,13 @@ impl BlackbodyStudy {
         }
         let specs = &scenario.blackbodies;
         let temperatures_k: Vec<f64> = specs.iter().map(|spec| spec.temperature_k).collect();
-        let errors_k = specs.iter().map(BlackbodySpec::error_k).collect();
-        let of = Blackbodies::new(nu, temperatures_k.clone(), errors_k, &sigma)
+        let deviations: Vec<Deviations> = specs.iter().map(BlackbodySpec::deviations).collect();
+        let of = Blackbodies::of(nu, specs.iter().map(BlackbodySpec::sent).collect(), &deviations, &sigma)
             .map_err(at(source, "blackbody"))?;
         let found = Calibration::found(of, &counts).map_err(at(source, "blackbody"))?;
         self.responds(&found).map_err(at(source, "blackbody"))?;
         warnings.extend(uncertainty_not_stated(specs));
+        warnings.extend(taken_as_black(specs, nu[nu.len() / 2]));
         let shares = (0..nu.len())
             .map(|c| found.bound.response(&found.blackbodies, c).sigma() / found.response[c].abs());
         let (barely, worst) = shares.fold((0, 0.0_f64), |(count, worst), share| {
@@ -210,7 +212,7 @@ impl BlackbodyStudy {
                 warnings.push(Warning::BeyondBlackbodies { share: beyond, low_k: low, high_k: high });
             }
         }
-        let shifts = found.temperature_shifts_k.iter().enumerate();
+        let shifts = found.shifts.iter().take(specs.len()).enumerate();
         let mut stats = Work::default();
         stats.compute(Thing::Samples, samples as u64);
         Ok(BlackbodyFound {

@@ -2,7 +2,7 @@
 
 use super::opened::Measured;
 use crate::Warning;
-use hadar::cube::{Cube, Rows, Shape};
+use hadar::cube::{Cube, Ordered, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
@@ -68,8 +68,11 @@ impl NoiseStudy {
     pub fn noise(&self) -> Result<NoiseFound> {
         let spec = self.scenario.noise;
         let asked = Asked { dark_level: spec.dark_level, gain_spread: spec.gain_spread };
-        let singles: Vec<&dyn Rows<f32>> = self.frames.cubes.iter().filter_map(of_32).collect();
-        let doubles: Vec<&dyn Rows<f64>> = self.frames.cubes.iter().filter_map(of_64).collect();
+        let (cubes, good) = (&self.frames.cubes, &self.frames.good);
+        let singles = cubes.iter().filter_map(of_32).map(|cube| Ordered::new(cube, good.clone()));
+        let singles = singles.collect::<Result<Vec<_>>>()?;
+        let doubles = cubes.iter().filter_map(of_64).map(|cube| Ordered::new(cube, good.clone()));
+        let doubles = doubles.collect::<Result<Vec<_>>>()?;
         let place = |error: Error| match (&error, &self.scenario.source.path, self.scenario.cube.data.first())
         {
             (Error::At { place, .. }, ..) if place.path.is_some() => error,
@@ -81,8 +84,8 @@ impl NoiseStudy {
             _ => error,
         };
         let transfer = match (singles.is_empty(), doubles.is_empty()) {
-            (false, true) => photon_transfer(&singles, &asked),
-            (true, false) => photon_transfer(&doubles, &asked),
+            (false, true) => photon_transfer(&rows(&singles), &asked),
+            (true, false) => photon_transfer(&rows(&doubles), &asked),
             _ => Err(Error::malformed(
                 "frames of 32 bits and of 64 bits",
                 "write all frames as one type, np.float32 or np.float64",
@@ -134,7 +137,7 @@ impl NoiseStudy {
             noise_electrons: [common.noise_electrons(), least, most],
             gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
             usable: told && alike && possible,
-            transfer,
+            transfer: transfer.among(good, shape.bands()),
             stats: {
                 let mut work = Work::default();
                 work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
@@ -143,6 +146,10 @@ impl NoiseStudy {
             warnings,
         })
     }
+}
+
+fn rows<S: Sample, R: Rows<S>>(frames: &[R]) -> Vec<&dyn Rows<S>> {
+    frames.iter().map(|frame| frame as &dyn Rows<S>).collect()
 }
 
 fn of_32(cube: &Cube) -> Option<&dyn Rows<f32>> {

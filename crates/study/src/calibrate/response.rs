@@ -1,11 +1,12 @@
 //! The response of a camera behind a filter wheel by blackbodies, the wheel's relative transmittance, and radiances behind the filters.
 
-use super::stated::uncertainty_not_stated;
+use super::stated::{taken_as_black, uncertainty_not_stated};
 use super::whole::{at, open, samples, shown};
 use crate::heat_cube::columns;
 use crate::{Warning, WorstBlackbody};
 use hadar::calibration::determined::{CurvePrior, Determined};
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::sent::{Deviations, Unknown};
 use hadar::cube::{Cube, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
@@ -202,8 +203,9 @@ impl ResponseStudy {
         let wheel = self.wheel(scale)?;
         let prior = CurvePrior::smooth(&self.centres_cm1, &self.typical, scenario.response.known)
             .map_err(at(source, "response"))?;
-        let errors: Vec<f64> = specs.iter().map(BlackbodySpec::error_k).collect();
-        let errors = if errors.iter().any(|u| *u > 0.0) { &errors[..] } else { &[] };
+        let deviations: Vec<Deviations> = specs.iter().map(BlackbodySpec::deviations).collect();
+        let errors = Unknown::all(&deviations).map_err(at(source, "blackbody"))?;
+        let errors = if errors.iter().any(|one| one.deviation > 0.0) { &errors[..] } else { &[] };
         let found =
             Response::found(&wheel, &prior, &readings, &counts, errors).map_err(at(source, "blackbody"))?;
         let about = (!errors.is_empty()).then_some((errors, &found.values[..]));
@@ -214,6 +216,7 @@ impl ResponseStudy {
         let misfit = chi_square_reduced.filter(|chi| *chi > most_by_chance(found.freedom.max(TESTED)));
         warnings.extend(misfit.map(|chi_square| self.does_not_fit(&found, chi_square)));
         warnings.extend(uncertainty_not_stated(specs));
+        warnings.extend(taken_as_black(specs, self.centres_cm1[self.centres_cm1.len() / 2]));
         let values = self.centres_cm1.len();
         let row = |j: usize| ResponseRow {
             wavenumber_cm1: self.centres_cm1[j],
@@ -286,7 +289,7 @@ impl ResponseStudy {
             for filter in 0..filters {
                 let sum: f64 = middle.iter().map(|pixel| cube[pixel * filters + filter]).sum();
                 counts.push(sum / middle.len() as f64);
-                readings.push(Reading { blackbody, temperature_k: spec.temperature_k, filter, sigma });
+                readings.push(Reading { blackbody, sent: spec.sent(), filter, sigma });
             }
         }
         (readings, counts)
@@ -310,7 +313,7 @@ impl ResponseStudy {
         let models: Vec<f64> = readings
             .iter()
             .map(|reading| {
-                planck::photon_radiance_into(&self.centres_cm1, reading.temperature_k, &mut radiance);
+                reading.sent.radiance_into(&self.centres_cm1, &mut radiance);
                 wheel.counts(reading.filter, &self.typical, &radiance)
             })
             .collect();

@@ -45,7 +45,7 @@ pub struct SceneFound {
     pub sigma_noise: Vec<f64>,
     /// Deviation common to all pixels that it is no larger than in 95 of 100 of them, of every band.
     pub sigma_common_most: Vec<f64>,
-    /// What of it all bands have together, by the blackbodies' temperatures: the largest between their radiances, of every band.
+    /// What of it all bands have together, by the blackbodies' temperatures, emissivities and surroundings: the largest between their radiances, of every band.
     pub sigma_together: Vec<f64>,
 }
 
@@ -64,7 +64,8 @@ impl Spectrometer<'_> {
     fn together(&self) -> Vec<f64> {
         let of = &self.found.blackbodies;
         let one = |(c, nu): (usize, &f64)| {
-            let radiances = of.temperatures_k().iter().map(|t| planck::photon_radiance(*nu, *t));
+            let channel = &of.channels()[c];
+            let radiances = channel.apart.iter().map(|apart| channel.mean_radiance + apart);
             let var = radiances.map(|s| self.found.bound.radiance(of, c, s).var_temperature);
             joules(*nu) * var.fold(0.0, f64::max).sqrt()
         };
@@ -133,10 +134,12 @@ impl Spectrometer<'_> {
             }
         }
         let (nu, of) = (self.wavenumbers_cm1, &found.blackbodies);
-        let temperatures_k =
-            of.temperatures_k().iter().zip(&found.temperature_shifts_k).map(|(t, shift)| t + shift).collect();
+        let mut sent = of.sent().to_vec();
+        for (one, shift) in of.unknowns().iter().zip(&found.shifts) {
+            sent[one.blackbody] = sent[one.blackbody].shifted(one.of, *shift);
+        }
         let sigma = vec![vec![noise; nu.len()]; self.cubes.len()];
-        let own = Blackbodies::new(nu, temperatures_k, vec![0.0; self.cubes.len()], &sigma)
+        let own = Blackbodies::of(nu, sent, &vec![[0.0; 3]; self.cubes.len()], &sigma)
             .map_err(at(source, "blackbody"))?;
         // Of the temperatures alone: a parabola, by three of its values.
         let lines: Vec<[f64; 4]> = (0..nu.len())

@@ -3,7 +3,7 @@
 use super::opened::Measured;
 use super::whole::check_memory;
 use crate::Warning;
-use hadar::cube::{Cube, Rows, Sample, Shape};
+use hadar::cube::{Cube, Ordered, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar_estimate::calibrate::{Destriped, Why, find_stripes};
@@ -20,6 +20,8 @@ pub struct StripesStudy {
     scenario: StripesScenario,
     cube: Cube,
     read: Found,
+    /// The bands that are looked at.
+    good: Vec<usize>,
     warnings: Vec<Warning>,
 }
 
@@ -75,7 +77,16 @@ impl StripesStudy {
         let several = || Error::malformed("several cubes", "give one");
         let [cube] = <[Cube; 1]>::try_from(opened.cubes).map_err(|_| several())?;
         let [read] = <[Found; 1]>::try_from(opened.read).map_err(|_| several())?;
-        Ok(Self { cube, read, warnings, scenario: scenario.clone() })
+        Ok(Self { cube, read, good: opened.good, warnings, scenario: scenario.clone() })
+    }
+
+    fn found<S: Sample>(&self, cube: &dyn Rows<S>) -> Result<Destriped> {
+        let bands = cube.shape().bands();
+        if self.good.len() == bands {
+            return find_stripes(cube, &self.scenario.stripes);
+        }
+        let good: &dyn Rows<S> = &Ordered::new(cube, self.good.clone())?;
+        Ok(find_stripes(good, &self.scenario.stripes)?.among(&self.good, bands))
     }
 
     /// The cube without its stripes.
@@ -95,8 +106,8 @@ impl StripesStudy {
         check_memory(self.cube.shape(), bytes, "the cube without its stripes").map_err(place)?;
         let sought = &self.scenario.stripes;
         let destriped = match &self.cube {
-            Cube::F32(cube) => find_stripes(cube.as_ref(), sought),
-            Cube::F64(cube) => find_stripes(cube.as_ref(), sought),
+            Cube::F32(cube) => self.found(cube.as_ref()),
+            Cube::F64(cube) => self.found(cube.as_ref()),
         }
         .map_err(place)?;
         let corrected = match &self.cube {
@@ -126,6 +137,7 @@ impl StripesStudy {
             warnings
                 .push(Warning::LinesLikeObjects { axis: sought.axis.name(), lines: destriped.left.clone() });
         }
+        warnings.extend(differing(&destriped));
         let axis = sought.axis.name();
         let kept = |why: Why| -> Vec<[usize; 2]> {
             let own = destriped.kept.iter().filter(|kept| kept.why == why);
@@ -180,6 +192,20 @@ impl StripesStudy {
             corrected,
         })
     }
+}
+
+/// Bands whose lines differ from those beside them beyond noise.
+fn differing(destriped: &Destriped) -> Option<Warning> {
+    let apart = destriped.apart.iter().enumerate().filter_map(|(band, one)| Some((band, (*one)?)));
+    let differ: Vec<_> = apart.filter(|(_, one)| one.lines > 0.0).collect();
+    let (_, worst) = differ.iter().max_by(|a, b| a.1.lines.total_cmp(&b.1.lines))?;
+    Some(Warning::LinesDiffer {
+        axis: destriped.axis.name(),
+        bands: differ.iter().map(|(band, _)| *band).collect(),
+        of: destriped.bands,
+        apart: worst.lines,
+        noise: worst.noise,
+    })
 }
 
 fn band_of<S: Sample>(cube: &dyn Rows<S>, band: usize) -> Result<Vec<f64>> {

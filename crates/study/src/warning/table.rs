@@ -105,12 +105,22 @@ warnings! {
     /// A library without errors.
     LibraryTakenAsExact = "library-taken-as-exact";
 
+    /// Bands whose lines differ from those beside them beyond noise, the rms of it and what noise explains, over their level, in the worst band.
+    LinesDiffer { axis: &'static str, bands: Vec<usize>, of: usize, apart: f64, noise: f64 } = "lines-differ";
     /// Lines that are off in all bands alike.
     LinesLikeObjects { axis: &'static str, lines: Vec<usize> } = "lines-like-objects";
     /// Scatter of the pixels of a blackbody over the stated noise.
     BlackbodyNotEven { blackbody: usize, over: f64 } = "blackbody-not-even";
     /// Blackbodies whose temperatures are taken as exact since nothing is said of them.
     UncertaintyNotStated { blackbodies: Vec<usize>, of: usize } = "uncertainty-not-stated";
+    /// Blackbodies that are taken as black since nothing is said of it, and by how much the warmest (K) would send less of this emissivity.
+    BlackbodiesTakenAsBlack {
+        blackbodies: Vec<usize>,
+        of: usize,
+        emissivity: f64,
+        warm_k: f64,
+        colder_k: f64
+    } = "blackbodies-taken-as-black";
     /// Channels whose response is known to no better than a fifth, and the largest error over the response.
     ResponseBarelyKnown { channels: usize, of: usize, worst: f64 } = "response-barely-known";
     /// χ²/ν of what one vignetting for all filters leaves of the readings.

@@ -1,5 +1,7 @@
 //! What is sought, and what was found.
 
+use super::apart::Apart;
+
 hadar::named! {
     /// Along what stripes lie.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -94,6 +96,23 @@ pub struct Kept {
     pub off: f64,
 }
 
+impl Destriped {
+    /// Of a cube of so many bands, of which those looked at were `of`: NaN for the others.
+    #[must_use]
+    pub fn among(mut self, of: &[usize], bands: usize) -> Self {
+        let spread = |values: Vec<f64>| crate::calibrate::spread(values, of, bands, f64::NAN);
+        let place = |band: &mut usize| *band = of.get(*band).copied().unwrap_or(*band);
+        self.stripes.iter_mut().for_each(|stripe| place(&mut stripe.band));
+        self.kept.iter_mut().for_each(|kept| place(&mut kept.band));
+        self.detectable = spread(self.detectable);
+        self.detectable_gain = spread(self.detectable_gain);
+        self.levels = spread(self.levels);
+        self.apart = crate::calibrate::spread(self.apart, of, bands, None);
+        self.bands = bands;
+        self
+    }
+}
+
 /// The stripes of a cube.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Destriped {
@@ -111,6 +130,10 @@ pub struct Destriped {
     pub kept: Vec<Kept>,
     /// Least that a line of each band, alone among clean ones, must be off to be seen, in the unit of the cube.
     pub detectable: Vec<f64>,
+    /// The same as a gain at the level of each band.
+    pub detectable_gain: Vec<f64>,
+    /// How the lines of each band differ from those beside them; none of too few lines.
+    pub apart: Vec<Option<Apart>>,
     /// Median of the lines of each band.
     pub levels: Vec<f64>,
 }

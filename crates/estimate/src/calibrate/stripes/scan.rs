@@ -20,6 +20,9 @@ const NEARER: f64 = 0.6;
 /// Scatter of lines, over that of a segment, from which on they vary; share of it below which a line between them does not.
 const CONTRAST: f64 = 6.0;
 const FLAT: f64 = 0.2;
+/// Clean lines of a band on which it is tried what would be seen, and how often what they are off by is doubled.
+const TRIED: usize = 24;
+const DOUBLED: u32 = 24;
 /// Rounding of samples of 32 bits, relative.
 const ROUNDING: f64 = 1e-7;
 
@@ -52,6 +55,16 @@ impl Band {
     /// Whether a line is off from its two neighbours the same way, a ridge or none.
     pub(super) fn is_ridge(&self, line: usize) -> bool {
         self.lines.is_off(line, false)
+    }
+
+    /// How far a clean line must be off to be set apart, tried on some of them: nine of ten are by so much; NaN of none.
+    pub(super) fn seen_from(&self) -> f64 {
+        let clean: Vec<usize> = (0..self.lines.clean.len()).filter(|line| self.lines.clean[*line]).collect();
+        let every = clean.len().div_ceil(TRIED).max(1);
+        let some = clean.iter().step_by(every);
+        let mut from: Vec<f64> = some.filter_map(|line| self.lines.seen_from(*line)).collect();
+        from.sort_by(f64::total_cmp);
+        from.get(from.len() * 9 / 10).copied().unwrap_or(f64::NAN)
     }
 
     /// Sets more lines apart, and looks at all of them beside those that are left.
@@ -238,8 +251,26 @@ impl Lines {
         told
     }
 
+    /// How far a line must be off on either side to be set apart, to a tenth.
+    fn seen_from(&self, line: usize) -> Option<f64> {
+        let is_seen = |off: f64| self.would_be_off(line, true, off) && self.would_be_off(line, true, -off);
+        let mut doubled = (0..DOUBLED).map(|times| self.least * f64::from(1_u32 << times));
+        let mut high = doubled.find(|off| is_seen(*off))?;
+        let mut low = 0.5 * high;
+        for _ in 0..3 {
+            let middle = 0.5 * (low + high);
+            *(if is_seen(middle) { &mut high } else { &mut low }) = middle;
+        }
+        Some(high)
+    }
+
     /// Whether a line is off the same way from all that both sides say, all along: no edge, no slope and, with straight lines, no ridge is.
     fn is_off(&self, line: usize, straight: bool) -> bool {
+        self.would_be_off(line, straight, 0.0)
+    }
+
+    /// The same of a line that were off by `more`.
+    fn would_be_off(&self, line: usize, straight: bool, more: f64) -> bool {
         let Some([_, _, between]) = self.sides(line) else { return false };
         let Some(own) = self.means.get(line) else { return false };
         let told = self.told(line, straight);
@@ -249,7 +280,7 @@ impl Lines {
             .map(|(i, own)| {
                 let mut least = f64::INFINITY;
                 for told in &told {
-                    let apart = own - told.get(i).copied().unwrap_or(f64::NAN);
+                    let apart = own + more - told.get(i).copied().unwrap_or(f64::NAN);
                     if apart.is_nan() {
                         return f64::NAN;
                     }

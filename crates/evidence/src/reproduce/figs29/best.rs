@@ -18,6 +18,7 @@
 
 use hadar::calibration::determined::CurvePrior;
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::sent::Sent;
 use hadar::error::{Error, Result, check};
 use hadar::order;
 use hadar::planck;
@@ -54,7 +55,7 @@ impl Design {
         let place = |t: f64| temperatures.iter().position(|one| *one == t).unwrap_or(0);
         let reading = |(temperature_k, filter, share): &(f64, usize, f64)| Reading {
             blackbody: place(*temperature_k),
-            temperature_k: *temperature_k,
+            sent: Sent::black(*temperature_k),
             filter: *filter,
             sigma: sigma / share.sqrt(),
         };

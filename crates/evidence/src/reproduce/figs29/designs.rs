@@ -3,6 +3,7 @@
 use super::best::Design;
 use hadar::calibration::determined::Determined;
 use hadar::calibration::filter_wheel::FilterWheel;
+use hadar::calibration::sent::Unknown;
 use hadar::error::Result;
 use hadar_estimate::calibrate::twin::{FILTERS, FilterWheelTwin};
 use hadar_report::table::{Table, number};
@@ -102,7 +103,7 @@ fn row(
 ) -> Result<Row> {
     let readings = design.readings(sigma);
     let blackbodies = readings.iter().map(|reading| reading.blackbody + 1).max().unwrap_or(0);
-    let errors = vec![error_k; blackbodies];
+    let errors = Unknown::temperatures(&vec![error_k; blackbodies]);
     let about = (error_k > 0.0).then_some((errors.as_slice(), twin.response.as_slice()));
     let found = Determined::of(&wheel.scores(&readings, about)?, &twin.prior)?;
     let mut sigmas = found.sigma_smooth;

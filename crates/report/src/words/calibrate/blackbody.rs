@@ -3,6 +3,7 @@
 use crate::cube_format::CubeFormat;
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use hadar::words::{quantity, significant};
+use hadar_scenario::calibrate::blackbodies::BlackbodySpec;
 use hadar_study::calibrate::BlackbodyFound;
 use std::fmt::Write as _;
 
@@ -38,7 +39,7 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
         significant(worst.at_k, 4)
     );
     let _ = writeln!(out, "  by noise of the blackbodies' readings      {}", milli(noise));
-    let _ = writeln!(out, "  by their temperatures, in all channels     {}\n", milli(temperature));
+    let _ = writeln!(out, "  by what they are, in all channels           {}\n", milli(temperature));
     let _ = writeln!(out, "Blackbodies                stated to        found off by");
     for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
         let found = match result.chi_square_reduced {
@@ -79,16 +80,38 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
     }
     let _ = writeln!(
         out,
-        "\n{ASSUMPTIONS}\n  C = R B(T) + xi in every channel, R and xi {}; blackbodies of emissivity 1 that fill the view; noise of {} (unit of the cubes) \
+        "\n{ASSUMPTIONS}\n  C = R B(T) + xi in every channel, R and xi {}; {} that fill the view; noise of {} (unit of the cubes) \
          in every sample.\n",
         match &result.scene {
             Some(scene) if scene.sigma_pixel.is_some() =>
                 "of each pixel its own (errors of its own calibration in sigma_pixel.npy)",
             _ => "the same in all pixels",
         },
+        sent_by(&result.scenario.blackbodies),
         significant(result.scenario.noise, 3)
     );
     out + &warnings(&result.warnings)
+}
+
+/// What blackbodies are taken to be.
+pub(super) fn sent_by(specs: &[BlackbodySpec]) -> String {
+    let grey = specs.iter().enumerate().filter_map(|(k, spec)| {
+        let (sent, [_, error, surroundings]) = (spec.sent(), spec.deviations());
+        (spec.surroundings_k.is_some()).then(|| {
+            format!(
+                "blackbody[{k}] of emissivity {} +- {} in surroundings of {} +- {surroundings} K",
+                sent.emissivity,
+                error,
+                quantity(sent.surroundings_k, "K"),
+            )
+        })
+    });
+    let grey: Vec<String> = grey.collect();
+    match grey.len() {
+        0 => "blackbodies of emissivity 1".to_owned(),
+        n if n < specs.len() => format!("{}, the others of emissivity 1,", grey.join(", ")),
+        _ => grey.join(", "),
+    }
 }
 
 /// Below the picture of the response.

@@ -84,8 +84,9 @@ pub fn text(result: &ResponseFound) -> String {
     }
     let _ = writeln!(
         out,
-        "\n{ASSUMPTIONS}\n  an offset for each filter that stays the same; blackbodies of emissivity 1 that fill the view; noise of {} (unit of the \
+        "\n{ASSUMPTIONS}\n  an offset for each filter that stays the same; {} that fill the view (a reference is black); noise of {} (unit of the \
          cubes) in every sample\n  known beforehand: scale to {} %, shape to {} % of the peak, correlated over {}\n",
+        super::blackbody::sent_by(&result.scenario.blackbodies),
         significant(result.scenario.noise, 3),
         significant(100.0 * known.scale, 2),
         significant(100.0 * known.shape, 2),

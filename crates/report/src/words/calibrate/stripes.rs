@@ -34,11 +34,24 @@ pub fn text(result: &StripesFound) -> String {
     };
     let also: Vec<String> = [alike, single].into_iter().filter(|text| !text.is_empty()).collect();
     let also = also.join("; ");
+    let differing = found.apart.iter().flatten().map(|one| one.lines).fold(0.0, f64::max);
+    let [[least, most], [least_gain, most_gain]] = [&found.detectable, &found.detectable_gain]
+        .map(|of| [of.iter().copied().fold(f64::INFINITY, f64::min), of.iter().copied().fold(0.0, f64::max)]);
     let mut out = match result.striped {
         0 if !also.is_empty() => format!("Nothing was corrected: {also}.\n\n"),
-        0 => {
-            format!("No stripes: none of {} {name} is off in any of {} bands.\n\n", found.lines, found.bands)
-        }
+        0 if differing > 0.0 => format!(
+            "None of the {name} alone stands out, but all {} of them differ from those beside them by up to {} % (rms), which the scene's own \
+             structure or stripes of every one of them explain alike.\n\n",
+            found.lines,
+            significant(100.0 * differing, 2)
+        ),
+        0 => format!(
+            "No stripes: none of {} {name} is off in any of {} bands by what would be seen, {} % of the level ({} % in the worst band).\n\n",
+            found.lines,
+            found.bands,
+            significant(100.0 * least_gain, 2),
+            significant(100.0 * most_gain, 2)
+        ),
         striped => format!(
             "{} of {} {name} (of {} bands) are striped, off by {} % of their level (rms); corrected, an error of {} % is left, common to \
              the pixels of a line{}.\n\n",
@@ -51,14 +64,14 @@ pub fn text(result: &StripesFound) -> String {
         ),
     };
     out += &read_as(&result.read);
-    let least = found.detectable.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = found.detectable.iter().copied().fold(0.0, f64::max);
     let _ = writeln!(
         out,
-        "  lines, each alone among clean ones, that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they are\n  \
+        "  lines, each alone among clean ones, that are off by less than {} (unit of the cube, or a gain off by {} %; {} and {} % in the worst band) are not seen and stay as they are\n  \
          nor are lines side by side, or at the ends of the image, that are off in all bands: nothing tells them from the scene",
         significant(least, 2),
-        significant(most, 2)
+        significant(100.0 * least_gain, 2),
+        significant(most, 2),
+        significant(100.0 * most_gain, 2)
     );
     let _ = writeln!(
         out,

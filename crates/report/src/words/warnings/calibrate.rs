@@ -19,6 +19,18 @@ words! {
             )
         },
     }
+    LinesDiffer {
+        meaning: "Most lines of a cube differ from those beside them by more than noise: the structure of the \
+            scene, or stripes of every line.",
+        remedy: "Correct the cube by a uniform source, or give one of a scene that is even from line to line.",
+        LinesDiffer { axis, bands, of, apart, noise } => format!(
+            "{axis} differ from those beside them by up to {} % of their level (rms; noise explains {} %) in {} of {of} bands: the scene's own \
+             structure or stripes of every one of them explain that alike, and nothing was corrected for it",
+            significant(100.0 * apart, 2),
+            significant(100.0 * noise, 2),
+            bands.len()
+        ),
+    }
     BlackbodyNotEven {
         meaning: "Pixels of a blackbody scatter more than the noise that is stated: they differ in their \
             response, or the noise is larger.",
@@ -37,6 +49,21 @@ words! {
             let which: Vec<String> = blackbodies.iter().map(|k| format!("blackbody[{k}]")).collect();
             let which = if blackbodies.len() == *of { "all blackbodies".to_owned() } else { which.join(", ") };
             format!("the temperature of {which} is taken as exact since no uncertainty is stated: errors are larger than said")
+        },
+    }
+    BlackbodiesTakenAsBlack {
+        meaning: "Blackbodies are taken as black, since no emissivity of them is stated: what they reflect \
+            is taken for their own light.",
+        remedy: "State blackbody.emissivity, its error and the surroundings (emissivity = 1 where it is black).",
+        BlackbodiesTakenAsBlack { blackbodies, of, emissivity, warm_k, colder_k } => {
+            let which: Vec<String> = blackbodies.iter().map(|k| format!("blackbody[{k}]")).collect();
+            let which = if blackbodies.len() == *of { "all blackbodies are".to_owned() } else { format!("{} is", which.join(", ")) };
+            format!(
+                "{which} taken as black since no emissivity is stated: one of {emissivity} at {} K that reflects the coldest of them sends as \
+                 if it were {} colder",
+                significant(*warm_k, 4),
+                quantity(*colder_k, "K")
+            )
         },
     }
     ResponseBarelyKnown {
