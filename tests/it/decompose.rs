@@ -390,7 +390,11 @@ fn what_the_photons_do_not_tell_is_declared() {
     assert_eq!((maps.material[0], maps.candidates[0], maps.posterior[0]), (0, 2, 0.5));
     assert_eq!(maps.flags[0] & flag::UNDECIDED, flag::UNDECIDED);
     assert_eq!((maps.material[1], maps.flags[1]), (2, flag::LIGHTING_UNKNOWN));
-    assert!((maps.temperature_k[1] - 300.0).abs() < 1e-3 && maps.lighting[1].is_nan());
+    assert!((maps.temperature_k[1] - 300.0).abs() < 1e-3 && maps.lighting_sigma[1] == f32::INFINITY);
+    let mut told = maps.clone();
+    told.leave_out_unknown_lighting(None);
+    assert!(told.lighting[1].is_nan() && told.lighting_sigma[1].is_nan() && told.texture_sigma[1].is_nan());
+    assert_eq!((told.lighting[0], &told.flags), (maps.lighting[0], &maps.flags));
 }
 
 /// Counts drawn about pixels of random states: 95 % intervals and candidates hold what they say, from some hundred counts a band to a
