@@ -78,6 +78,8 @@ impl Reference {
             lighting_total: (self.name != "two").then_some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         decompose(&setting, options, &cube, &|_| ()).unwrap()
     }
@@ -203,6 +205,8 @@ impl Scene {
             lighting_total: None,
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         change(&mut setting);
         decompose(&setting, &Options::default(), &cube, &|_| ())
@@ -310,6 +314,8 @@ fn a_mirror_of_what_is_around_does_not_win_over_a_library_better_than_is_said() 
             lighting_total: None,
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         let by = |skipping| {
             let options = Options { library_error: Some(error), skipping, ..Options::default() };
