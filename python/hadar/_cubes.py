@@ -47,7 +47,7 @@ class Maps(_Arrays):
     temperature_k: np.ndarray
     #: Deviation of it, K, were the material certain and right.
     temperature_sigma_k: np.ndarray
-    #: Thermal lighting factors, with a last axis of the surroundings; NaN where the target scatters nothing.
+    #: Thermal lighting factors, with a last axis of the surroundings; NaN where they are unknown (:data:`FLAGS`).
     lighting: np.ndarray
     #: Probability of a larger residual, were the material right.
     p_value: np.ndarray

@@ -94,8 +94,12 @@ pub(crate) fn decompose<'py>(
         lighting_total,
         gain,
         bad_bands: bad_bands.as_deref().unwrap_or_default(),
+        path: None,
+        light_besides: &[],
     };
-    let maps = with_threads(py, threads, || decompose_by(method, &setting, &options, view.cube(), &|_| ()))?;
+    let found = || decompose_by(method, &setting, &options, view.cube(), &|_| ());
+    let mut maps = with_threads(py, threads, found)?;
+    maps.leave_out_unknown_lighting(lighting_total);
     given_back(py, lent.pixels(), surroundings.len(), maps)
 }
 

@@ -78,6 +78,8 @@ impl Reference {
             lighting_total: (self.name != "two").then_some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         decompose(&setting, options, &cube, &|_| ()).unwrap()
     }
@@ -203,6 +205,8 @@ impl Scene {
             lighting_total: None,
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         change(&mut setting);
         decompose(&setting, &Options::default(), &cube, &|_| ())
@@ -310,6 +314,8 @@ fn a_mirror_of_what_is_around_does_not_win_over_a_library_better_than_is_said() 
             lighting_total: None,
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         let by = |skipping| {
             let options = Options { library_error: Some(error), skipping, ..Options::default() };
@@ -390,7 +396,11 @@ fn what_the_photons_do_not_tell_is_declared() {
     assert_eq!((maps.material[0], maps.candidates[0], maps.posterior[0]), (0, 2, 0.5));
     assert_eq!(maps.flags[0] & flag::UNDECIDED, flag::UNDECIDED);
     assert_eq!((maps.material[1], maps.flags[1]), (2, flag::LIGHTING_UNKNOWN));
-    assert!((maps.temperature_k[1] - 300.0).abs() < 1e-3 && maps.lighting[1].is_nan());
+    assert!((maps.temperature_k[1] - 300.0).abs() < 1e-3 && maps.lighting_sigma[1] == f32::INFINITY);
+    let mut told = maps.clone();
+    told.leave_out_unknown_lighting(None);
+    assert!(told.lighting[1].is_nan() && told.lighting_sigma[1].is_nan() && told.texture_sigma[1].is_nan());
+    assert_eq!((told.lighting[0], &told.flags), (maps.lighting[0], &maps.flags));
 }
 
 /// Counts drawn about pixels of random states: 95 % intervals and candidates hold what they say, from some hundred counts a band to a

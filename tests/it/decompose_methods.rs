@@ -48,6 +48,8 @@ impl Scene {
             lighting_total: None,
             gain: false,
             bad_bands,
+            path: None,
+            light_besides: &[],
         })
     }
 

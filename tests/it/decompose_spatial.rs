@@ -95,6 +95,8 @@ impl Blocks {
             lighting_total: Some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         };
         decompose(&setting, &Options { spatial, ..Options::default() }, cube, &|_| ())
     }

@@ -89,6 +89,8 @@ impl Scene {
             lighting_total: Some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         }
     }
 

@@ -84,7 +84,14 @@ pub fn bundle(result: &Decomposed, room: Option<&Path>) -> Result<Bundle> {
     if !result.model.causes.is_empty() {
         bundle.add_table("model_causes.csv", figures::causes(&result.model))?;
     }
-    bundle.add_plots(&[vision::plot(&brush, &pixels, shown), figures::maps(result, &pixels, shown)])?;
+    bundle.add_plots(&[
+        vision::plot(&brush, &pixels, shown),
+        figures::maps(result, &pixels, shown),
+        figures::flags(result, &pixels, shown),
+    ])?;
+    if result.method.has_likelihood() {
+        bundle.add_plots(&[figures::p_values(result, &pixels, shown)])?;
+    }
     if let Some(residual) = figures::residual(&result.model) {
         bundle.add_plots(&[residual])?;
     }
@@ -98,12 +105,18 @@ fn add_maps(bundle: &mut Bundle, block: &Block, size: [usize; 2]) -> Result<()> 
     bundle.add("material.npy", npy_map(&size, &maps.material)?);
     bundle.add("temperature_k.npy", npy_map(&size, &maps.temperature_k)?);
     bundle.add("temperature_sigma_k.npy", npy_map(&size, &maps.temperature_sigma_k)?);
-    bundle.add("lighting.npy", npy_map(&[size[0], size[1], lights], &maps.lighting)?);
+    let deep = |layers: usize| [size[0], size[1], layers];
+    bundle.add("lighting.npy", npy_map(&deep(lights), &maps.lighting)?);
+    bundle.add("lighting_sigma.npy", npy_map(&deep(lights), &maps.lighting_sigma)?);
     bundle.add("p_value.npy", npy_map(&size, &maps.p_value)?);
     bundle.add("posterior.npy", npy_map(&size, &maps.posterior)?);
     bundle.add("candidates.npy", npy_map(&size, &maps.candidates)?);
+    let ranks = maps.ranked.len() / maps.material.len().max(1);
+    bundle.add("candidates_k.npy", npy_map(&deep(ranks), &maps.ranked)?);
+    bundle.add("candidates_k_posterior.npy", npy_map(&deep(ranks), &maps.ranked_posterior)?);
     bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
     bundle.add("texture.npy", npy_map(&size, texture)?);
+    bundle.add("texture_sigma.npy", npy_map(&size, &maps.texture_sigma)?);
     bundle.add("thermal.npy", npy_map(&size, thermal)?);
     Ok(())
 }

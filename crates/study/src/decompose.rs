@@ -34,11 +34,14 @@ use super::{Warning, memory};
 use hadar::cube::Shape;
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
-use hadar_estimate::decompose::{LibraryError, Maps, Method, Options, decompose_by_rows, widen};
+use hadar_estimate::decompose::{LibraryError, MOST_RANKED, Maps, Method, Options, decompose_by_rows, widen};
 use std::sync::Arc;
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
 pub const CORRELATION_CM1: f64 = 50.0;
+
+/// Most probable materials of a pixel that are given where nothing is said.
+pub const CANDIDATES: usize = 3;
 
 /// Pixels of a cube whose maps are kept in memory where they need not be.
 const KEPT_PIXELS: usize = 1 << 20;
@@ -53,6 +56,12 @@ const KEPT_SETS: u64 = 100;
 const KEPT_CATEGORY: u64 = 4;
 
 impl DecomposeStudy {
+    /// The same with the posteriors of so many of the most probable materials of each pixel, from 1 to [`MOST_RANKED`].
+    #[must_use]
+    pub fn with_candidates(self, candidates: usize) -> Self {
+        Self { candidates: candidates.clamp(1, MOST_RANKED), ..self }
+    }
+
     /// Whether the maps are better kept in files: they are many, and nothing needs all pixels together.
     #[must_use]
     pub fn wants_files(&self) -> bool {
@@ -88,7 +97,7 @@ impl DecomposeStudy {
         let lights = self.told.surroundings.len();
         let (files, height) = match keep {
             Keep::InFiles { folder, rows } if !self.needs_all() => {
-                (Some(MapFiles::create(folder, rows, shape, lights)?), rows)
+                (Some(MapFiles::create(folder, rows, shape, (lights, self.candidates))?), rows)
             }
             _ => (None, shape.rows()),
         };
@@ -121,13 +130,17 @@ impl DecomposeStudy {
             };
             let (together, to_hold) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
             if let Some(Wider { noise, .. }) = &to_hold {
-                maps.temperature_sigma_k.iter_mut().for_each(|sigma_k| *sigma_k *= *noise as f32);
+                for all in [&mut maps.temperature_sigma_k, &mut maps.lighting_sigma, &mut maps.texture_sigma]
+                {
+                    all.iter_mut().for_each(|sigma| *sigma *= *noise as f32);
+                }
             }
             let causes = to_hold.map_or_else(Vec::new, |to_hold| to_hold.causes);
             if method.has_likelihood() && !(together.is_empty() && causes.is_empty() && estimated.is_none()) {
                 widen(&setting, &mut maps, together, &causes, estimated.as_ref().map(|one| &one.shared))
                     .map_err(|error| error.at(self.scenario.place("cube.noise")))?;
             }
+            maps.leave_out_unknown_lighting(setting.lighting_total);
             counted.take(&maps);
             let block = Block::of(self, told, first, maps)?;
             if let Some((truth, held)) = &mut held {
@@ -215,6 +228,7 @@ impl DecomposeStudy {
             correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
         });
         let categories = if self.categories.is_empty() { Vec::new() } else { self.categories.sets() };
-        Options { prior: self.prior.clone(), library_error, skipping, spatial, categories }
+        let ranked = self.candidates;
+        Options { prior: self.prior.clone(), library_error, skipping, spatial, categories, ranked }
     }
 }

@@ -121,6 +121,7 @@ impl LibraryStudy {
             library_from_cube(setting, &asked, &measured.cube, &|_| ()).map_err(error)
         };
         let shared = self.with_shared(library, &mut found, &again)?;
+        found.maps.leave_out_unknown_lighting(scenario.unknown.lighting_total);
         let truth = self.truth.as_ref().map(|truth| Ok(results::against(&truth.all()?, &found.maps)));
         let truth = truth.transpose()?;
         let mut warnings = measured.warnings.clone();

@@ -3,12 +3,12 @@
 use super::global::Global;
 use clap::Args;
 use hadar::error::Result;
-use hadar_estimate::decompose::Method;
+use hadar_estimate::decompose::{MOST_RANKED, Method};
 use hadar_report::decompose;
 use hadar_report::folder::Scratch;
 use hadar_scenario::DecomposeScenario;
 use hadar_scenario::decompose::Bad;
-use hadar_study::decompose::{DecomposeStudy, Keep};
+use hadar_study::decompose::{CANDIDATES, DecomposeStudy, Keep};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -22,6 +22,9 @@ pub(super) struct DecomposeArgs {
     /// What is done with pixels and bands that are found to be bad: cube.bad of the scenario
     #[arg(long, value_enum)]
     bad: Option<FoundBad>,
+    /// How many of the most probable materials of a pixel are written with their posteriors
+    #[arg(long, value_name = "K", default_value_t = CANDIDATES as u8, value_parser = clap::value_parser!(u8).range(1..=MOST_RANKED as i64))]
+    candidates: u8,
 }
 
 /// What is done with what is found to be bad, as a flag.
@@ -69,7 +72,7 @@ impl From<By> for Method {
 pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
     let mut scenario = DecomposeScenario::from_written(&global.written(&args.scenario)?)?;
     scenario.cube.bad = args.bad.map_or(scenario.cube.bad, Bad::from);
-    let study = DecomposeStudy::new(&scenario, &global.library()?)?;
+    let study = DecomposeStudy::new(&scenario, &global.library()?)?.with_candidates(args.candidates.into());
     global.admit(study.takes())?;
     let scratch = match study.wants_files() {
         true => Some(global.scratch()?.map_or_else(Scratch::temporary, Ok)?),

@@ -104,6 +104,10 @@ fn maps_and_numbers_are_those_of_the_scene() {
         ("temperature_k.npy", 4),
         ("temperature_sigma_k.npy", 4),
         ("lighting.npy", 8),
+        ("lighting_sigma.npy", 8),
+        ("texture_sigma.npy", 4),
+        ("candidates_k.npy", 6),
+        ("candidates_k_posterior.npy", 12),
         ("p_value.npy", 4),
         ("posterior.npy", 4),
         ("candidates.npy", 2),
@@ -112,7 +116,21 @@ fn maps_and_numbers_are_those_of_the_scene() {
         let file = fs::read(folder.path().join("out").join(name)).unwrap();
         assert_eq!(file.len(), 128 + ROWS * COLUMNS * bytes, "{name}");
         let head = String::from_utf8_lossy(&file[10..127]).into_owned();
-        assert!(head.contains(if name == "lighting.npy" { "(2, 3, 2)" } else { "(2, 3)" }), "{head}");
+        let size = match name {
+            "lighting.npy" | "lighting_sigma.npy" => "(2, 3, 2)",
+            "candidates_k.npy" | "candidates_k_posterior.npy" => "(2, 3, 3)",
+            _ => "(2, 3)",
+        };
+        assert!(head.contains(size), "{head}");
+    }
+    let written = |at: &str, name: &str| fs::read(folder.path().join(at).join(name)).unwrap();
+    folder.json(&["decompose", "a.toml", "--candidates", "1", "--no-skip", "--out", "one"]);
+    assert_eq!(written("one", "candidates_k.npy")[128..], written("out", "material.npy")[128..]);
+    assert_eq!(written("one", "candidates_k_posterior.npy")[128..], written("out", "posterior.npy")[128..]);
+    for name in
+        ["lighting_sigma.npy", "texture_sigma.npy", "flags.png", "flags.csv", "p_value.svg", "p_value.csv"]
+    {
+        assert_eq!(written("one", name), written("out", name), "{name}");
     }
     // The scenario that was written asks the same again.
     let again = folder.json(&["decompose", "out/scenario.toml"]);

@@ -18,7 +18,7 @@
 //! doi:10.1017/S0305004100023987.
 
 use super::model::{Light, Setting};
-use super::tangent::{Tangent, Tangents};
+use super::tangent::{Tangent, Tangents, dot};
 use super::told::{Spectra, Told, legendre};
 use hadar::error::Result;
 use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_into};
@@ -130,6 +130,43 @@ impl Effect {
             _ => None,
         };
         Ok(Self { cause: cause.clone(), radiance, share, shifted, step })
+    }
+
+    /// What a unit of the cause changes of Σₖ aₖVₖ itself, the counts as they are: as a sum that is told.
+    pub(super) fn of_lighting(&self, a: &[f64], lighting: &[f64]) -> f64 {
+        let total: f64 = lighting.iter().sum();
+        match self.cause {
+            Cause::LightingTotal if total > 0.0 => {
+                a.iter().zip(lighting).map(|(a, v)| a * v).sum::<f64>() / total
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// What it changes of Σₖ VₖLₖ in the radiances Lₖ of the lights over all bands.
+    pub(super) fn of_lights(&self, tangents: &Tangents, lighting: &[f64]) -> f64 {
+        let all = |of: &Tangents, k: usize| of.lights.get(k).map_or(0.0, |light| light.iter().sum::<f64>());
+        let lit = |of: &Tangents| lighting.iter().enumerate().map(|(k, v)| v * all(of, k)).sum::<f64>();
+        let v = |k: usize| lighting.get(k).copied().unwrap_or(0.0);
+        match &self.cause {
+            // What a light is from its counts is less by a share that they are more for each unit of radiance.
+            Cause::Gain => (0..lighting.len())
+                .filter(|k| tangents.is_counted(*k))
+                .map(|k| -v(k) * all(tangents, k))
+                .sum(),
+            Cause::WavelengthShift(_) => {
+                let [higher, lower] =
+                    self.shifted.as_deref().map_or([0.0; 2], |ends| ends.each_ref().map(lit));
+                0.5 * (higher - lower) / self.step
+            }
+            Cause::LightScale(k) => v(*k) * all(tangents, *k),
+            Cause::LightShape { light, .. } => {
+                let of_light = tangents.lights.get(*light).map_or(0.0, |light| dot(light, &self.share));
+                v(*light) * of_light
+            }
+            Cause::LightTemperature { light, .. } => v(*light) * self.radiance.iter().sum::<f64>(),
+            _ => 0.0,
+        }
     }
 
     /// Slope of the counts of a pixel of material `m` along the cause, in deviations of each band, into `to`.

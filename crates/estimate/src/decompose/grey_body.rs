@@ -6,9 +6,8 @@
 //!
 //! Source: paper, Methods 'HADAR thermography', where the emissivity is a default.
 
-use super::model::{MOST_SURROUNDINGS, Setting};
-use super::pixel::{NO_MATERIAL, Pixel, flag};
-use super::possible::Possible;
+use super::model::Setting;
+use super::pixel::{Pixel, flag};
 use hadar::planck;
 use hadar::root::crossing;
 use hadar::spectrum::Bands;
@@ -36,15 +35,10 @@ impl<'a> GreyBody<'a> {
     pub(super) fn pixel(&self, counts: &[f64]) -> Pixel {
         let temperature_k = self.temperature_k(hadar::sum::sum(counts));
         Pixel {
-            material: NO_MATERIAL,
             temperature_k: temperature_k.unwrap_or(f64::NAN),
-            sigma_k: f64::NAN,
-            lighting: [f64::NAN; MOST_SURROUNDINGS],
-            p_value: f64::NAN,
             posterior: f64::NAN,
-            candidates: 0,
             flags: if temperature_k.is_some() { 0 } else { flag::TEMPERATURE_UNKNOWN },
-            possible: Possible::ANYTHING,
+            ..Pixel::SKIPPED
         }
     }
 

@@ -17,9 +17,9 @@
 //! | S, F, X, B | photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ | mean over a band |
 //! | e, G, V | | emissivity, e/(1 − e), lighting factors |
 
-use super::model::{MOST_SURROUNDINGS, Model, Setting};
-use super::pixel::{NO_MATERIAL, Pixel, flag};
-use super::possible::Possible;
+use super::model::{Model, Setting};
+use super::pixel::{Pixel, flag};
+use super::ranked::Ranked;
 use hadar::error::Result;
 use hadar::planck;
 use hadar::spectrum::Bands;
@@ -89,19 +89,10 @@ impl<'a> Inverse<'a> {
     pub(super) fn pixel(&self, counts: &[f64]) -> Pixel {
         let solved = (0..self.materials).filter_map(|m| Some((m, self.solved(m, counts)?)));
         let best = solved.min_by(|a, b| a.1.chi_square.total_cmp(&b.1.chi_square));
-        let mut pixel = Pixel {
-            material: NO_MATERIAL,
-            temperature_k: f64::NAN,
-            sigma_k: f64::NAN,
-            lighting: [f64::NAN; MOST_SURROUNDINGS],
-            p_value: f64::NAN,
-            posterior: f64::NAN,
-            candidates: 0,
-            flags: flag::TEMPERATURE_UNKNOWN,
-            possible: Possible::ANYTHING,
-        };
+        let mut pixel = Pixel { posterior: f64::NAN, flags: flag::TEMPERATURE_UNKNOWN, ..Pixel::SKIPPED };
         if let Some((m, solved)) = best {
             pixel.material = m as u16;
+            pixel.ranked = Ranked::of(std::iter::once((m, f64::NAN)));
             pixel.temperature_k = solved.temperature_k;
             pixel.lighting.iter_mut().zip(&solved.lighting).for_each(|(to, v)| *to = *v);
             pixel.flags = if solved.held { flag::TEMPERATURE_AT_LIMIT } else { 0 };

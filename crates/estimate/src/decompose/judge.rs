@@ -351,8 +351,6 @@ impl Judge<'_> {
         let Room { tangent, lit, rho, slopes, moved } = room;
         lit.clear();
         lit.extend(maps.lighting[i * self.lights..][..self.lights].iter().map(|v| f64::from(*v)));
-        // What nothing scatters changes nothing.
-        lit.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
         let temperature_k = f64::from(maps.temperature_k[i]);
         if !tangents.at(m, temperature_k, lit, tangent) {
             return;

@@ -5,8 +5,9 @@
 
 use super::library_error::{Errors, LibraryError};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
-use super::pixel::{NO_MATERIAL, Pixel, Room, Spared, Task, flag};
+use super::pixel::{ANY_LIGHTING, NO_MATERIAL, Pixel, Room, Spared, Task, flag};
 use super::possible::{ANYTHING, Members, Possible};
+use super::ranked::MOST_RANKED;
 use super::screen::Screen;
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use hadar::cube::{CubeRef, Rows, Sample};
@@ -28,6 +29,8 @@ pub struct Options {
     pub spatial: Option<SpatialPrior>,
     /// The categories of each material, a bit each ([`super::possible`]); empty where none are asked for.
     pub categories: Vec<u64>,
+    /// How many of the most probable materials of a pixel are kept, at most [`MOST_RANKED`].
+    pub ranked: usize,
 }
 
 /// What is found of every pixel, `[row][column]`.
@@ -41,10 +44,18 @@ pub struct Maps {
     pub temperature_sigma_k: Vec<f32>,
     /// [`Pixel::lighting`], `[row][column][surroundings]`.
     pub lighting: Vec<f32>,
+    /// [`Pixel::lighting_sigma`], likewise.
+    pub lighting_sigma: Vec<f32>,
+    /// [`Pixel::texture_sigma`].
+    pub texture_sigma: Vec<f32>,
     /// [`Pixel::p_value`].
     pub p_value: Vec<f32>,
     /// [`Pixel::posterior`].
     pub posterior: Vec<f32>,
+    /// [`Pixel::ranked`], `[row][column][rank]`.
+    pub ranked: Vec<u16>,
+    /// Their posteriors, likewise.
+    pub ranked_posterior: Vec<f32>,
     /// [`Pixel::candidates`].
     pub candidates: Vec<u16>,
     /// [`Pixel::flags`].
@@ -117,9 +128,13 @@ fn whole<S: Sample>(
             }
             pixel
         };
-    let surroundings = setting.surroundings.len();
+    let layers = Layers {
+        surroundings: setting.surroundings.len(),
+        categories: task.members.is_some(),
+        ranked: options.ranked,
+    };
     let Some(prior) = &options.spatial else {
-        return by_rows.in_blocks(blocks, || task.room(), pixel, surroundings, task.members.is_some());
+        return by_rows.in_blocks(blocks, || task.room(), pixel, layers);
     };
     let rows = by_rows.rows(0..cube.shape().rows(), &|| task.room(), &pixel, &|pixels| pixels)?;
     let spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
@@ -128,9 +143,18 @@ fn whole<S: Sample>(
     let shares = kept.iter().flat_map(|row| row.shares.iter().copied()).collect();
     let (mut pixels, kept) = (pixels.concat(), Kept::of_rows(kept));
     let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
-    let mut maps = Maps::of(&pixels, surroundings, task.members.is_some());
+    let mut maps = Maps::of(&pixels, layers);
     (maps.spared, maps.spatial, maps.category_shares) = (spared + more, Some(about), shares);
     blocks.1(0, maps)
+}
+
+/// What the maps of pixels have of each.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layers {
+    pub(super) surroundings: usize,
+    /// Whether there are sets of categories.
+    pub(super) categories: bool,
+    pub(super) ranked: usize,
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -157,15 +181,13 @@ impl<S: Sample> ByRows<'_, S> {
         (height, take): Blocks<'_>,
         room: impl Fn() -> R + Sync,
         pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut KeptRow) -> Pixel + Sync,
-        surroundings: usize,
-        categories: bool,
+        layers: Layers,
     ) -> Result<()> {
         let rows = self.cube.shape().rows();
         let height = height.clamp(1, rows);
         for first in (0..rows).step_by(height) {
             let block = first..rows.min(first + height);
-            let block =
-                self.rows(block, &room, &pixel, &|pixels| Maps::of(&pixels, surroundings, categories))?;
+            let block = self.rows(block, &room, &pixel, &|pixels| Maps::of(&pixels, layers))?;
             take(first, Maps::joined(block))?;
         }
         Ok(())
@@ -250,7 +272,8 @@ impl Task {
         let largest = errors.as_ref().map_or(0.0, |errors| errors.largest);
         let screen = (!model.gain).then(|| Screen::new(&model, &kinds, largest));
         let members = Members::new(&options.categories, &kind_of, &alike, &handicap)?;
-        Ok(Self { errors, model, screen, members, kinds, alike, handicap, skip: options.skipping.skips() })
+        let (textures, skip) = (setting.textures(), options.skipping.skips());
+        Ok(Self { errors, model, screen, members, kinds, alike, kind_of, textures, handicap, skip })
     }
 
     /// Keeps the shares of the categories of a pixel, or those of the pixel before once more.
@@ -286,6 +309,23 @@ impl Maps {
         }
     }
 
+    /// Takes out the lighting factors that are not told, by the deviations that the maps have by now ([`super::widen`]), where their sum is
+    /// known as in the setting. Until then they are those of the fit, which the model is judged by.
+    pub fn leave_out_unknown_lighting(&mut self, lighting_total: Option<f64>) {
+        let lights = self.lighting.len() / self.material.len().max(1);
+        let most = (ANY_LIGHTING * lighting_total.unwrap_or(1.0)) as f32;
+        let each = self.lighting.chunks_mut(lights.max(1)).zip(self.lighting_sigma.chunks_mut(lights.max(1)));
+        let pixels = self.flags.iter_mut().zip(&mut self.texture_sigma);
+        for ((flags, of_texture), (lighting, sigma)) in pixels.zip(each) {
+            if *flags & flag::LIGHTING_UNKNOWN != 0 || sigma.iter().any(|sigma| *sigma > most) {
+                *flags = *flags & !flag::LIGHTING_AT_LIMIT | flag::LIGHTING_UNKNOWN;
+                lighting.fill(f32::NAN);
+                sigma.fill(f32::NAN);
+                *of_texture = f32::NAN;
+            }
+        }
+    }
+
     /// The materials, [`NO_MATERIAL`] also where none of the library fits.
     #[must_use]
     pub fn fitting_material(&self) -> Vec<u16> {
@@ -302,8 +342,12 @@ impl Maps {
             all.temperature_k.extend(row.temperature_k);
             all.temperature_sigma_k.extend(row.temperature_sigma_k);
             all.lighting.extend(row.lighting);
+            all.lighting_sigma.extend(row.lighting_sigma);
+            all.texture_sigma.extend(row.texture_sigma);
             all.p_value.extend(row.p_value);
             all.posterior.extend(row.posterior);
+            all.ranked.extend(row.ranked);
+            all.ranked_posterior.extend(row.ranked_posterior);
             all.candidates.extend(row.candidates);
             all.flags.extend(row.flags);
             all.possible_95.extend(row.possible_95);
@@ -315,22 +359,27 @@ impl Maps {
         all
     }
 
-    fn of(pixels: &[Pixel], surroundings: usize, categories: bool) -> Self {
+    fn of(pixels: &[Pixel], Layers { surroundings, categories, ranked }: Layers) -> Self {
         let all = || pixels.iter();
         let possible = |of: fn(&Possible) -> u64| -> Vec<u64> {
             if categories { all().map(|p| of(&p.possible)).collect() } else { Vec::new() }
         };
-        let mut lighting = Vec::with_capacity(pixels.len() * surroundings);
-        all().for_each(|p| {
-            lighting.extend(p.lighting[..surroundings.min(MOST_SURROUNDINGS)].iter().map(|v| *v as f32))
-        });
+        let lights = surroundings.min(MOST_SURROUNDINGS);
+        let lit = |of: fn(&Pixel) -> &[f64; MOST_SURROUNDINGS]| -> Vec<f32> {
+            all().flat_map(|p| of(p)[..lights].iter().map(|v| *v as f32)).collect()
+        };
+        let ranks = ranked.min(MOST_RANKED);
         Self {
             material: all().map(|p| p.material).collect(),
             temperature_k: all().map(|p| p.temperature_k as f32).collect(),
             temperature_sigma_k: all().map(|p| p.sigma_k as f32).collect(),
-            lighting,
+            lighting: lit(|p| &p.lighting),
+            lighting_sigma: lit(|p| &p.lighting_sigma),
+            texture_sigma: all().map(|p| p.texture_sigma as f32).collect(),
             p_value: all().map(|p| p.p_value as f32).collect(),
             posterior: all().map(|p| p.posterior as f32).collect(),
+            ranked: all().flat_map(|p| p.ranked.materials[..ranks].iter().copied()).collect(),
+            ranked_posterior: all().flat_map(|p| p.ranked.posteriors[..ranks].iter().copied()).collect(),
             candidates: all().map(|p| p.candidates).collect(),
             flags: all().map(|p| p.flags).collect(),
             possible_95: possible(|one| one.at_95),

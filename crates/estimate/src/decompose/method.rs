@@ -15,7 +15,7 @@
 
 use super::grey_body::GreyBody;
 use super::inverse::Inverse;
-use super::maps::{Blocks, ByRows, Maps, Options, check_bands, is_signed, likeliest};
+use super::maps::{Blocks, ByRows, Layers, Maps, Options, check_bands, is_signed, likeliest};
 use super::model::{Model, Setting};
 use super::pixel::Pixel;
 use hadar::cube::{CubeRef, Rows, Sample};
@@ -111,18 +111,23 @@ pub fn decompose_by_rows<'c>(
             let dark = Setting { surroundings: &[], lighting_total: None, ..*setting };
             let mut unlit = |first: usize, mut maps: Maps| {
                 maps.lighting = vec![f32::NAN; maps.material.len() * setting.surroundings.len()];
+                maps.lighting_sigma.clone_from(&maps.lighting);
                 take(first, maps)
             };
             likeliest(&dark, options, cube, (height, &mut unlit), done)
         }
-        (_, cube @ CubeRef::F32(rows)) => compared(method, setting, (rows, cube), (height, take), done),
-        (_, cube @ CubeRef::F64(rows)) => compared(method, setting, (rows, cube), (height, take), done),
+        (_, cube @ CubeRef::F32(rows)) => {
+            compared(method, (setting, options), (rows, cube), (height, take), done)
+        }
+        (_, cube @ CubeRef::F64(rows)) => {
+            compared(method, (setting, options), (rows, cube), (height, take), done)
+        }
     }
 }
 
 fn compared<S: Sample>(
     method: Method,
-    setting: &Setting<'_>,
+    (setting, options): (&Setting<'_>, &Options),
     (rows, cube): (&dyn Rows<S>, CubeRef<'_>),
     (height, take): Blocks<'_>,
     done: &(dyn Fn(usize) + Sync),
@@ -140,12 +145,14 @@ fn compared<S: Sample>(
         }));
         room.iter().all(|n| n.is_finite())
     };
+    let layers =
+        Layers { surroundings: setting.surroundings.len(), categories: false, ranked: options.ranked };
     let mut all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| {
         let own = |room: &mut Vec<f64>, sample: &[S], _, _: &mut _, _: &mut _| match counts(room, sample) {
             true => pixel(room),
             false => Pixel::SKIPPED,
         };
-        by_rows.in_blocks((height, &mut *take), Vec::new, own, setting.surroundings.len(), false)
+        by_rows.in_blocks((height, &mut *take), Vec::new, own, layers)
     };
     match method {
         Method::GreyBody => {

@@ -22,6 +22,7 @@
 //!
 //! Source: paper S2, S44, S48.
 
+use super::kernel::MOST;
 use hadar::error::{Error, Result, check};
 use hadar::planck;
 use hadar::scene::check_emissivity;
@@ -43,6 +44,30 @@ pub enum Light {
     Radiance(Vec<f64>),
     /// Counts that a pixel which sees nothing else has in each band.
     Counts(Vec<f64>),
+}
+
+impl Setting<'_> {
+    /// Radiance of each of the surroundings over all bands that count, photons s⁻¹ m⁻² sr⁻¹: the texture of a surface that sees
+    /// nothing else.
+    #[must_use]
+    pub fn textures(&self) -> Vec<f64> {
+        let used: Vec<usize> = (0..self.bands.len()).filter(|band| !self.bad_bands.contains(band)).collect();
+        self.radiances(&used).iter().map(|light| light.iter().sum()).collect()
+    }
+
+    /// Radiance of each of the surroundings in some bands, photons s⁻¹ m⁻² sr⁻¹.
+    pub(super) fn radiances(&self, used: &[usize]) -> Vec<Vec<f64>> {
+        let of = |light: &Light| -> Vec<f64> {
+            let all = match light {
+                Light::Radiance(radiance) => self.bands.weigh(radiance),
+                Light::Counts(counts) => {
+                    counts.iter().zip(self.counts_per_radiance).map(|(n, k)| n / k).collect()
+                }
+            };
+            used.iter().filter_map(|band| all.get(*band).copied()).collect()
+        };
+        self.surroundings.iter().map(of).collect()
+    }
 }
 
 /// What is between surface and camera, at the nodes of the bands.
@@ -445,6 +470,21 @@ impl Model {
             *v = share * u / total;
         }
         lighting
+    }
+
+    /// Slopes of Σₖ aₖVₖ with the weights of the vertices.
+    pub(super) fn slopes_of_lighting(&self, a: &[f64], mixture: &[f64]) -> [f64; MOST] {
+        let scale = self.scale(mixture);
+        let share = self.lighting_total.unwrap_or(1.0);
+        let mut slopes = [0.0; MOST];
+        for (slope, a) in slopes[self.vertices - self.surroundings..self.vertices].iter_mut().zip(a) {
+            *slope = share * a / scale;
+        }
+        if self.gain {
+            let all: f64 = slopes.iter().zip(mixture).map(|(slope, u)| slope * u).sum();
+            slopes[..self.vertices].iter_mut().for_each(|slope| *slope -= all / scale);
+        }
+        slopes
     }
 }
 

@@ -11,6 +11,7 @@ use super::kernel::{Asked, Sums, contrast, sums};
 use super::library_error::{Errors, Workplace};
 use super::model::{MOST_SURROUNDINGS, Model};
 use super::possible::{CANDIDATE_SHARE, Members, Possible, TIE};
+use super::ranked::Ranked;
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
 use hadar::cube::Sample;
@@ -24,8 +25,8 @@ pub(super) const CUT: f64 = 24.0;
 pub const NO_FIT: f64 = 1e-4;
 /// Squared deviations by which what a pixel sends must differ from what its surroundings send.
 const CONTRAST: f64 = 16.0;
-/// Deviation of a lighting factor from which on it could be anything.
-const ANY_LIGHTING: f64 = 1.0;
+/// Deviation of a lighting factor, as a share of its range, beyond which it is not known: half of 1/√12, what a blind guess has.
+pub(super) const ANY_LIGHTING: f64 = 0.144_337_567_297_406_43;
 
 /// What is said of a pixel besides its numbers: bits of `flags`.
 pub mod flag {
@@ -35,7 +36,7 @@ pub mod flag {
     pub const LIGHTING_AT_LIMIT: u8 = 2;
     /// What the pixel sends is what its surroundings send: nothing tells its material.
     pub const NO_INFORMATION: u8 = 4;
-    /// The lighting could be anything: the target scatters nothing.
+    /// The lighting could be nearly anything: a factor has half the deviation of a blind guess or more.
     pub const LIGHTING_UNKNOWN: u8 = 8;
     /// No material of the library fits (p below 1e-4).
     pub const NO_FIT: u8 = 16;
@@ -70,12 +71,18 @@ pub struct Pixel {
     pub temperature_k: f64,
     /// Deviation of the temperature, K, were the material certain and right: where none fits ([`flag::NO_FIT`]) it says nothing.
     pub sigma_k: f64,
-    /// Thermal lighting factors; NaN where the target scatters nothing.
+    /// Thermal lighting factors of the fit, also where it does not tell them ([`flag::LIGHTING_UNKNOWN`]).
     pub lighting: [f64; MOST_SURROUNDINGS],
+    /// Their deviations, as that of the temperature; infinite where nothing tells a factor.
+    pub lighting_sigma: [f64; MOST_SURROUNDINGS],
+    /// Deviation of the texture Σₖ Vₖ ∫Sₖ dν over the bands that count, photons s⁻¹ m⁻² sr⁻¹.
+    pub texture_sigma: f64,
     /// Probability of a larger residual, were the material right; NaN where there are as many unknowns as bands.
     pub p_value: f64,
     /// Posterior probability of the material.
     pub posterior: f64,
+    /// It and those that come next to it.
+    pub ranked: Ranked,
     /// Materials that 95 % of the posterior leave.
     pub candidates: u16,
     /// Bits of [`flag`].
@@ -85,14 +92,17 @@ pub struct Pixel {
 }
 
 impl Pixel {
-    /// A pixel that was left out.
+    /// A pixel that was left out, of which nothing is known.
     pub(super) const SKIPPED: Self = Self {
         material: NO_MATERIAL,
         temperature_k: f64::NAN,
         sigma_k: f64::NAN,
         lighting: [f64::NAN; MOST_SURROUNDINGS],
+        lighting_sigma: [f64::NAN; MOST_SURROUNDINGS],
+        texture_sigma: f64::NAN,
         p_value: f64::NAN,
         posterior: 0.0,
+        ranked: Ranked::NOTHING,
         candidates: 0,
         flags: flag::SKIPPED,
         possible: Possible::ANYTHING,
@@ -150,6 +160,10 @@ pub(super) struct Task {
     pub(super) kinds: Vec<usize>,
     /// How many materials are equal to it, itself included.
     pub(super) alike: Vec<usize>,
+    /// The kind of each material.
+    pub(super) kind_of: Vec<usize>,
+    /// Texture of a surface that sees one of the surroundings alone, of each; none without surroundings.
+    pub(super) textures: Vec<f64>,
     /// −2 ln π of each kind, from the most probable of its materials.
     pub(super) handicap: Vec<f64>,
     /// Errors of the library.
@@ -377,6 +391,9 @@ impl Task {
         let possible = self.members.as_ref().map(|members| {
             members.possible(&room.fits, |one| weight(one, &fit) / total, fits, &mut room.shares)
         });
+        let others = room.fits.iter().filter(|(other, _)| *other != kind);
+        let others = others.map(|(other, one)| (*other, weight(one, &fit) / total));
+        let ranked = self.ranked(std::iter::once((kind, 1.0 / total)).chain(others));
         let m = self.kinds[kind];
         let (fit, looks) = match &self.errors {
             None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
@@ -393,11 +410,17 @@ impl Task {
         let calibrated = usize::from(!model.gain);
         // One vertex alone is no choice; a mixture that lacks one is at a limit.
         let lit_at_limit = model.vertices > calibrated && free < model.vertices;
-        let no_temperature = !deviations.temperature_k.is_finite();
-        let any_lighting = ANY_LIGHTING * model.scale(mixture);
-        let no_lighting = model.vertices > calibrated
-            && (deviations.blind
-                || deviations.weights[..model.vertices].iter().any(|s| s.is_nan() || *s >= any_lighting));
+        let sigma_k = deviations.temperature_k();
+        let no_temperature = !sigma_k.is_finite();
+        let sigma_of = |a: &[f64]| deviations.of_mixture(&model.slopes_of_lighting(a, mixture));
+        let mut lighting_sigma = [f64::NAN; MOST_SURROUNDINGS];
+        for (k, sigma) in lighting_sigma[..model.surroundings].iter_mut().enumerate() {
+            let mut one = [0.0; MOST_SURROUNDINGS];
+            one[k] = 1.0;
+            *sigma = sigma_of(&one);
+        }
+        let any_lighting = ANY_LIGHTING * model.lighting_total.unwrap_or(1.0);
+        let no_lighting = lighting_sigma.iter().any(|sigma| *sigma > any_lighting);
         let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
         let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
         let p_value = self.p_value(&fit.state, sums.chi_square);
@@ -408,18 +431,23 @@ impl Task {
         raise(p_value < NO_FIT, flag::NO_FIT);
         raise(candidates > 1, flag::UNDECIDED);
         raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
-        let nothing = f64::NAN;
         let is_told = flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0;
         Pixel {
             material: if no_information { NO_MATERIAL } else { m as u16 },
-            temperature_k: if no_temperature { nothing } else { fit.state.temperature_k },
-            sigma_k: deviations.temperature_k,
-            lighting: if no_lighting { [nothing; MOST_SURROUNDINGS] } else { model.lighting(mixture) },
+            temperature_k: if no_temperature { f64::NAN } else { fit.state.temperature_k },
+            sigma_k,
+            lighting: model.lighting(mixture),
+            lighting_sigma,
+            texture_sigma: if self.textures.is_empty() { f64::NAN } else { sigma_of(&self.textures) },
             p_value,
             posterior: 1.0 / total,
+            ranked: if no_information { Ranked::NOTHING } else { ranked },
             candidates: candidates as u16,
             flags,
             possible: possible.filter(|_| is_told).unwrap_or(Possible::ANYTHING),
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -17,8 +17,8 @@ mod sgd;
 pub(super) use kept::{Kept, KeptRow};
 
 use self::potts::Beliefs;
-use super::pixel::{Pixel, Spared, Task, flag};
-use super::possible::{CANDIDATE_SHARE, Members};
+use super::pixel::{NO_MATERIAL, Pixel, Spared, Task, flag};
+use super::possible::CANDIDATE_SHARE;
 use hadar::cube::{Rows, Sample};
 use hadar::error::{Error, Result};
 use rayon::prelude::*;
@@ -138,12 +138,7 @@ impl SpatialPrior {
             .iter()
             .fold(Spared::default(), |sum, (spared, _)| Spared { looks: sum.looks + spared.looks, ..sum });
         if let Some(beliefs) = &chosen.beliefs {
-            let alike = |kind: u16| task.alike.get(usize::from(kind)).copied().unwrap_or(1);
-            let members = task.members.as_ref();
-            pixels
-                .iter_mut()
-                .enumerate()
-                .for_each(|(i, pixel)| beliefs.put(kept, i, (alike, members), pixel));
+            pixels.iter_mut().enumerate().for_each(|(i, pixel)| beliefs.put(kept, i, task, pixel));
         }
         let temperatures_k = match (chosen.about.temperature_step_k, chosen.temperatures_k) {
             (Some(step_k), _) => level::levelled(pixels, columns, step_k),
@@ -186,23 +181,25 @@ impl SpatialPrior {
 
 impl Beliefs {
     /// Puts the posterior of pixel `i`, the materials that 95 % of it leave, and their categories in the place of those of its own counts.
-    pub(super) fn put(
-        &self,
-        kept: &Kept,
-        i: usize,
-        (alike, members): (impl Fn(u16) -> usize, Option<&Members>),
-        pixel: &mut Pixel,
-    ) {
+    pub(super) fn put(&self, kept: &Kept, i: usize, task: &Task, pixel: &mut Pixel) {
+        let alike = |kind: u16| task.alike.get(usize::from(kind)).copied().unwrap_or(1);
         let mut order: Vec<(f64, usize, Option<usize>)> = Vec::new();
         for (candidate, belief) in kept.of(i).iter().zip(self.of(kept, i)) {
-            let count = candidate.kind.map_or(kept.others(i), &alike);
+            let count = candidate.kind.map_or(kept.others(i), alike);
             order.push((f64::from(*belief), count, candidate.kind.map(usize::from)));
         }
-        let Some(&(belief, count, _)) = order.get(self.best(kept, i)) else { return };
+        let Some(&(belief, count, chosen)) = order.get(self.best(kept, i)) else { return };
         pixel.posterior = belief / count.max(1) as f64;
         order.sort_by(|a, b| b.0.total_cmp(&a.0));
         let (mut held, mut candidates) = (0.0, 0);
-        if let Some(members) = members {
+        if pixel.material != NO_MATERIAL {
+            let each =
+                order.iter().filter_map(|(belief, count, kind)| Some(((*kind)?, belief / *count as f64)));
+            let others = each.filter(|(kind, _)| Some(*kind) != chosen);
+            let ranked = task.ranked(chosen.map(|kind| (kind, pixel.posterior)).into_iter().chain(others));
+            pixel.ranked = ranked;
+        }
+        if let Some(members) = &task.members {
             let beliefs: Vec<_> = order.iter().map(|(belief, _, kind)| (*kind, *belief)).collect();
             members.put(&beliefs, &mut pixel.possible);
         }

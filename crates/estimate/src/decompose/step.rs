@@ -120,24 +120,11 @@ impl State {
         (self.held, self.free)
     }
 
-    /// Deviation of the temperature, K, that of every weight, and which directions had no information.
+    /// What is known of the unknowns.
     pub(super) fn deviations(&self, sums: &Sums, limits: &Limits) -> Deviations {
         // What a limit holds is not known better for that: the truth may be a little way off it.
         let open = Self { held: false, free: [true; MOST], ..*self };
-        let face = Face::new(sums, limits, &open);
-        let mut found = Deviations { temperature_k: f64::INFINITY, weights: [0.0; MOST], blind: false };
-        let last = face.len - 1;
-        found.blind = face.blind[..last].iter().any(|blind| *blind);
-        if !face.blind[last] {
-            found.temperature_k = face.deviation(last);
-        }
-        // Weight j as a linear form of the directions.
-        for j in 0..limits.vertices {
-            let form: Vec<f64> =
-                face.directions[..face.len].iter().map(|d| weight_along(d, j, limits)).collect();
-            found.weights[j] = face.deviation_of(&form);
-        }
-        found
+        Deviations { face: Face::new(sums, limits, &open), limits: *limits }
     }
 
     fn reach(&self, along: &[f64; MOST], limits: &Limits) -> (f64, Option<Stop>) {
@@ -231,14 +218,27 @@ impl Step {
 }
 
 /// Deviations of the unknowns, as if no limit held any of them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(super) struct Deviations {
+    face: Face,
+    limits: Limits,
+}
+
+impl Deviations {
     /// Of the temperature, K; infinite without information.
-    pub(super) temperature_k: f64,
-    /// Of the weight of each vertex.
-    pub(super) weights: [f64; MOST],
-    /// Whether some mixture of the vertices cannot be told from another.
-    pub(super) blind: bool,
+    pub(super) fn temperature_k(&self) -> f64 {
+        let last = self.face.len - 1;
+        if self.face.blind[last] { f64::INFINITY } else { self.face.deviation(last) }
+    }
+
+    /// Of Σⱼ cⱼuⱼ over the weights of the vertices; infinite where some of it cannot be told.
+    pub(super) fn of_mixture(&self, c: &[f64; MOST]) -> f64 {
+        let along = |direction: &[f64; MOST]| {
+            (0..self.limits.vertices).map(|j| c[j] * weight_along(direction, j, &self.limits)).sum()
+        };
+        let sigma = self.face.deviation_of(&self.face.directions.each_ref().map(along));
+        if sigma.is_nan() { f64::INFINITY } else { sigma }
+    }
 }
 
 enum Stop {
@@ -356,7 +356,7 @@ impl Face {
     }
 
     /// Deviation of a linear form of the directions: ‖L⁻¹c‖, without ever forming an inverse.
-    fn deviation_of(&self, form: &[f64]) -> f64 {
+    fn deviation_of(&self, form: &[f64; MOST]) -> f64 {
         if (0..self.len).any(|i| self.blind[i] && form[i] != 0.0) {
             return f64::INFINITY;
         }

@@ -80,15 +80,7 @@ impl Tangents {
         let pick = |all: Vec<f64>| -> Vec<f64> { used.iter().map(|band| all[*band]).collect() };
         let (bands, widths) = (setting.bands, pick(setting.bands.widths_cm1()));
         let kappa = pick(setting.counts_per_radiance.to_vec());
-        let per = |counts: Vec<f64>| -> Vec<f64> { counts.iter().zip(&kappa).map(|(n, k)| n / k).collect() };
-        let lights: Vec<Vec<f64>> = setting
-            .surroundings
-            .iter()
-            .map(|light| match light {
-                Light::Radiance(radiance) => pick(bands.weigh(radiance)),
-                Light::Counts(counts) => per(pick(counts.clone())),
-            })
-            .collect();
+        let lights = setting.radiances(&used);
         let through: Vec<f64> = setting.path.map_or_else(Vec::new, |path| path.transmittance.clone());
         let behind = |values: Vec<f64>| -> Vec<f64> {
             let share = |i: usize| through.get(i).copied().unwrap_or(1.0);

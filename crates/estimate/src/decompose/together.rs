@@ -1,4 +1,4 @@
-//! What counts that are off together in all bands and pixels add to the deviations of temperatures.
+//! What counts that are off together in all bands and pixels add to the deviations of temperatures, lighting factors and textures.
 //!
 //! A temperature follows whitened counts by a row g ([`super::tangent`]): with counts off by z·s_w, one number z of deviation 1 for all
 //! bands, it is off by z Σ_w g_w s_w/σ_w, whose square is added to its variance. Bands do not average it down, as they do noise: blackbodies
@@ -6,6 +6,9 @@
 //!
 //! A cause whose amount θ̂ was found ([`super::judge`]) moves it by θ̂ Σ_w g_w d_w, d its slope in deviations of the noise; that is put in as
 //! if it were a deviation, as what is found is but one of what may be.
+//!
+//! A lighting factor and a texture follow rows of their own. Where a cause is in a light itself, the texture X = Σ Vₖ Lₖ has what it does to
+//! Lₖ besides: of a light that is brighter by a share V is found lower by it, and X is right.
 //!
 //! Units: counts for s and σ; K. Assumption: to first order. Source: [`hadar::calibration::blackbody`], where such errors are from.
 
@@ -29,9 +32,9 @@ pub struct ToHold {
     pub follow: Vec<f64>,
 }
 
-/// Widens the deviations of the temperatures by an error of deviation `together` in each band (counts; none if empty), the same number of
-/// deviations in all bands and pixels, by the largest of what the amounts of some causes do to each, and by what is not known of unknowns
-/// that the whole cube shares.
+/// Widens the deviations of temperatures, lighting factors and textures by an error of deviation `together` in each band (counts; none if
+/// empty), the same number of deviations in all bands and pixels, by the largest of what the amounts of some causes do to each, and by what
+/// is not known of unknowns that the whole cube shares.
 ///
 /// # Errors
 /// Maps of another setting, another number of bands, a deviation below 0, an unknown gain.
@@ -49,6 +52,8 @@ pub fn widen(
         ("temperatures of the maps", maps.temperature_k.len(), pixels),
         ("deviations of the maps", maps.temperature_sigma_k.len(), pixels),
         ("lighting factors", maps.lighting.len(), pixels * lights),
+        ("deviations of lighting factors", maps.lighting_sigma.len(), pixels * lights),
+        ("deviations of textures", maps.texture_sigma.len(), pixels),
     ] {
         if found != expected {
             return Err(Error::Length { what: what.into(), found, expected });
@@ -56,52 +61,139 @@ pub fn widen(
     }
     check::each(together, |s| s >= 0.0, |s| check::non_negative("deviation of a band", s, "counts"))?;
     let tangents = Tangents::new(setting)?;
-    let row = tangents.of_temperature();
     let effect = |cause: &Cause| Effect::new(cause, setting, &tangents);
-    let effects = causes.iter().map(|one| effect(&one.cause)).collect::<Result<Vec<_>>>()?;
+    let effects = causes.iter().map(|one| Ok((effect(&one.cause)?, one))).collect::<Result<Vec<_>>>()?;
     let together_estimated = shared.map_or_else(Vec::new, Shared::causes);
     let estimated = together_estimated.iter().map(effect).collect::<Result<Vec<_>>>()?;
-    let Maps { material, temperature_k, temperature_sigma_k, lighting, .. } = maps;
-    let one = |(tangent, lit, slope): &mut (Tangent, Vec<f64>, Vec<f64>), (i, sigma_k): (usize, &mut f32)| {
+    let wider = Wider { together, effects, estimated, shared, followed: Followed::all(setting), tangents };
+    let Maps {
+        material, temperature_k, temperature_sigma_k, lighting, lighting_sigma, texture_sigma, ..
+    } = maps;
+    let mut rest = lighting_sigma.as_mut_slice();
+    let of_lights: Vec<&mut [f32]> = (0..pixels)
+        .filter_map(|_| {
+            let (own, others) = std::mem::take(&mut rest).split_at_mut_checked(lights)?;
+            rest = others;
+            Some(own)
+        })
+        .collect();
+    let each = temperature_sigma_k.par_iter_mut().zip(texture_sigma.par_iter_mut()).zip(of_lights);
+    each.enumerate().for_each_init(Room::default, |room, (i, ((sigma_k, of_texture), of_lights))| {
         hadar::stop::check();
-        if material[i] == NO_MATERIAL || !sigma_k.is_finite() {
+        if material[i] == NO_MATERIAL {
             return;
         }
-        lit.clear();
-        lit.extend(lighting[i * lights..(i + 1) * lights].iter().map(|v| f64::from(*v)));
+        room.lit.clear();
+        room.lit.extend(lighting[i * lights..(i + 1) * lights].iter().map(|v| f64::from(*v)));
         // Where nothing is scattered the lighting is no number, and tells nothing of the temperature.
-        lit.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
-        let (m, at_k) = (usize::from(material[i]), f64::from(temperature_k[i]));
+        room.lit.iter_mut().filter(|v| v.is_nan()).for_each(|v| *v = 0.0);
+        // What emits nothing sends the same at any temperature.
+        let at_k = Some(f64::from(temperature_k[i])).filter(|t| t.is_finite());
+        let at_k = at_k.unwrap_or(setting.temperature_k[0]);
+        let sigmas = std::iter::once(sigma_k).chain(of_lights).chain([of_texture]);
+        wider.widen(usize::from(material[i]), at_k, room, sigmas);
+    });
+    Ok(())
+}
+
+/// Something of a pixel that its counts tell.
+#[derive(Debug)]
+enum Followed {
+    Temperature,
+    /// A lighting factor.
+    Lighting(Vec<f64>),
+    /// The texture, by those of the lights.
+    Texture(Vec<f64>),
+}
+
+impl Followed {
+    /// The temperature, the lighting factors, the texture.
+    fn all(setting: &Setting<'_>) -> Vec<Self> {
+        let lights = setting.surroundings.len();
+        let one = |k: usize| Self::Lighting((0..lights).map(|j| f64::from(u8::from(j == k))).collect());
+        let lighting = (0..lights).map(one);
+        std::iter::once(Self::Temperature)
+            .chain(lighting)
+            .chain([Self::Texture(setting.textures())])
+            .collect()
+    }
+
+    fn form(&self, tangents: &Tangents) -> Vec<f64> {
+        match self {
+            Self::Temperature => tangents.of_temperature(),
+            Self::Lighting(a) | Self::Texture(a) => tangents.of_lighting(a),
+        }
+    }
+
+    /// What a unit of a cause changes of it itself, whatever the counts say.
+    fn itself(&self, tangents: &Tangents, effect: &Effect, lit: &[f64]) -> f64 {
+        match self {
+            Self::Temperature => 0.0,
+            Self::Lighting(a) => effect.of_lighting(a, lit),
+            Self::Texture(a) => effect.of_lighting(a, lit) + effect.of_lights(tangents, lit),
+        }
+    }
+}
+
+/// Room for one pixel.
+#[derive(Debug, Default)]
+struct Room {
+    tangent: Tangent,
+    lit: Vec<f64>,
+    /// Of each effect.
+    slopes: Vec<Vec<f64>>,
+}
+
+/// By what deviations are widened.
+#[derive(Debug)]
+struct Wider<'a> {
+    together: &'a [f64],
+    /// Causes, each with its effect.
+    effects: Vec<(Effect, &'a ToHold)>,
+    estimated: Vec<Effect>,
+    shared: Option<&'a Shared>,
+    followed: Vec<Followed>,
+    tangents: Tangents,
+}
+
+impl Wider<'_> {
+    /// Widens the deviations of what is followed of a pixel of material `m`.
+    fn widen<'s>(&self, m: usize, at_k: f64, room: &mut Room, sigmas: impl Iterator<Item = &'s mut f32>) {
+        let Self { tangents, effects, estimated, .. } = self;
+        let Room { tangent, lit, slopes } = room;
         if !tangents.at(m, at_k, lit, tangent) {
             return;
         }
-        let Some(g) = tangent.row(&row) else { return };
-        let shares = g.iter().zip(&tangents.used).zip(&tangent.sigma);
-        let off: f64 =
-            shares.map(|((g, band), sigma)| g * together.get(*band).copied().unwrap_or(0.0) / sigma).sum();
-        let mut moved_by = |effect: &Effect| {
-            effect.slope(&tangents, (m, at_k, lit), tangent, slope);
-            dot(&g, slope)
-        };
-        let by_shared: Vec<f64> = estimated.iter().map(&mut moved_by).collect();
-        let moved = effects.iter().zip(causes).map(|(effect, one)| {
-            let followed = dot(&by_shared, &one.follow);
-            ((moved_by(effect) - followed) * one.amount).abs()
-        });
-        let moved = moved.fold(0.0, f64::max);
-        let by_shared = shared.map_or(0.0, |shared| shared.sigma_of(&by_shared));
-        *sigma_k = f64::from(*sigma_k).hypot(off).hypot(moved).hypot(by_shared) as f32;
-    };
-    temperature_sigma_k
-        .par_iter_mut()
-        .enumerate()
-        .for_each_init(<(Tangent, Vec<f64>, Vec<f64>)>::default, one);
-    Ok(())
+        let effects = || effects.iter().map(|(effect, _)| effect).chain(estimated);
+        slopes.resize_with(effects().count(), Vec::new);
+        for (effect, slope) in effects().zip(slopes.iter_mut()) {
+            effect.slope(tangents, (m, at_k, lit), tangent, slope);
+        }
+        for (followed, sigma) in self.followed.iter().zip(sigmas).filter(|(_, sigma)| sigma.is_finite()) {
+            let Some(g) = tangent.row(&followed.form(tangents)) else { continue };
+            let shares = g.iter().zip(&tangents.used).zip(&tangent.sigma);
+            let off = |((g, band), sigma): ((&f64, &usize), &f64)| {
+                g * self.together.get(*band).copied().unwrap_or(0.0) / sigma
+            };
+            let off: f64 = shares.map(off).sum();
+            let moved_by: Vec<f64> = effects()
+                .zip(slopes.iter())
+                .map(|(effect, slope)| dot(&g, slope) - followed.itself(tangents, effect, lit))
+                .collect();
+            let (moved, by_shared) = moved_by.split_at(self.effects.len());
+            let moved = moved.iter().zip(&self.effects);
+            let moved = moved.map(|(by, (_, one))| ((by - dot(by_shared, &one.follow)) * one.amount).abs());
+            let moved = moved.fold(0.0, f64::max);
+            let by_shared = self.shared.map_or(0.0, |shared| shared.sigma_of(by_shared));
+            *sigma = f64::from(*sigma).hypot(off).hypot(moved).hypot(by_shared) as f32;
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::decompose::judge::tests::{EXACT, Otherwise, causes, counted, state, told};
     use crate::decompose::{Options, decompose};
     use hadar::cube::{Cube, MemoryCube, Shape};
     use hadar::planck::{photon_radiance, photon_radiance_slope};
@@ -154,5 +246,48 @@ mod tests {
             n.iter().zip(&d).zip(&off).fold([0.0, 0.0], |[a, b], ((n, d), s)| [a + d * s / n, b + d * d / n]);
         assert!((added(0) / (sums[0] / sums[1]) - 1.0).abs() < 1e-3);
         assert!(widen(&setting, &mut wider, &[0.0], &[], None).is_err());
+    }
+
+    /// A cube that is decomposed with a little of each cause: temperatures, lighting factors and textures move by what they are widened.
+    #[test]
+    fn what_causes_move_is_what_another_fit_finds() {
+        let told = told();
+        let setting = told.setting();
+        let cube = counted(|n| n, Otherwise::default(), &EXACT);
+        let plain = decompose(&setting, &Options::default(), &cube, &|_| ()).unwrap();
+        let texture = |of: &Maps, i: usize, lights: &[f64]| -> f64 {
+            lights.iter().zip(&of.lighting[2 * i..]).map(|(light, v)| light * f64::from(*v)).sum()
+        };
+        let lights = setting.textures();
+        for cause in causes(&setting) {
+            let h = match cause {
+                Cause::WavelengthShift(_) => 0.2,
+                Cause::LightTemperature { .. } => 0.1,
+                Cause::Air { .. } => 1.0,
+                Cause::LightingTotal => -1e-3,
+                _ => 1e-3,
+            };
+            let other = told.with(&cause, h).unwrap();
+            let found = decompose(&other.setting(), &Options::default(), &cube, &|_| ()).unwrap();
+            let mut wider = plain.clone();
+            wider.temperature_sigma_k.fill(1e-9);
+            wider.lighting_sigma.fill(1e-9);
+            wider.texture_sigma.fill(1e-9);
+            widen(&setting, &mut wider, &[], &[(cause.clone(), h)], None).unwrap();
+            for i in (0..60).filter(|i| (0.2..0.8).contains(&state(*i).2) && found.flags[*i] == 0) {
+                let close = |what: &str, moved: f64, said: f32, whole: f64| {
+                    let off = (moved.abs() - f64::from(said)).abs();
+                    assert!(off < 0.05 * moved.abs() + 2e-5 * whole, "{cause:?} {i} {what}: {moved} {said}");
+                };
+                let t = f64::from(found.temperature_k[i]) - f64::from(plain.temperature_k[i]);
+                close("T", t, wider.temperature_sigma_k[i], 10.0);
+                for k in [2 * i, 2 * i + 1] {
+                    let v = f64::from(found.lighting[k]) - f64::from(plain.lighting[k]);
+                    close("V", v, wider.lighting_sigma[k], 1.0);
+                }
+                let x = texture(&found, i, &other.setting().textures()) - texture(&plain, i, &lights);
+                close("X", x, wider.texture_sigma[i], lights[1]);
+            }
+        }
     }
 }

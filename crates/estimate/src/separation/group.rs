@@ -46,15 +46,13 @@ pub(super) struct State {
 /// States of the pixels of a sample that have one.
 pub(super) fn states(maps: &Maps, radiometry: &Radiometry<'_>) -> Vec<Option<State>> {
     let lights = radiometry.lights.len();
-    let even = radiometry.even_lighting();
     let one = |i: usize| {
         let temperature_k = f64::from(maps.temperature_k[i]);
         if maps.material[i] == NO_MATERIAL || !temperature_k.is_finite() {
             return None;
         }
         let own = maps.lighting.get(i * lights..(i + 1) * lights).unwrap_or_default();
-        let known = own.iter().all(|v| v.is_finite());
-        let lighting = if known { own.iter().map(|v| f64::from(*v)).collect() } else { even.clone() };
+        let lighting = own.iter().map(|v| f64::from(*v)).collect();
         Some(State { group: usize::from(maps.material[i]), temperature_k, lighting })
     };
     (0..maps.material.len()).map(one).collect()

@@ -153,25 +153,30 @@ fn found(result: &Decomposed) -> String {
     out
 }
 
+/// What a flag says.
+pub(crate) fn flag_said(bit: u8) -> &'static str {
+    match bit {
+        flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
+        flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
+        flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
+        flag::LIGHTING_UNKNOWN => {
+            "the lighting is hardly told: little is scattered, or surroundings look alike"
+        }
+        flag::NO_FIT => "no material of the library fits (p below 1e-4)",
+        flag::UNDECIDED => "several materials are left by 95 %",
+        flag::SKIPPED => "left out: a sample is missing, or the pixel is bad",
+        flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
+        _ => "",
+    }
+}
+
 fn flags(result: &Decomposed) -> String {
     if result.flags.is_empty() {
         return String::new();
     }
     let mut out = String::from("Said of pixels\n");
     for row in &result.flags {
-        let meaning = match row.bit {
-            flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
-            flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
-            flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
-            flag::LIGHTING_UNKNOWN => {
-                "the lighting is not told: nothing is scattered, or surroundings look alike"
-            }
-            flag::NO_FIT => "no material of the library fits (p below 1e-4)",
-            flag::UNDECIDED => "several materials are left by 95 %",
-            flag::SKIPPED => "left out: a sample is missing, or the pixel is bad",
-            flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
-            _ => row.flag,
-        };
+        let meaning = flag_said(row.bit);
         let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
     }
     out.push('\n');
@@ -240,6 +245,11 @@ pub(crate) fn how(result: &Decomposed) -> &'static str {
         (None, Method::GreyBody) => "Brightness temperature of every pixel, for itself",
     }
 }
+
+/// Below the pictures of flags and p-values.
+pub(crate) const FLAGGED: &str = "A pixel of which several things are said has the colour of the first of them in the list; flags.csv has all.";
+pub(crate) const P_VALUES: &str =
+    "Of a right model a thousandth of the pixels is below 1e-3; all from 1e-6 down have one colour.";
 
 /// Below the picture of the categories.
 pub(crate) const SEGMENTED: &str = "Every pixel that has a category is in segmentation.npy, every object in objects.csv. Hatched: undecided, what is there is one \

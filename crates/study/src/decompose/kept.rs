@@ -60,6 +60,7 @@ impl Block {
         each(&mut self.maps.temperature_sigma_k, &from.maps.temperature_sigma_k, columns, stride);
         each(&mut self.maps.candidates, &from.maps.candidates, columns, stride);
         each(&mut self.maps.flags, &from.maps.flags, columns, stride);
+        each(&mut self.maps.p_value, &from.maps.p_value, columns, stride);
         each(&mut self.texture, &from.texture, columns, stride);
         each(&mut self.thermal, &from.thermal, columns, stride);
     }
@@ -75,7 +76,8 @@ pub enum Kept {
 }
 
 impl Kept {
-    /// Hands on all rows in their order, a block at a time. In blocks from files lighting, p-values and posteriors are empty.
+    /// Hands on all rows in their order, a block at a time. In blocks from files lighting, posteriors and the deviations of
+    /// lighting and texture are empty.
     ///
     /// # Errors
     /// Files that cannot be read; what `take` refuses.
@@ -91,7 +93,7 @@ impl Kept {
         }
     }
 
-    /// Every `stride`th row and column of a cube of so many rows and columns, without lighting, p-values and posteriors.
+    /// Every `stride`th row and column of a cube of so many rows and columns, without lighting, posteriors and the deviations of lighting and texture.
     ///
     /// # Errors
     /// Files that cannot be read.
@@ -121,17 +123,28 @@ pub struct MapFiles {
     temperature_k: NpyRows<f32>,
     temperature_sigma_k: NpyRows<f32>,
     lighting: NpyRows<f32>,
+    lighting_sigma: NpyRows<f32>,
     p_value: NpyRows<f32>,
     posterior: NpyRows<f32>,
+    candidates_k: NpyRows<u16>,
+    candidates_k_posterior: NpyRows<f32>,
     texture: NpyRows<f32>,
+    texture_sigma: NpyRows<f32>,
     thermal: NpyRows<f32>,
 }
 
 impl MapFiles {
-    /// Files in `folder` for so many surroundings, `height` rows in a block.
-    pub(super) fn create(folder: &Path, height: usize, shape: Shape, surroundings: usize) -> Result<Self> {
+    /// Files in `folder` for so many surroundings and most probable materials, `height` rows in a block.
+    pub(super) fn create(
+        folder: &Path,
+        height: usize,
+        shape: Shape,
+        (surroundings, ranked): (usize, usize),
+    ) -> Result<Self> {
         let size = [shape.rows(), shape.columns()];
         let map = |name: &str| NpyRows::create(&folder.join(name), &size);
+        let deep = |layers: usize| [size[0], size[1], layers];
+        let lit = |name: &str| NpyRows::create(&folder.join(name), &deep(surroundings));
         Ok(Self {
             shape,
             height: height.max(1),
@@ -140,10 +153,17 @@ impl MapFiles {
             flags: NpyRows::create(&folder.join("flags.npy"), &size)?,
             temperature_k: map("temperature_k.npy")?,
             temperature_sigma_k: map("temperature_sigma_k.npy")?,
-            lighting: NpyRows::create(&folder.join("lighting.npy"), &[size[0], size[1], surroundings])?,
+            lighting: lit("lighting.npy")?,
+            lighting_sigma: lit("lighting_sigma.npy")?,
             p_value: map("p_value.npy")?,
             posterior: map("posterior.npy")?,
+            candidates_k: NpyRows::create(&folder.join("candidates_k.npy"), &deep(ranked))?,
+            candidates_k_posterior: NpyRows::create(
+                &folder.join("candidates_k_posterior.npy"),
+                &deep(ranked),
+            )?,
             texture: map("texture.npy")?,
+            texture_sigma: map("texture_sigma.npy")?,
             thermal: map("thermal.npy")?,
         })
     }
@@ -152,14 +172,18 @@ impl MapFiles {
         let Block { first, maps, texture, thermal } = block;
         self.material.write(*first, &maps.material)?;
         self.candidates.write(*first, &maps.candidates)?;
+        self.candidates_k.write(*first, &maps.ranked)?;
         self.flags.write(*first, &maps.flags)?;
         for (file, values) in [
             (&self.temperature_k, &maps.temperature_k),
             (&self.temperature_sigma_k, &maps.temperature_sigma_k),
             (&self.lighting, &maps.lighting),
+            (&self.lighting_sigma, &maps.lighting_sigma),
             (&self.p_value, &maps.p_value),
             (&self.posterior, &maps.posterior),
+            (&self.candidates_k_posterior, &maps.ranked_posterior),
             (&self.texture, texture),
+            (&self.texture_sigma, &maps.texture_sigma),
             (&self.thermal, thermal),
         ] {
             file.write(*first, values)?;
@@ -177,6 +201,7 @@ impl MapFiles {
                 flags: self.flags.read(rows.clone())?,
                 temperature_k: of(&self.temperature_k)?,
                 temperature_sigma_k: of(&self.temperature_sigma_k)?,
+                p_value: of(&self.p_value)?,
                 ..Maps::default()
             },
             texture: of(&self.texture)?,
@@ -186,17 +211,21 @@ impl MapFiles {
 
     /// Where they are, in the order of the report.
     #[must_use]
-    pub fn paths(&self) -> [&Path; 10] {
+    pub fn paths(&self) -> [&Path; 14] {
         [
             self.material.path(),
             self.temperature_k.path(),
             self.temperature_sigma_k.path(),
             self.lighting.path(),
+            self.lighting_sigma.path(),
             self.p_value.path(),
             self.posterior.path(),
             self.candidates.path(),
+            self.candidates_k.path(),
+            self.candidates_k_posterior.path(),
             self.flags.path(),
             self.texture.path(),
+            self.texture_sigma.path(),
             self.thermal.path(),
         ]
     }

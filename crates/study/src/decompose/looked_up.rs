@@ -1,5 +1,6 @@
 //! Names and files of a decomposition scenario looked up: cube, bands, library, spectra of the surroundings, truth.
 
+use super::CANDIDATES;
 use super::categories::parts;
 use super::truth::Truth;
 use crate::Warning;
@@ -44,6 +45,8 @@ pub struct DecomposeStudy {
     pub(super) classes: Vec<(String, Vec<usize>)>,
     /// What each material can be a part of.
     pub(super) categories: Categories,
+    /// How many of the most probable materials of each pixel are given.
+    pub(super) candidates: usize,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -179,6 +182,7 @@ impl DecomposeStudy {
             prior,
             classes,
             categories,
+            candidates: CANDIDATES,
             warnings,
         })
     }

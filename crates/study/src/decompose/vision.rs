@@ -13,7 +13,7 @@ use super::kept::Block;
 use hadar::cube::{Cube, Rows, Sample};
 use hadar::error::Result;
 use hadar::parallel;
-use hadar_estimate::decompose::{Light, Maps, Residue, Setting, Sky, Told, distil};
+use hadar_estimate::decompose::{Maps, Residue, Setting, Sky, Told, distil};
 use hadar_scenario::MaterialRef;
 use hadar_scenario::decompose::LightSource;
 use serde::Serialize;
@@ -180,20 +180,7 @@ fn used(told: &Told) -> Vec<usize> {
 }
 
 fn texture(told: &Told, maps: &Maps) -> Vec<f32> {
-    let used = used(told);
-    let lights: Vec<f64> = told
-        .surroundings
-        .iter()
-        .map(|light| {
-            let of_bands: Vec<f64> = match light {
-                Light::Radiance(radiance) => told.bands.weigh(radiance),
-                Light::Counts(counts) => {
-                    counts.iter().zip(&told.counts_per_radiance).map(|(n, k)| n / k).collect()
-                }
-            };
-            used.iter().filter_map(|band| of_bands.get(*band)).sum()
-        })
-        .collect();
+    let lights = told.setting().textures();
     if lights.is_empty() {
         return vec![f32::NAN; maps.material.len()];
     }

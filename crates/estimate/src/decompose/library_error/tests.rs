@@ -173,7 +173,7 @@ fn a_fit_is_that_of_generalised_least_squares() {
         let maps = scene.maps(&seen, Some(STATED), Skipping::default());
         for (i, n) in seen.chunks(41).enumerate() {
             let (m, mut t, mut v) = truths[i];
-            let mut sigma = 0.0;
+            let (mut sigma, mut of_lighting) = (0.0, 0.0);
             for _ in 0..20 {
                 let [mean, slope, ground, _] = scene.mean(m, t, v);
                 let factor = scene.covariance(m, t, v, 1.0).cholesky().unwrap();
@@ -181,7 +181,8 @@ fn a_fit_is_that_of_generalised_least_squares() {
                 let white = factor.solve(&columns);
                 let inverse = (columns.transpose() * &white).try_inverse().unwrap();
                 let step = &inverse * (white.transpose() * (DVector::from_column_slice(n) - mean));
-                (t, v, sigma) = (t + step[0], v + step[1], inverse[(0, 0)].sqrt());
+                (t, v) = (t + step[0], v + step[1]);
+                (sigma, of_lighting) = (inverse[(0, 0)].sqrt(), inverse[(1, 1)].sqrt());
             }
             if !(0.0..=1.0).contains(&v) {
                 continue;
@@ -190,6 +191,7 @@ fn a_fit_is_that_of_generalised_least_squares() {
             // Half a step of the maps' numbers of single precision, and the last step.
             assert!((found - t).abs() < 2e-5 + 0.01 * sigma, "{counts}: {found} is not {t} ± {sigma}");
             close(f64::from(maps.temperature_sigma_k[i]), sigma, 1e-2);
+            close(f64::from(maps.lighting_sigma[2 * i + 1]), of_lighting, 1e-2);
         }
     }
 }

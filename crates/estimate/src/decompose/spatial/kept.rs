@@ -80,7 +80,7 @@ impl Task {
                 kind: Some(*kind as u16),
                 log_odds: log_odds(*kind, fit.deviance) as f32,
                 temperature_k: state.temperature_k as f32,
-                sigma_k: state.deviations(&room.sums, &model.limits()).temperature_k as f32,
+                sigma_k: state.deviations(&room.sums, &model.limits()).temperature_k() as f32,
             });
         }
         let weight: f64 = others.iter().map(|(kind, fit)| libm::exp(log_odds(*kind, fit.deviance))).sum();
