@@ -12,20 +12,10 @@
 mod noise;
 pub mod response;
 pub mod spectrometer;
+mod spread;
 mod stripes;
 pub mod twin;
 pub mod vignette;
-
-/// Values of some bands among all of them, `none` for the others.
-fn spread<T: Clone>(values: Vec<T>, of: &[usize], bands: usize, none: T) -> Vec<T> {
-    let mut all = vec![none; bands];
-    for (band, value) in of.iter().zip(values) {
-        if let Some(place) = all.get_mut(*band) {
-            *place = value;
-        }
-    }
-    all
-}
 
 pub use noise::{Asked, Line, OfBand, Transfer, photon_transfer};
 pub use stripes::{Apart, Axis, Destriped, Kept, Sought, Stripe, Why, find_stripes};

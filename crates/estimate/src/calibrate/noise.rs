@@ -127,7 +127,7 @@ impl Transfer {
         let [mean_of_all, mean, variance, sigma_variance, texture] = [nan; 5];
         let none =
             OfBand { line: None, mean_of_all, mean, variance, sigma_variance, texture, bins: Vec::new() };
-        self.bands = crate::calibrate::spread(self.bands, of, bands, none);
+        self.bands = super::spread::spread(self.bands, of, bands, none);
         self
     }
 

@@ -38,8 +38,7 @@ mod scan;
 mod segments;
 mod steps;
 
-pub use apart::Apart;
-pub use found::{Axis, Destriped, Kept, Sought, Stripe, Why};
+pub use found::{Apart, Axis, Destriped, Kept, Sought, Stripe, Why};
 
 use self::common::{Told, overlooked, told};
 use self::scan::{Band, striped};

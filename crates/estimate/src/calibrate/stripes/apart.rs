@@ -12,6 +12,7 @@
 //! Units: those of the cube; shares of the level of the band in what is given back.
 
 use super::fit::median;
+use super::found::Apart;
 use super::scan::Band;
 
 /// Weight of independent lines in d².
@@ -23,16 +24,6 @@ const FEWEST: [usize; 2] = [8, 6];
 const SURE: f64 = 5.0;
 /// Variance of a squared robust scatter over its square, times the lines; neighbouring d share lines, so that half of them count.
 const OF_SCATTER: f64 = 4.0 * 1.36 * 2.0;
-
-/// How lines of a band scatter about what those beside them lead to expect, over the level of the band.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-#[non_exhaustive]
-pub struct Apart {
-    /// Deviation of a line, as independent ones would have it, beyond noise; 0 where noise explains it.
-    pub lines: f64,
-    /// Deviation of a line that noise, and texture along it, explains.
-    pub noise: f64,
-}
 
 /// Of every band; `None` of too few lines.
 pub(super) fn apart(bands: &[Band], lines: usize) -> Vec<Option<Apart>> {

@@ -1,6 +1,6 @@
 //! What is sought, and what was found.
 
-use super::apart::Apart;
+use super::super::spread::spread;
 
 hadar::named! {
     /// Along what stripes lie.
@@ -96,18 +96,28 @@ pub struct Kept {
     pub off: f64,
 }
 
+/// How lines of a band scatter about what those beside them lead to expect, over the level of the band.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Apart {
+    /// Deviation of a line, as independent ones would have it, beyond noise; 0 where noise explains it.
+    pub lines: f64,
+    /// Deviation of a line that noise, and texture along it, explains.
+    pub noise: f64,
+}
+
 impl Destriped {
     /// Of a cube of so many bands, of which those looked at were `of`: NaN for the others.
     #[must_use]
     pub fn among(mut self, of: &[usize], bands: usize) -> Self {
-        let spread = |values: Vec<f64>| crate::calibrate::spread(values, of, bands, f64::NAN);
+        let numbers = |values: Vec<f64>| spread(values, of, bands, f64::NAN);
         let place = |band: &mut usize| *band = of.get(*band).copied().unwrap_or(*band);
         self.stripes.iter_mut().for_each(|stripe| place(&mut stripe.band));
         self.kept.iter_mut().for_each(|kept| place(&mut kept.band));
-        self.detectable = spread(self.detectable);
-        self.detectable_gain = spread(self.detectable_gain);
-        self.levels = spread(self.levels);
-        self.apart = crate::calibrate::spread(self.apart, of, bands, None);
+        self.detectable = numbers(self.detectable);
+        self.detectable_gain = numbers(self.detectable_gain);
+        self.levels = numbers(self.levels);
+        self.apart = spread(self.apart, of, bands, None);
         self.bands = bands;
         self
     }
