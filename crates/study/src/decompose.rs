@@ -27,7 +27,7 @@ pub(super) use truth::{There, Truth};
 pub use vision::{DistilledTexture, Vision, hues_deg};
 
 use self::estimated::Estimated;
-use self::judged::{Asked, ToHold};
+use self::judged::{Asked, Wider};
 use self::results::{Counted, rows, summary};
 use self::worth::Held;
 use super::{Warning, memory};
@@ -129,7 +129,7 @@ impl DecomposeStudy {
                 none => none.insert(Asked::of(self, method, &setting, &options, (all, estimated.as_ref()))?),
             };
             let (together, to_hold) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
-            if let Some(ToHold { noise, .. }) = &to_hold {
+            if let Some(Wider { noise, .. }) = &to_hold {
                 for all in [&mut maps.temperature_sigma_k, &mut maps.lighting_sigma, &mut maps.texture_sigma]
                 {
                     all.iter_mut().for_each(|sigma| *sigma *= *noise as f32);

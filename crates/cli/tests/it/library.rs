@@ -40,7 +40,7 @@ fn wavenumber(band: usize) -> f64 {
     800.0 + 20.0 * band as f64
 }
 
-fn emissivity(material: usize, band: usize) -> f64 {
+pub(crate) fn emissivity(material: usize, band: usize) -> f64 {
     let nu = wavenumber(band);
     [0.93 + 0.03 * (nu / 60.0).sin(), 0.6 + 0.3 * (-((nu - 1000.0) / 80.0).powi(2)).exp()][material]
 }

@@ -13,6 +13,7 @@ mod cli;
 mod cli_mistakes;
 mod companion;
 mod cube_judges;
+mod cube_shares;
 mod cubes;
 mod decompose;
 mod decompose_by_rows;

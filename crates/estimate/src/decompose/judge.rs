@@ -39,7 +39,7 @@ use hadar::statistics::chi_square_survival;
 const FAR: f64 = 4.0;
 
 /// Share of a cause's information from which on it is one of its own beside those that are estimated with the pixels.
-const ONE: f64 = 1e-6;
+const ONE: f64 = 1e-4;
 
 /// Rows whose sums are in memory at once.
 const ROWS: usize = 16;
@@ -80,6 +80,8 @@ pub struct Together {
     lean: Vec<f64>,
     /// The last of the causes, which are estimated with the pixels ([`super::shared`]).
     shared: usize,
+    /// By how much each of these follows a unit of each cause, if it was taken for nothing.
+    follow: Vec<Vec<f64>>,
     /// J, the same of `of_library` and of `moved`, of each cause with each of the shared ones: `[cause][shared]`.
     pub(super) cross: Cross,
 }
@@ -148,12 +150,15 @@ impl Together {
     fn beside(&mut self, shared: &Shared) {
         let count = self.shared;
         let kept = self.score.len() - count;
+        // What is left of their own equations where they were settled.
+        let rest_of_shared = shared.rest(&self.score[kept..]);
         for a in 0..kept {
             let row = |of: &[f64], a: usize| -> Vec<f64> { of[a * count..][..count].to_vec() };
             let (information, library, moved) =
                 (row(&self.cross.information, a), row(&self.cross.of_library, a), row(&self.cross.moved, a));
             // By how much the shared ones follow a unit of the cause.
             let follow = shared.image(&information);
+            self.score[a] -= dot(&follow, &rest_of_shared);
             let own = self.information[a];
             let rest = own - dot(&information, &follow);
             // What is left of one that a shared unknown is as well is rounding.
@@ -164,6 +169,7 @@ impl Together {
             };
             self.of_library[a] = square(&self.cross.of_library, self.of_library[a], &library);
             self.moved[a] = square(&self.cross.moved, self.moved[a], &moved);
+            self.follow.push(follow);
         }
         [&mut self.score, &mut self.information, &mut self.of_library, &mut self.moved]
             .into_iter()
@@ -188,6 +194,12 @@ impl Together {
         let estimate = self.alone(cause).map_or(0.0, |found| found.estimate.abs());
         let square = self.moved.get(cause).copied().unwrap_or(0.0) / self.pixels.max(1) as f64;
         estimate * square.sqrt()
+    }
+
+    /// By how much each of the unknowns that were estimated with the pixels is off for a unit of a cause; nothing without such.
+    #[must_use]
+    pub fn follow(&self, cause: usize) -> &[f64] {
+        self.follow.get(cause).map_or(&[], Vec::as_slice)
     }
 
     /// Deviations of the mean p-value below that of a right model.

@@ -99,6 +99,12 @@ impl Shared {
         solved.iter().zip(&self.unknowns).map(|(x, one)| x * one.sigma).collect()
     }
 
+    /// Scores with those of the prior.
+    pub(super) fn rest(&self, score: &[f64]) -> Vec<f64> {
+        let each = score.iter().zip(&self.amounts).zip(&self.unknowns);
+        each.map(|((score, amount), one)| score - amount / one.sigma / one.sigma).collect()
+    }
+
     /// Deviation of what follows the unknowns by slopes.
     #[must_use]
     pub fn sigma_of(&self, slopes: &[f64]) -> f64 {

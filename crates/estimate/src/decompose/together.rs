@@ -21,6 +21,17 @@ use super::tangent::{Tangent, Tangents, dot};
 use hadar::error::{Error, Result, check};
 use rayon::prelude::*;
 
+/// A cause that deviations have to hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToHold {
+    /// What may be otherwise.
+    pub cause: Cause,
+    /// How much of it.
+    pub amount: f64,
+    /// By how much shared unknowns are off for a unit of it ([`super::Together::follow`]).
+    pub follow: Vec<f64>,
+}
+
 /// Widens the deviations of temperatures, lighting factors and textures by an error of deviation `together` in each band (counts; none if
 /// empty), the same number of deviations in all bands and pixels, by the largest of what the amounts of some causes do to each, and by what
 /// is not known of unknowns that the whole cube shares.
@@ -31,7 +42,7 @@ pub fn widen(
     setting: &Setting<'_>,
     maps: &mut Maps,
     together: &[f64],
-    causes: &[(Cause, f64)],
+    causes: &[ToHold],
     shared: Option<&Shared>,
 ) -> Result<()> {
     let (bands, lights) = (setting.bands.len(), setting.surroundings.len());
@@ -51,11 +62,11 @@ pub fn widen(
     check::each(together, |s| s >= 0.0, |s| check::non_negative("deviation of a band", s, "counts"))?;
     let tangents = Tangents::new(setting)?;
     let effect = |cause: &Cause| Effect::new(cause, setting, &tangents);
-    let effects = causes.iter().map(|(cause, amount)| Ok((effect(cause)?, *amount)));
-    let effects = effects.collect::<Result<Vec<(Effect, f64)>>>()?;
+    let effects = causes.iter().map(|one| effect(&one.cause)).collect::<Result<Vec<_>>>()?;
     let together_estimated = shared.map_or_else(Vec::new, Shared::causes);
     let estimated = together_estimated.iter().map(effect).collect::<Result<Vec<_>>>()?;
-    let wider = Wider { together, effects, estimated, shared, followed: Followed::all(setting), tangents };
+    let followed = Followed::all(setting);
+    let wider = Wider { together, causes, effects, estimated, shared, followed, tangents };
     let Maps {
         material, temperature_k, temperature_sigma_k, lighting, lighting_sigma, texture_sigma, ..
     } = maps;
@@ -138,7 +149,8 @@ struct Room {
 #[derive(Debug)]
 struct Wider<'a> {
     together: &'a [f64],
-    effects: Vec<(Effect, f64)>,
+    causes: &'a [ToHold],
+    effects: Vec<Effect>,
     estimated: Vec<Effect>,
     shared: Option<&'a Shared>,
     followed: Vec<Followed>,
@@ -153,7 +165,7 @@ impl Wider<'_> {
         if !tangents.at(m, at_k, lit, tangent) {
             return;
         }
-        let effects = || effects.iter().map(|(effect, _)| effect).chain(estimated);
+        let effects = || effects.iter().chain(estimated);
         slopes.resize_with(effects().count(), Vec::new);
         for (effect, slope) in effects().zip(slopes.iter_mut()) {
             effect.slope(tangents, (m, at_k, lit), tangent, slope);
@@ -170,7 +182,8 @@ impl Wider<'_> {
                 .map(|(effect, slope)| dot(&g, slope) - followed.itself(tangents, effect, lit))
                 .collect();
             let (moved, by_shared) = moved_by.split_at(self.effects.len());
-            let moved = moved.iter().zip(&self.effects).map(|(by, (_, amount))| (by * amount).abs());
+            let moved = moved.iter().zip(self.causes);
+            let moved = moved.map(|(by, one)| ((by - dot(by_shared, &one.follow)) * one.amount).abs());
             let moved = moved.fold(0.0, f64::max);
             let by_shared = self.shared.map_or(0.0, |shared| shared.sigma_of(by_shared));
             *sigma = f64::from(*sigma).hypot(off).hypot(moved).hypot(by_shared) as f32;
@@ -261,7 +274,8 @@ mod tests {
             wider.temperature_sigma_k.fill(1e-9);
             wider.lighting_sigma.fill(1e-9);
             wider.texture_sigma.fill(1e-9);
-            widen(&setting, &mut wider, &[], &[(cause.clone(), h)], None).unwrap();
+            let to_hold = ToHold { cause: cause.clone(), amount: h, follow: Vec::new() };
+            widen(&setting, &mut wider, &[], &[to_hold], None).unwrap();
             for i in (0..60).filter(|i| (0.2..0.8).contains(&state(*i).2) && found.flags[*i] == 0) {
                 let close = |what: &str, moved: f64, said: f32, whole: f64| {
                     let off = (moved.abs() - f64::from(said)).abs();

@@ -19,7 +19,8 @@ use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
 use hadar::error::Result;
 use hadar_estimate::decompose::{
-    Cause, Judged, Light, Maps, Method, Options, Setting, Shared, Together, decompose_by, judge, p_deviations,
+    Cause, Judged, Light, Maps, Method, Options, Setting, Shared, ToHold, Together, decompose_by, judge,
+    p_deviations,
 };
 use hadar_scenario::decompose::LightSource;
 
@@ -54,9 +55,9 @@ pub(super) struct Asked {
 
 /// What the deviations of temperatures have to hold.
 #[derive(Debug)]
-pub(super) struct ToHold {
+pub(super) struct Wider {
     /// Causes with how much of each.
-    pub(super) causes: Vec<(Cause, f64)>,
+    pub(super) causes: Vec<ToHold>,
     /// By how much all noise is larger.
     pub(super) noise: f64,
 }
@@ -157,11 +158,14 @@ impl Asked {
     }
 
     /// What the deviations have to hold; nothing while nothing speaks against the model.
-    pub(super) fn to_hold(&self) -> Option<ToHold> {
+    pub(super) fn to_hold(&self) -> Option<Wider> {
         let sums = self.sums().filter(|_| self.rejects())?;
-        let of = |i: usize| Some((self.causes.get(i)?.clone(), sums.alone(i)?.estimate));
+        let of = |i: usize| {
+            let (cause, amount) = (self.causes.get(i)?.clone(), sums.alone(i)?.estimate);
+            Some(ToHold { cause, amount, follow: sums.follow(i).to_vec() })
+        };
         let larger = self.noise(sums).filter(|(gain, _)| *gain >= self.least_gain(sums));
-        Some(ToHold {
+        Some(Wider {
             causes: self.may_be(sums).into_iter().filter_map(of).collect(),
             noise: larger.map_or(1.0, |(_, factor)| factor.max(1.0)),
         })
