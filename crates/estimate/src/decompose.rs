@@ -14,7 +14,7 @@
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it; [`possible`]: the categories that it may be of.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
-//! truth may be a little way off; those of a prior over the image are its own ([`SpatialPrior`]).
+//! truth may be a little way off; those of lighting and texture end where its limits end them; those of a prior over the image are its own ([`SpatialPrior`]).
 //!
 //! Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
 //!

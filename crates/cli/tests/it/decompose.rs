@@ -128,7 +128,7 @@ fn maps_and_numbers_are_those_of_the_scene() {
     assert_eq!(written("one", "candidates_k.npy")[128..], written("out", "material.npy")[128..]);
     assert_eq!(written("one", "candidates_k_posterior.npy")[128..], written("out", "posterior.npy")[128..]);
     for name in
-        ["lighting_sigma.npy", "texture_sigma.npy", "flags.png", "flags.csv", "p_value.svg", "p_value.csv"]
+        ["lighting_sigma.npy", "texture_sigma.npy", "flags.png", "flags.csv", "p_value.png", "p_value.csv"]
     {
         assert_eq!(written("one", name), written("out", name), "{name}");
     }

@@ -318,7 +318,7 @@ impl Maps {
         let pixels = self.flags.iter_mut().zip(&mut self.texture_sigma);
         for ((flags, of_texture), (lighting, sigma)) in pixels.zip(each) {
             if *flags & flag::LIGHTING_UNKNOWN != 0 || sigma.iter().any(|sigma| *sigma > most) {
-                *flags = *flags & !flag::LIGHTING_AT_LIMIT | flag::LIGHTING_UNKNOWN;
+                *flags |= flag::LIGHTING_UNKNOWN;
                 lighting.fill(f32::NAN);
                 sigma.fill(f32::NAN);
                 *of_texture = f32::NAN;

@@ -73,7 +73,7 @@ pub struct Pixel {
     pub sigma_k: f64,
     /// Thermal lighting factors of the fit, also where it does not tell them ([`flag::LIGHTING_UNKNOWN`]).
     pub lighting: [f64; MOST_SURROUNDINGS],
-    /// Their deviations, as that of the temperature; infinite where nothing tells a factor.
+    /// Their deviations, beside a limit as far as it lets the truth be off; infinite where nothing tells a factor.
     pub lighting_sigma: [f64; MOST_SURROUNDINGS],
     /// Deviation of the texture Σₖ Vₖ ∫Sₖ dν over the bands that count, photons s⁻¹ m⁻² sr⁻¹.
     pub texture_sigma: f64,
@@ -425,7 +425,7 @@ impl Task {
         let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
         let p_value = self.p_value(&fit.state, sums.chi_square);
         raise(at_limit, flag::TEMPERATURE_AT_LIMIT);
-        raise(lit_at_limit && !no_lighting, flag::LIGHTING_AT_LIMIT);
+        raise(lit_at_limit && !lighting_sigma.contains(&f64::INFINITY), flag::LIGHTING_AT_LIMIT);
         raise(no_information, flag::NO_INFORMATION);
         raise(no_lighting, flag::LIGHTING_UNKNOWN);
         raise(p_value < NO_FIT, flag::NO_FIT);

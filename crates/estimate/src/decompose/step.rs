@@ -15,6 +15,8 @@ use super::kernel::{MOST, Sums};
 
 /// A pivot below this, of columns scaled to 1, is a direction without information of its own.
 const DEPENDENT: f64 = 1e-11;
+/// Directions of the unknowns, and of those that a limit holds besides.
+const WAYS: usize = 2 * MOST;
 /// Deviations that a weight at 0 must promise before it comes back.
 const PROMISE: f64 = 1e-7;
 
@@ -124,7 +126,36 @@ impl State {
     pub(super) fn deviations(&self, sums: &Sums, limits: &Limits) -> Deviations {
         // What a limit holds is not known better for that: the truth may be a little way off it.
         let open = Self { held: false, free: [true; MOST], ..*self };
-        Deviations { face: Face::new(sums, limits, &open), limits: *limits }
+        let mut ways = [[0.0; MOST]; WAYS];
+        let mut each = ways.iter_mut();
+        let mut push = |face: &Face, i: usize| {
+            let way = face.unit(i);
+            let length = self.length(&way, sums, limits);
+            each.next().into_iter().for_each(|to| *to = way.map(|x| length * x));
+        };
+        let inside = Face::new(sums, limits, &Self { held: false, ..*self });
+        (0..inside.len).for_each(|i| push(&inside, i));
+        let base = (0..limits.vertices).find(|&j| self.free[j]).filter(|_| !limits.gain);
+        for j in (0..limits.vertices).filter(|&j| !self.free[j]) {
+            let face = inside.with(direction_of(j, base, limits), sums);
+            push(&face, face.len - 1);
+        }
+        Deviations { face: Face::new(sums, limits, &open), ways, limits: *limits }
+    }
+
+    /// How far the truth may be along a direction of one deviation, either way: until a limit, or until χ² has risen by 1.
+    fn length(&self, way: &[f64; MOST], sums: &Sums, limits: &Limits) -> f64 {
+        let score = dot(&sums.slope, way, limits.unknowns);
+        let to = |sign: f64| {
+            let rise = libm::sqrt(score.mul_add(score, 1.0)) + sign * score;
+            let until = |j: usize| match sign * weight_along(way, j, limits) {
+                // What stays but for rounding meets no limit.
+                slope if slope < -PROMISE => self.mixture[j] / -slope,
+                _ => f64::INFINITY,
+            };
+            (0..limits.vertices).map(until).fold(rise.min(1.0), f64::min)
+        };
+        to(1.0).max(to(-1.0))
     }
 
     fn reach(&self, along: &[f64; MOST], limits: &Limits) -> (f64, Option<Stop>) {
@@ -217,15 +248,18 @@ impl Step {
     }
 }
 
-/// Deviations of the unknowns, as if no limit held any of them.
+/// Deviations of the unknowns.
 #[derive(Debug)]
 pub(super) struct Deviations {
+    /// As if no limit held any of them.
     face: Face,
+    /// Independent directions of one deviation, as far as limits let the truth go along them; those that a limit holds each for itself.
+    ways: [[f64; MOST]; WAYS],
     limits: Limits,
 }
 
 impl Deviations {
-    /// Of the temperature, K; infinite without information.
+    /// Of the temperature, K, as if no limit held anything; infinite without information.
     pub(super) fn temperature_k(&self) -> f64 {
         let last = self.face.len - 1;
         if self.face.blind[last] { f64::INFINITY } else { self.face.deviation(last) }
@@ -233,11 +267,13 @@ impl Deviations {
 
     /// Of Σⱼ cⱼuⱼ over the weights of the vertices; infinite where some of it cannot be told.
     pub(super) fn of_mixture(&self, c: &[f64; MOST]) -> f64 {
-        let along = |direction: &[f64; MOST]| {
-            (0..self.limits.vertices).map(|j| c[j] * weight_along(direction, j, &self.limits)).sum()
+        let along = |way: &[f64; MOST]| {
+            (0..self.limits.vertices).map(|j| c[j] * weight_along(way, j, &self.limits)).sum::<f64>()
         };
-        let sigma = self.face.deviation_of(&self.face.directions.each_ref().map(along));
-        if sigma.is_nan() { f64::INFINITY } else { sigma }
+        let form = self.face.directions.each_ref().map(along);
+        let is_blind = (0..self.face.len).any(|i| self.face.blind[i] && form[i] != 0.0);
+        let square: f64 = self.ways.iter().map(|way| along(way).powi(2)).sum();
+        if is_blind || square.is_nan() { f64::INFINITY } else { square.sqrt() }
     }
 }
 
@@ -285,7 +321,6 @@ impl Face {
             len: 0,
             unknowns: limits.unknowns,
         };
-        let n = limits.unknowns;
         let base = (0..limits.vertices).find(|&j| state.free[j]).filter(|_| !limits.gain);
         for j in (0..limits.vertices).filter(|&j| state.free[j] && Some(j) != base) {
             face.directions[face.len] = direction_of(j, base, limits);
@@ -295,32 +330,43 @@ impl Face {
             face.directions[face.len][0] = 1.0;
             face.len += 1;
         }
-        // A column shorter than rounding of the counts themselves has no direction.
-        for i in 0..face.len {
-            let length = quadratic(sums, &face.directions[i], n).sqrt();
-            let scale = if length > f64::MIN_POSITIVE { 1.0 / length } else { 0.0 };
-            face.directions[i][..n].iter_mut().for_each(|x| *x *= scale);
-        }
-        for i in 0..face.len {
-            let mut image = [0.0; MOST];
-            for (k, image) in image[..n].iter_mut().enumerate() {
-                *image = dot(&sums.information[k], &face.directions[i], n);
-            }
-            for j in 0..=i {
-                let mut rest = dot(&image, &face.directions[j], n);
-                for k in 0..j {
-                    rest -= face.factor[i][k] * face.factor[j][k];
-                }
-                if j < i {
-                    face.factor[i][j] = if face.blind[j] { 0.0 } else { rest / face.factor[j][j] };
-                } else if rest > DEPENDENT {
-                    face.factor[i][i] = rest.sqrt();
-                } else {
-                    face.blind[i] = true;
-                }
-            }
-        }
+        (0..face.len).for_each(|i| face.factor(i, sums));
         face
+    }
+
+    /// With one direction more, after all others.
+    fn with(&self, direction: [f64; MOST], sums: &Sums) -> Self {
+        let mut face = self.clone();
+        face.directions[face.len] = direction;
+        face.len += 1;
+        face.factor(face.len - 1, sums);
+        face
+    }
+
+    /// Scales direction i and factors it with those before.
+    fn factor(&mut self, i: usize, sums: &Sums) {
+        let n = self.unknowns;
+        // A column shorter than rounding of the counts themselves has no direction.
+        let length = quadratic(sums, &self.directions[i], n).sqrt();
+        let scale = if length > f64::MIN_POSITIVE { 1.0 / length } else { 1.0 };
+        self.directions[i][..n].iter_mut().for_each(|x| *x *= scale);
+        let mut image = [0.0; MOST];
+        for (k, image) in image[..n].iter_mut().enumerate() {
+            *image = dot(&sums.information[k], &self.directions[i], n);
+        }
+        for j in 0..=i {
+            let mut rest = dot(&image, &self.directions[j], n);
+            for k in 0..j {
+                rest -= self.factor[i][k] * self.factor[j][k];
+            }
+            if j < i {
+                self.factor[i][j] = if self.blind[j] { 0.0 } else { rest / self.factor[j][j] };
+            } else if rest > DEPENDENT {
+                self.factor[i][i] = rest.sqrt();
+            } else {
+                self.blind[i] = true;
+            }
+        }
     }
 
     /// L x = b, with nothing along what is blind.
@@ -337,7 +383,17 @@ impl Face {
 
     /// The step to the least of the form on this face.
     fn least(&self, slope: &[f64; MOST]) -> [f64; MOST] {
-        let half = self.forward(|i| dot(slope, &self.directions[i], self.unknowns));
+        self.back(self.forward(|i| dot(slope, &self.directions[i], self.unknowns)))
+    }
+
+    /// The i-th of independent directions of one deviation: direction i without what those before explain of it; nothing if blind.
+    fn unit(&self, i: usize) -> [f64; MOST] {
+        let mut one = [0.0; MOST];
+        one[i] = if self.blind[i] { 0.0 } else { 1.0 };
+        self.back(one)
+    }
+
+    fn back(&self, half: [f64; MOST]) -> [f64; MOST] {
         let mut steps = [0.0; MOST];
         for i in (0..self.len).rev().filter(|&i| !self.blind[i]) {
             let after: f64 = (i + 1..self.len).map(|k| self.factor[k][i] * steps[k]).sum();
@@ -353,14 +409,5 @@ impl Face {
     /// Deviation of the temperature, whose direction is the last one: those before are profiled out.
     fn deviation(&self, last: usize) -> f64 {
         self.directions[last][0] / self.factor[last][last]
-    }
-
-    /// Deviation of a linear form of the directions: ‖L⁻¹c‖, without ever forming an inverse.
-    fn deviation_of(&self, form: &[f64; MOST]) -> f64 {
-        if (0..self.len).any(|i| self.blind[i] && form[i] != 0.0) {
-            return f64::INFINITY;
-        }
-        let white = self.forward(|i| form[i]);
-        white.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 }

@@ -65,7 +65,8 @@ pub fn widen(
     let effects = causes.iter().map(|one| Ok((effect(&one.cause)?, one))).collect::<Result<Vec<_>>>()?;
     let together_estimated = shared.map_or_else(Vec::new, Shared::causes);
     let estimated = together_estimated.iter().map(effect).collect::<Result<Vec<_>>>()?;
-    let wider = Wider { together, effects, estimated, shared, followed: Followed::all(setting), tangents };
+    let followed = Followed::all(setting);
+    let wider = Wider { together, effects, estimated, shared, followed, tangents };
     let Maps {
         material, temperature_k, temperature_sigma_k, lighting, lighting_sigma, texture_sigma, ..
     } = maps;
@@ -273,7 +274,8 @@ mod tests {
             wider.temperature_sigma_k.fill(1e-9);
             wider.lighting_sigma.fill(1e-9);
             wider.texture_sigma.fill(1e-9);
-            widen(&setting, &mut wider, &[], &[(cause.clone(), h)], None).unwrap();
+            let to_hold = ToHold { cause: cause.clone(), amount: h, follow: Vec::new() };
+            widen(&setting, &mut wider, &[], &[to_hold], None).unwrap();
             for i in (0..60).filter(|i| (0.2..0.8).contains(&state(*i).2) && found.flags[*i] == 0) {
                 let close = |what: &str, moved: f64, said: f32, whole: f64| {
                     let off = (moved.abs() - f64::from(said)).abs();

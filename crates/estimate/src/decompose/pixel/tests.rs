@@ -198,7 +198,6 @@ fn intervals_of_lighting_and_texture_hold_what_they_say() {
         }
         let shares: Vec<f64> =
             covered.iter().map(|covered| f64::from(*covered as u32) / f64::from(open)).collect();
-        println!("{open} {shares:?}");
         assert!(open > 3000 && shares.iter().all(|share| (0.93..0.97).contains(share)), "{open} {shares:?}");
     }
 }
@@ -228,7 +227,6 @@ fn lighting_that_is_given_is_known() {
         }
         given += off.len();
         let rms = (off.iter().sum::<f64>() / off.len().max(1) as f64).sqrt();
-        println!("{kappa:e}: {} given, rms {rms}", off.len());
         assert!(rms < 0.2, "{kappa:e}: {} given, rms {rms}", off.len());
     }
     assert!(unknown > 500 && given > 1000, "{unknown} {given}");
@@ -264,4 +262,30 @@ fn materials_are_ranked() {
         }
     }
     assert!(several > 100, "{several}");
+}
+
+/// Lights that are not there, or alone: the deviations are no smaller than the errors but for a fifth, and at most three times as large, rms.
+#[test]
+fn deviations_beside_a_limit_are_as_large_as_errors() {
+    for (kappa, lit) in [(3e-16, 0.0), (3e-16, 1.0), (3e-16, 0.5), (3e-15, 0.0), (3e-14, 0.0)] {
+        let scene = Scene::new(kappa, 2, None);
+        let mut random = generator(95, 0);
+        let mut counts = Vec::new();
+        for i in 0..1000 {
+            let mean = scene.mean(i % 4, 300.0, &[lit, 0.0]);
+            counts.extend(mean.iter().map(|n| Poisson::new(*n).unwrap().sample(&mut random)));
+        }
+        let maps = scene.maps(counts, Skipping::On);
+        for k in 0..2 {
+            let (mut off, mut sigma, mut count) = (0.0, 0.0, 0.0);
+            for i in (0..1000).filter(|i| usize::from(maps.material[*i]) == i % 4) {
+                let truth = if k == 0 { lit } else { 0.0 };
+                off += (f64::from(maps.lighting[2 * i + k]) - truth).powi(2);
+                sigma += f64::from(maps.lighting_sigma[2 * i + k]).powi(2);
+                count += 1.0;
+            }
+            let (off, sigma) = (f64::sqrt(off / count), f64::sqrt(sigma / count));
+            assert!(sigma > 0.8 * off && sigma < 3.0 * off, "{kappa:e} {lit} {k}: off {off}, said {sigma}");
+        }
+    }
 }
