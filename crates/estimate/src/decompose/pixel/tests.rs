@@ -1,6 +1,6 @@
 //! Deviations of lighting and texture against drawn counts and against least squares written out; ranks of the materials.
 
-use super::*;
+use super::{NO_MATERIAL, flag};
 use crate::decompose::{Light, Maps, Options, Setting, decompose};
 use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::demand::Skipping;
@@ -12,6 +12,9 @@ use rand::RngExt;
 use rand_distr::{Distribution, Poisson};
 
 const RANKS: usize = 5;
+
+/// Material, temperature and lighting of a pixel.
+type State = (usize, f64, Vec<f64>);
 
 /// A scene of two lights, of which some are said to be there and their sum may be known.
 struct Scene {
@@ -82,7 +85,7 @@ impl Scene {
     }
 
     /// Pixels of random states with drawn counts; lighting whose sum is known, or is below 1.
-    fn drawn(&self, pixels: usize, seed: u64) -> (Vec<f64>, Vec<(usize, f64, Vec<f64>)>) {
+    fn drawn(&self, pixels: usize, seed: u64) -> (Vec<f64>, Vec<State>) {
         let mut random = generator(seed, 0);
         let (mut counts, mut truth) = (Vec::new(), Vec::new());
         for _ in 0..pixels {
