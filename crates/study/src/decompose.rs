@@ -15,9 +15,8 @@ mod worth;
 
 pub use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
 pub use estimated::{SharedFound, SharedRow};
-pub(super) use judged::said;
 pub use kept::{Block, Keep, Kept, MapFiles};
-pub use looked_up::DecomposeStudy;
+pub use looked_up::{CANDIDATES, DecomposeStudy};
 pub use ranks::{Count, ranked};
 pub(super) use results::flags;
 pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
@@ -39,9 +38,6 @@ use std::sync::Arc;
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
 pub const CORRELATION_CM1: f64 = 50.0;
-
-/// Most probable materials of a pixel that are given where nothing is said.
-pub const CANDIDATES: usize = 3;
 
 /// Pixels of a cube whose maps are kept in memory where they need not be.
 const KEPT_PIXELS: usize = 1 << 20;

@@ -3,8 +3,7 @@
 mod results;
 mod shared;
 
-pub use results::{ClusterRow, LibraryFound, TruthOfClusters};
-pub use shared::SharedOfLibrary;
+pub use results::{ClusterRow, LibraryFound, SharedOfLibrary, TruthOfClusters};
 
 use super::Warning;
 use super::decompose::Truth;

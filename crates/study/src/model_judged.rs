@@ -1,6 +1,6 @@
 //! What is said of the model that a cube is decomposed with: a verdict, what pixels have in common, what may be otherwise than told.
 
-use hadar_estimate::decompose::{Maps, flag};
+use hadar_estimate::decompose::{Cause, Maps, flag};
 use serde::Serialize;
 
 /// What all pixels together say of the model.
@@ -93,4 +93,19 @@ pub(crate) fn fits(maps: &Maps, i: usize) -> Option<bool> {
     let flags = maps.flags.get(i).copied().unwrap_or(flag::SKIPPED);
     let told = flags & (flag::SKIPPED | flag::NO_INFORMATION) == 0 && !maps.p_value.get(i)?.is_nan();
     told.then_some(flags & flag::NO_FIT == 0)
+}
+
+/// Name, light, band and unit of a cause.
+pub(crate) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
+    match cause {
+        Cause::Gain => ("gain", None, None, ""),
+        Cause::WavelengthShift(_) => ("wavelength-shift", None, None, "cm^-1"),
+        Cause::LightScale(light) => ("light-scale", Some(*light), None, ""),
+        Cause::LightShape { light, .. } => ("light-tilt", Some(*light), None, ""),
+        Cause::LightTemperature { light, .. } => ("light-temperature", Some(*light), None, "K"),
+        Cause::LightingTotal => ("lighting-total", None, None, ""),
+        Cause::LightMissing { .. } => ("light-missing", None, None, ""),
+        Cause::Air { .. } => ("air", None, None, "m"),
+        Cause::Band(band) => ("band", None, Some(*band), ""),
+    }
 }

@@ -65,7 +65,7 @@ impl Of<'_> {
             };
             let darkest = lights.iter().enumerate().min_by(|a, b| strength(a.1).total_cmp(&strength(b.1)));
             let Some(sky) = self.sky.or(darkest.map(|(sky, _)| sky)) else {
-                return lacks(&format!("unknown.{key}"), "a sky of a cube without surroundings");
+                return lacks(&format!("unknown.{key}"), "sky without surroundings");
             };
             if let Some(sigma) = stated.sky_scale {
                 add(Cause::LightScale(sky), sigma);
@@ -86,7 +86,7 @@ impl Of<'_> {
             });
             let surfaces: Vec<_> = surfaces.collect();
             if surfaces.is_empty() {
-                return lacks("unknown.light_temperature", "no surroundings with a temperature");
+                return lacks("unknown.light_temperature", "surroundings without temperature");
             }
             for (light, temperature_k) in surfaces {
                 add(Cause::LightTemperature { light, temperature_k }, sigma);

@@ -5,7 +5,8 @@
 //! too long or too short by the same factor each time, which two of them tell (Aitken). The last step is short and taken without
 //! another look: what is left of it is its square.
 
-use super::kernel::{Asked, MOST, Sums, sums};
+use super::kernel::{Asked, Sums, sums};
+use super::model::MOST;
 use super::model::Model;
 use super::step::{Limits, State, Step};
 

@@ -22,12 +22,12 @@
 //!
 //! Assumption: the material of a pixel with one candidate is right.
 
-use super::cause::{Cause, Effect};
+use super::cause::Cause;
+use super::effect::Effect;
 use super::library_error::LibraryError;
 use super::maps::{Maps, check_bands};
 use super::model::Setting;
 use super::pixel::{NO_FIT, NO_MATERIAL, flag};
-use super::shared::Shared;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::correlation::matern;
 use hadar::cube::{CubeRef, Rows, Sample};
@@ -146,18 +146,19 @@ impl Together {
         }
     }
 
-    /// What each cause has beside those that were estimated with the pixels, which are no causes any more.
-    fn beside(&mut self, shared: &Shared) {
+    /// What each cause has beside those that were estimated with the pixels, which are no causes any more; `rest` is what their scores leave
+    /// of their own equations, `image` a vector times their covariance.
+    pub(super) fn beside(&mut self, rest: &dyn Fn(&[f64]) -> Vec<f64>, image: &dyn Fn(&[f64]) -> Vec<f64>) {
         let count = self.shared;
         let kept = self.score.len() - count;
         // What is left of their own equations where they were settled.
-        let rest_of_shared = shared.rest(&self.score[kept..]);
+        let rest_of_shared = rest(&self.score[kept..]);
         for a in 0..kept {
             let row = |of: &[f64], a: usize| -> Vec<f64> { of[a * count..][..count].to_vec() };
             let (information, library, moved) =
                 (row(&self.cross.information, a), row(&self.cross.of_library, a), row(&self.cross.moved, a));
             // By how much the shared ones follow a unit of the cause.
-            let follow = shared.image(&information);
+            let follow = image(&information);
             self.score[a] -= dot(&follow, &rest_of_shared);
             let own = self.information[a];
             let rest = own - dot(&information, &follow);
@@ -228,26 +229,6 @@ pub fn p_deviations(sum: f64, pixels: usize) -> f64 {
     }
     let count = pixels as f64;
     (0.5 * (1.0 + NO_FIT) - sum / count) * (12.0 * count).sqrt()
-}
-
-/// What pixels `[row][column]` with their `maps` say together of a setting and of `causes`; errors of the library as stated, and beside
-/// what was estimated with the pixels, where `setting` is that of these estimates.
-///
-/// # Errors
-/// Maps or a cube of another setting, a cube that cannot be read, an unknown gain of every pixel.
-pub fn judge<'c>(
-    setting: &Setting<'_>,
-    causes: &[Cause],
-    (error, shared): (Option<LibraryError>, Option<&Shared>),
-    maps: &Maps,
-    cube: impl Into<CubeRef<'c>>,
-) -> Result<Judged> {
-    let also: Vec<Cause> = shared.map_or_else(Vec::new, Shared::causes);
-    let mut found = sums(setting, (causes, &also), error, maps, cube)?;
-    if let Some(shared) = shared {
-        [&mut found.fitting, &mut found.all].into_iter().for_each(|sums| sums.beside(shared));
-    }
-    Ok(found)
 }
 
 /// The sums, those of `shared` after those of `causes`.

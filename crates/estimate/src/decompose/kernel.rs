@@ -10,11 +10,9 @@
 //!
 //! Source: Snyder, Hammoud and White, J. Opt. Soc. Am. A 10, 1014 (1993), doi:10.1364/JOSAA.10.001014, for σ² in the count.
 
-use super::model::{Hermite, MOST_SURROUNDINGS, Model};
+use super::model::{Hermite, MOST, Model};
 use hadar::simd::{Chunk, LANES, Largest, added, dispatched, fold, product};
 
-/// Most unknown numbers: the temperature, and a weight of each vertex.
-pub(super) const MOST: usize = MOST_SURROUNDINGS + 2;
 /// |x| up to which the series is taken: the first term left out is x¹⁶/19 of 1/3.
 const SMALL: f64 = 0.25;
 /// Coefficients of the series in x².

@@ -22,7 +22,6 @@
 //!
 //! Source: paper S2, S44, S48.
 
-use super::kernel::MOST;
 use hadar::error::{Error, Result, check};
 use hadar::planck;
 use hadar::scene::check_emissivity;
@@ -36,6 +35,8 @@ const STEP: f64 = 0.03;
 const MOST_STEPS: f64 = 2e4;
 /// Most surroundings of a scene.
 pub const MOST_SURROUNDINGS: usize = 7;
+/// Most unknown numbers: the temperature, and a weight of each vertex.
+pub(super) const MOST: usize = MOST_SURROUNDINGS + 2;
 
 /// Spectrum of one of the surroundings.
 #[derive(Debug, Clone, PartialEq)]

@@ -14,15 +14,13 @@ use super::possible::{CANDIDATE_SHARE, Members, Possible, TIE};
 use super::ranked::Ranked;
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
+pub(super) use super::thresholds::CUT;
+pub use super::thresholds::{NO_FIT, NO_MATERIAL};
 use hadar::cube::Sample;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::simd::Aligned;
 use hadar::statistics::chi_square_survival;
 
-/// Deviance beyond the best one at which a material no longer counts: its posterior is e⁻¹² of the best one's.
-pub(super) const CUT: f64 = 24.0;
-/// Below this p-value no material of the library fits.
-pub const NO_FIT: f64 = 1e-4;
 /// Squared deviations by which what a pixel sends must differ from what its surroundings send.
 const CONTRAST: f64 = 16.0;
 /// Deviation of a lighting factor, as a share of its range, beyond which it is not known: half of 1/√12, what a blind guess has.
@@ -58,9 +56,6 @@ pub mod flag {
         (TEMPERATURE_UNKNOWN, "temperature-unknown"),
     ];
 }
-
-/// The material of a pixel that has none.
-pub const NO_MATERIAL: u16 = u16::MAX;
 
 /// What is found of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -191,6 +186,15 @@ pub(super) struct Room {
 }
 
 impl Task {
+    /// Of kinds in their order, each with the posterior of one of its materials: those that are equal share it.
+    pub(super) fn ranked(&self, order: impl Iterator<Item = (usize, f64)>) -> Ranked {
+        let equal = |kind: usize| {
+            let all = (self.kinds[kind]..self.kind_of.len()).filter(move |m| self.kind_of[*m] == kind);
+            all.take(self.alike[kind])
+        };
+        Ranked::of(order.flat_map(|(kind, posterior)| equal(kind).map(move |m| (m, posterior))))
+    }
+
     pub(super) fn room(&self) -> Room {
         let width = self.model.width;
         Room {

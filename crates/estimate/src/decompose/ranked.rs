@@ -1,6 +1,6 @@
 //! The most probable materials of a pixel, in their order.
 
-use super::pixel::{NO_MATERIAL, Task};
+use super::thresholds::NO_MATERIAL;
 
 /// Materials of a pixel that are ranked at most.
 pub const MOST_RANKED: usize = 16;
@@ -26,16 +26,5 @@ impl Ranked {
         to.zip(order)
             .for_each(|((m, p), (material, posterior))| (*m, *p) = (material as u16, posterior as f32));
         ranked
-    }
-}
-
-impl Task {
-    /// Of kinds in their order, each with the posterior of one of its materials: those that are equal share it.
-    pub(super) fn ranked(&self, order: impl Iterator<Item = (usize, f64)>) -> Ranked {
-        let equal = |kind: usize| {
-            let all = (self.kinds[kind]..self.kind_of.len()).filter(move |m| self.kind_of[*m] == kind);
-            all.take(self.alike[kind])
-        };
-        Ranked::of(order.flat_map(|(kind, posterior)| equal(kind).map(move |m| (m, posterior))))
     }
 }

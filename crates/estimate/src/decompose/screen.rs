@@ -19,7 +19,7 @@
 //!
 //! Assumptions: none for the bound; the gain is known (else nothing is excluded).
 
-use super::kernel::MOST;
+use super::model::MOST;
 use super::model::Model;
 use super::space::{Space, dot};
 use super::step::State;

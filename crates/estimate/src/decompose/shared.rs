@@ -15,11 +15,13 @@
 
 use super::cause::Cause;
 use super::judge::{Judged, Together, sums};
+use super::library_error::LibraryError;
 use super::maps::{Maps, Options};
 use super::method::decompose;
+use super::model::Setting;
 use super::pixel::flag;
 use super::told::Told;
-use hadar::cube::Cube;
+use hadar::cube::{Cube, CubeRef};
 use hadar::error::{Error, Result, check};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -229,6 +231,28 @@ pub fn estimate(
         }
     }
     Ok(shared)
+}
+
+/// What pixels `[row][column]` with their `maps` say together of a setting and of `causes`; errors of the library as stated, and beside
+/// what was estimated with the pixels, where `setting` is that of these estimates.
+///
+/// # Errors
+/// Maps or a cube of another setting, a cube that cannot be read, an unknown gain of every pixel.
+pub fn judge<'c>(
+    setting: &Setting<'_>,
+    causes: &[Cause],
+    (error, shared): (Option<LibraryError>, Option<&Shared>),
+    maps: &Maps,
+    cube: impl Into<CubeRef<'c>>,
+) -> Result<Judged> {
+    let also: Vec<Cause> = shared.map_or_else(Vec::new, Shared::causes);
+    let mut found = sums(setting, (causes, &also), error, maps, cube)?;
+    if let Some(shared) = shared {
+        [&mut found.fitting, &mut found.all]
+            .into_iter()
+            .for_each(|sums| sums.beside(&|score| shared.rest(score), &|x| shared.image(x)));
+    }
+    Ok(found)
 }
 
 /// The sums that tell of what is shared: of pixels that fit, unless most do not; nothing where few pixels are decided, which are those that

@@ -11,7 +11,8 @@
 //! Directions along which there is no information (a black target does not scatter) are not taken, and said so. They are found
 //! after each column was scaled to 1, so no unit matters.
 
-use super::kernel::{MOST, Sums};
+use super::kernel::Sums;
+use super::model::MOST;
 
 /// A pivot below this, of columns scaled to 1, is a direction without information of its own.
 const DEPENDENT: f64 = 1e-11;

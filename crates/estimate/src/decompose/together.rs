@@ -12,7 +12,8 @@
 //!
 //! Units: counts for s and σ; K. Assumption: to first order. Source: [`hadar::calibration::blackbody`], where such errors are from.
 
-use super::cause::{Cause, Effect};
+use super::cause::Cause;
+use super::effect::Effect;
 use super::maps::Maps;
 use super::model::Setting;
 use super::pixel::NO_MATERIAL;

@@ -3,8 +3,8 @@
 //! First from few pixels, then from [`LOOKED`]; what is asked for is in [`crate::shared_unknown`].
 
 use super::DecomposeStudy;
-use super::judged::said;
 use crate::cube_sample::{LOOKED, some};
+use crate::model_judged::said;
 use crate::shared_unknown::Of;
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};

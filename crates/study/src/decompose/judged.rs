@@ -13,7 +13,7 @@
 use super::DecomposeStudy;
 use super::estimated::{AGAINST, Estimated};
 use crate::cube_sample::{LOOKED, some};
-use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits};
+use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits, said};
 use crate::shared_unknown::hottest_k;
 use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
@@ -280,20 +280,6 @@ fn against(shared: &Shared) -> Vec<CauseRow> {
             }
         })
         .collect()
-}
-
-pub(crate) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
-    match cause {
-        Cause::Gain => ("gain", None, None, ""),
-        Cause::WavelengthShift(_) => ("wavelength-shift", None, None, "cm^-1"),
-        Cause::LightScale(light) => ("light-scale", Some(*light), None, ""),
-        Cause::LightShape { light, .. } => ("light-tilt", Some(*light), None, ""),
-        Cause::LightTemperature { light, .. } => ("light-temperature", Some(*light), None, "K"),
-        Cause::LightingTotal => ("lighting-total", None, None, ""),
-        Cause::LightMissing { .. } => ("light-missing", None, None, ""),
-        Cause::Air { .. } => ("air", None, None, "m"),
-        Cause::Band(band) => ("band", None, Some(*band), ""),
-    }
 }
 
 /// What may be otherwise than told in a study.

@@ -1,6 +1,5 @@
 //! Names and files of a decomposition scenario looked up: cube, bands, library, spectra of the surroundings, truth.
 
-use super::CANDIDATES;
 use super::categories::parts;
 use super::truth::Truth;
 use crate::Warning;
@@ -18,6 +17,9 @@ use hadar_formats::cube::Found;
 use hadar_formats::spectra::measured;
 use hadar_scenario::{DecomposeScenario, MaterialRef, Spread};
 use std::sync::Arc;
+
+/// Most probable materials of a pixel that are given where nothing is said.
+pub const CANDIDATES: usize = 3;
 
 /// A decomposition scenario with everything it names looked up and checked.
 #[derive(Debug)]

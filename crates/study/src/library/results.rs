@@ -1,6 +1,5 @@
 //! What is said of a library that was made out of a cube.
 
-use super::SharedOfLibrary;
 use crate::Warning;
 use crate::decompose::{FlagCount, There, flags};
 use crate::heat_cube::Measured;
@@ -58,6 +57,27 @@ pub struct LibraryFound {
     /// The cube decomposed by the library.
     #[serde(skip)]
     pub maps: Maps,
+}
+
+/// What an unknown does to the emissivities.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SharedOfLibrary {
+    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape` or `light-temperature`.
+    pub unknown: &'static str,
+    /// Which of the surroundings, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<usize>,
+    /// Order of the polynomial of a shape.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<usize>,
+    /// Deviation that was stated.
+    pub sigma_stated: f64,
+    /// `cm^-1`, `K`, or nothing for a share.
+    pub unit: &'static str,
+    /// What that does to an emissivity, rms over bands and clusters.
+    pub emissivity_rms: f64,
+    /// Clusters that no cluster is like then.
+    pub lost: usize,
 }
 
 /// One cluster.

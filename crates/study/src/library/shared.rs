@@ -7,36 +7,15 @@
 //! Assumptions: to first order; unknowns are independent.
 
 use super::LibraryStudy;
-use crate::decompose::said;
+use super::results::SharedOfLibrary;
+use crate::model_judged::said;
 use crate::shared_unknown::{Of, spectra};
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar_estimate::decompose::{Cause, Maps, NO_MATERIAL, Setting, Told};
 use hadar_estimate::separation::{Cluster, Found};
 use hadar_scenario::decompose::SharedUnknown;
-use serde::Serialize;
 use std::sync::Arc;
-
-/// What an unknown does to the emissivities.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SharedOfLibrary {
-    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape` or `light-temperature`.
-    pub unknown: &'static str,
-    /// Which of the surroundings, from 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub light: Option<usize>,
-    /// Order of the polynomial of a shape.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub order: Option<usize>,
-    /// Deviation that was stated.
-    pub sigma_stated: f64,
-    /// `cm^-1`, `K`, or nothing for a share.
-    pub unit: &'static str,
-    /// What that does to an emissivity, rms over bands and clusters.
-    pub emissivity_rms: f64,
-    /// Clusters that no cluster is like then.
-    pub lost: usize,
-}
 
 impl LibraryStudy {
     /// Each unknown put into the deviations of the clusters, and what it did.

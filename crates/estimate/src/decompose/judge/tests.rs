@@ -1,7 +1,7 @@
 //! Counts of a model in which one thing is otherwise than told: the estimate is that thing, whatever temperature and lighting take of it.
 
 use super::*;
-use crate::decompose::{Light, Options, Spectra, Told, decompose};
+use crate::decompose::{Light, Options, Spectra, Told, decompose, judge};
 use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::planck::photon_radiance;
 use hadar::random::generator;

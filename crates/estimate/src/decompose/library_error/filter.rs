@@ -9,7 +9,7 @@
 //!
 //! Source: Hartikainen and Särkkä, 'Kalman filtering and smoothing solutions to temporal Gaussian process regression models' (2010).
 
-use crate::decompose::kernel::MOST;
+use crate::decompose::model::MOST;
 use hadar::correlation::QUARTER;
 use hadar::simd::{Chunk, LANES, added, dispatched, fused, product};
 

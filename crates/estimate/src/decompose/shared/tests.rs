@@ -1,7 +1,7 @@
 //! Cubes in which several things are otherwise than told, all of them stated as unknown.
 
 use super::*;
-use crate::decompose::cause::Effect;
+use crate::decompose::effect::Effect;
 use crate::decompose::judge::tests::{EXACT, Otherwise, PIXELS, causes, counted, state, told};
 use crate::decompose::tangent::{Tangent, Tangents};
 use crate::decompose::{judge, widen};
