@@ -133,7 +133,9 @@ fn reference_cubes_are_decomposed_to_their_bounds() {
     }
 }
 
-/// A library that is off by 1 %: intervals that know it hold what they say, those that do not are 19 times too narrow.
+/// A library that is off by 1 %: intervals that know it hold what they say, those that do not are 19 times too narrow. All pixels of a material share
+/// its one error, so that errors over deviations are those of a few draws (0.6 to 1.4) and a share of pixels above 95 % is no fault; shares over
+/// many drawn libraries are tested beside the estimator.
 #[test]
 fn errors_of_the_library_widen_the_intervals() {
     let Some(reference) = Reference::open("mismatch") else { return };
@@ -144,7 +146,7 @@ fn errors_of_the_library_widen_the_intervals() {
         &reference,
         &reference.decomposed(&Options { library_error: Some(error), ..Options::default() }),
     );
-    assert!(right >= 0.9425 && (0.93..=0.97).contains(&covered), "{right} {ratio} {covered}");
+    assert!(right >= 0.9425 && covered >= 0.93 && (0.6..1.4).contains(&ratio), "{right} {ratio} {covered}");
 }
 
 /// A library, a sky and a ground of no particular shape.

@@ -91,9 +91,9 @@ fn shared_unknowns_are_estimated_with_the_pixels() {
         let mut maps = decompose(&setting, &options, &samples[0], &|_| ()).unwrap();
         let others: Vec<Cause> = all.iter().filter(|one| !shared.causes().contains(one)).cloned().collect();
         let found = judge(&setting, &others, (None, Some(&shared)), &maps, &samples[0]).unwrap();
-        for i in 0..others.len() {
+        for (i, other) in others.iter().enumerate() {
             let gain = found.fitting.alone(i).map_or(0.0, |alone| alone.gain_chi_square);
-            assert!(gain < 20.25, "{:?} is accused by {gain}", others[i]);
+            assert!(gain < 20.25, "{other:?} is accused by {gain}");
         }
         let unaware = decompose(&told.setting(), &options, &samples[0], &|_| ()).unwrap();
         widen(&setting, &mut maps, &[], &[], Some(&shared)).unwrap();
