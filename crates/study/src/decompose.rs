@@ -44,8 +44,10 @@ const KEPT_PIXELS: usize = 1 << 20;
 
 /// Bytes of a pixel that are kept in memory, and for each of the surroundings, measured with a report (200 with four; without one, half
 /// as many); with a prior over the image, at least.
-const KEPT: u64 = 150;
-const KEPT_LIGHT: u64 = 14;
+const KEPT: u64 = 160;
+const KEPT_LIGHT: u64 = 18;
+/// The same for each of the most probable materials that are kept.
+const KEPT_CANDIDATE: u64 = 6;
 const KEPT_BESIDE_OTHERS: u64 = 400;
 /// The same for sets of categories, and for each category.
 const KEPT_SETS: u64 = 100;
@@ -203,7 +205,10 @@ impl DecomposeStudy {
     fn memory(&self) -> Result<memory::Promised<'static>> {
         let shape = self.cube.shape();
         let per_pixel = match &self.scenario.spatial {
-            None => KEPT + KEPT_LIGHT * self.told.surroundings.len() as u64,
+            None => {
+                KEPT + KEPT_LIGHT * self.told.surroundings.len() as u64
+                    + KEPT_CANDIDATE * self.candidates as u64
+            }
             Some(_) => KEPT_BESIDE_OTHERS,
         };
         let per_pixel = per_pixel

@@ -6,6 +6,7 @@
 
 use crate::air::Air;
 use crate::heat_cube::sent;
+use crate::model_judged::said;
 use hadar::error::{Error, Result};
 use hadar::material::{Library, Material};
 use hadar::order;
@@ -13,12 +14,42 @@ use hadar::spectrum::{Bands, interpolated};
 use hadar_estimate::decompose::{Cause, Light, Path, Spectra, Told, Unknown};
 use hadar_scenario::Source;
 use hadar_scenario::decompose::{LightSource, SharedUnknown};
+use serde::Serialize;
 use std::sync::Arc;
 
 /// Parts of a step between two bands in which spectra are read for a shift.
 const BETWEEN: usize = 8;
 /// A temperature of a light that may be missing where none is found, K.
 const MISSING_K: f64 = 293.15;
+
+/// An unknown that is stated, by its name.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Stated {
+    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape`, `light-temperature`, `light-missing` or `air`.
+    pub unknown: &'static str,
+    /// Which of the surroundings, from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<usize>,
+    /// Order of the polynomial of a shape.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<usize>,
+    /// Deviation that was stated.
+    pub sigma_stated: f64,
+    /// `cm^-1`, `K`, `m`, or nothing for a share.
+    pub unit: &'static str,
+}
+
+impl Stated {
+    pub(super) fn of(one: &Unknown) -> Self {
+        let (name, light, _, unit) = said(&one.cause);
+        let order = match one.cause {
+            Cause::LightShape { order, .. } => Some(order),
+            _ => None,
+        };
+        let unknown = if order.is_some() { "light-shape" } else { name };
+        Self { unknown, light, order, sigma_stated: one.sigma, unit }
+    }
+}
 
 /// Of what it is said.
 #[derive(Debug)]

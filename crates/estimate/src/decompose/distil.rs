@@ -23,8 +23,8 @@
 //! Source: paper, Extended Data Fig. 1b, S44, S45, SIII C.
 
 use super::maps::Maps;
-use super::model::Setting;
 use super::pixel::NO_MATERIAL;
+use super::setting::Setting;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::cube::{Cube, Rows, Sample};
 use hadar::error::{Error, Result};

@@ -1,7 +1,7 @@
 //! What a unit of a [`Cause`] changes in a pixel's counts: the table of [`super::cause`].
 
 use super::cause::Cause;
-use super::model::{Light, Setting};
+use super::setting::{Light, Setting};
 use super::tangent::{Tangent, Tangents, dot};
 use super::told::{Told, legendre};
 use hadar::error::Result;

@@ -6,8 +6,8 @@
 //!
 //! Source: paper, Methods 'HADAR thermography', where the emissivity is a default.
 
-use super::model::Setting;
 use super::pixel::{Pixel, flag};
+use super::setting::Setting;
 use hadar::planck;
 use hadar::root::crossing;
 use hadar::spectrum::Bands;

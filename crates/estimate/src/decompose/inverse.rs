@@ -17,9 +17,10 @@
 //! | S, F, X, B | photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ | mean over a band |
 //! | e, G, V | | emissivity, e/(1 − e), lighting factors |
 
-use super::model::{Model, Setting};
+use super::model::Model;
 use super::pixel::{Pixel, flag};
 use super::ranked::Ranked;
+use super::setting::Setting;
 use hadar::error::Result;
 use hadar::planck;
 use hadar::spectrum::Bands;

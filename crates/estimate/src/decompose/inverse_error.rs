@@ -13,7 +13,7 @@
 //! Source: S46 as printed; propagation of errors.
 
 use super::inverse::Inverse;
-use super::model::Setting;
+use super::setting::Setting;
 use hadar::error::{Error, Result};
 
 /// Errors of a temperature by S46, to first order.

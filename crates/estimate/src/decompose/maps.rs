@@ -4,11 +4,12 @@
 //! and of rows that are worked at once, and only these are in memory.
 
 use super::library_error::{Errors, LibraryError};
-use super::model::{MOST_SURROUNDINGS, Model, Setting};
+use super::model::Model;
 use super::pixel::{ANY_LIGHTING, NO_MATERIAL, Pixel, Room, Spared, Task, flag};
 use super::possible::{ANYTHING, Members, Possible};
 use super::ranked::MOST_RANKED;
 use super::screen::Screen;
+use super::setting::{MOST_SURROUNDINGS, Setting};
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use hadar::cube::{CubeRef, Rows, Sample};
 use hadar::demand::Skipping;

@@ -16,8 +16,9 @@
 use super::grey_body::GreyBody;
 use super::inverse::Inverse;
 use super::maps::{Blocks, ByRows, Layers, Maps, Options, check_bands, is_signed, likeliest};
-use super::model::{Model, Setting};
+use super::model::Model;
 use super::pixel::Pixel;
+use super::setting::Setting;
 use hadar::cube::{CubeRef, Rows, Sample};
 use hadar::error::{Error, Result};
 

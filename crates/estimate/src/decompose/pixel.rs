@@ -9,10 +9,11 @@
 use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
 use super::kernel::{Asked, Sums, contrast, sums};
 use super::library_error::{Errors, Workplace};
-use super::model::{MOST_SURROUNDINGS, Model};
+use super::model::Model;
 use super::possible::{CANDIDATE_SHARE, Members, Possible, TIE};
 use super::ranked::Ranked;
 use super::screen::{MOST_STARTS, Screen, Screened};
+use super::setting::MOST_SURROUNDINGS;
 use super::step::State;
 pub(super) use super::thresholds::CUT;
 pub use super::thresholds::{NO_FIT, NO_MATERIAL};

@@ -18,8 +18,8 @@ use super::judge::{Judged, Together, sums};
 use super::library_error::LibraryError;
 use super::maps::{Maps, Options};
 use super::method::decompose;
-use super::model::Setting;
 use super::pixel::flag;
+use super::setting::Setting;
 use super::told::Told;
 use hadar::cube::{Cube, CubeRef};
 use hadar::error::{Error, Result, check};
@@ -62,8 +62,8 @@ pub struct Shared {
     pub pixels: usize,
     /// Whether the last round moved nothing.
     pub settled: bool,
-    /// By how much χ² of a pixel is off on average as θ is not known.
-    pub off_chi_square: f64,
+    /// By how much χ² of a pixel is off on average as θ is not known; nothing where the prior is all that is known.
+    pub off_chi_square_mean: Option<f64>,
     /// Pairs that the pixels do not tell apart.
     pub same: Vec<[usize; 2]>,
     factor: Cholesky<f64, Dyn>,
@@ -81,7 +81,7 @@ impl Shared {
             noise: 1.0,
             pixels: 0,
             settled: false,
-            off_chi_square: f64::INFINITY,
+            off_chi_square_mean: None,
             same: Vec::new(),
             factor: factor(DMatrix::identity(count, count))?,
         })
@@ -99,6 +99,13 @@ impl Shared {
             DVector::from_iterator(x.len(), x.iter().zip(&self.unknowns).map(|(x, one)| x * one.sigma));
         let solved = self.factor.solve(&scaled);
         solved.iter().zip(&self.unknowns).map(|(x, one)| x * one.sigma).collect()
+    }
+
+    /// By how much χ² of what follows the unknowns by slopes is off on average, tr(C G), G their products `gram`.
+    pub(super) fn off_chi_square(&self, gram: &dyn Fn(usize, usize) -> f64) -> f64 {
+        let count = self.unknowns.len();
+        let column = |j: usize| -> Vec<f64> { (0..count).map(|i| gram(i, j)).collect() };
+        (0..count).map(|j| self.image(&column(j))[j]).sum()
     }
 
     /// Scores with those of the prior.
@@ -182,13 +189,8 @@ impl Shared {
             }
         }
         self.pixels = sums.pixels;
-        self.off_chi_square = (0..count)
-            .map(|j| {
-                let column: Vec<f64> = (0..count).map(|i| information[(i, j)] / s[i] / s[j]).collect();
-                self.image(&column)[j]
-            })
-            .sum::<f64>()
-            / sums.pixels.max(1) as f64;
+        let unscaled = |i: usize, j: usize| information[(i, j)] / s[i] / s[j];
+        self.off_chi_square_mean = Some(self.off_chi_square(&unscaled) / sums.pixels.max(1) as f64);
         let cosine = |i: usize, j: usize| {
             let length = (information[(i, i)] * information[(j, j)]).sqrt();
             if length > 0.0 { information[(i, j)].abs() / length } else { 0.0 }

@@ -1,6 +1,6 @@
 //! Spectra that are read at other wavenumbers than those of the bands.
 
-use super::model::Path;
+use super::setting::Path;
 use hadar::spectrum::interpolated;
 
 /// Spectra of a setting on a grid that is finer than its bands, and reaches beyond them.

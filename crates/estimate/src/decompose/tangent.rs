@@ -7,7 +7,8 @@
 //! Columns are scaled to 1 first; one that the others before it make up within 1e-9 is left out, and an L that would need it has no row.
 //! Where ΣV is known (S48) the lighting that is first has what the others leave of it.
 
-use super::model::{Light, Model, Setting};
+use super::model::Model;
+use super::setting::{Light, Setting};
 use hadar::error::{Error, Result};
 use hadar::planck::photon_radiance_and_slope_into;
 use hadar::spectrum::Bands;

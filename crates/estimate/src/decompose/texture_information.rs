@@ -16,7 +16,7 @@
 
 use super::distil::{Distilled, each_pixel, fits, fused, over_rows};
 use super::maps::Maps;
-use super::model::Setting;
+use super::setting::Setting;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};

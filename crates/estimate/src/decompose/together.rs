@@ -15,12 +15,17 @@
 use super::cause::Cause;
 use super::effect::Effect;
 use super::maps::Maps;
-use super::model::Setting;
-use super::pixel::NO_MATERIAL;
+use super::pixel::{NO_MATERIAL, flag};
+use super::possible::ANYTHING;
+use super::setting::Setting;
 use super::shared::Shared;
 use super::tangent::{Tangent, Tangents, dot};
 use hadar::error::{Error, Result, check};
 use rayon::prelude::*;
+
+/// χ² of a pixel that what is not known of the shared unknowns may move before its material is undecided: noise along them is then larger by an
+/// eighth.
+const HARMLESS: f64 = 0.25;
 
 /// A cause that deviations have to hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +40,7 @@ pub struct ToHold {
 
 /// Widens the deviations of temperatures, lighting factors and textures by an error of deviation `together` in each band (counts; none if
 /// empty), the same number of deviations in all bands and pixels, by the largest of what the amounts of some causes do to each, and by what
-/// is not known of unknowns that the whole cube shares.
+/// is not known of unknowns that the whole cube shares. Pixels whose χ² that may move have any material left.
 ///
 /// # Errors
 /// Maps of another setting, another number of bands, a deviation below 0, an unknown gain.
@@ -69,7 +74,19 @@ pub fn widen(
     let followed = Followed::all(setting);
     let wider = Wider { together, effects, estimated, shared, followed, tangents };
     let Maps {
-        material, temperature_k, temperature_sigma_k, lighting, lighting_sigma, texture_sigma, ..
+        material,
+        temperature_k,
+        temperature_sigma_k,
+        lighting,
+        lighting_sigma,
+        texture_sigma,
+        candidates,
+        flags,
+        possible_95,
+        common_95,
+        possible_99,
+        category_shares,
+        ..
     } = maps;
     let mut rest = lighting_sigma.as_mut_slice();
     let of_lights: Vec<&mut [f32]> = (0..pixels)
@@ -80,10 +97,10 @@ pub fn widen(
         })
         .collect();
     let each = temperature_sigma_k.par_iter_mut().zip(texture_sigma.par_iter_mut()).zip(of_lights);
-    each.enumerate().for_each_init(Room::default, |room, (i, ((sigma_k, of_texture), of_lights))| {
+    let one = |room: &mut Room, (i, ((sigma_k, of_texture), of_lights)): (usize, Sigmas<'_>)| {
         hadar::stop::check();
         if material[i] == NO_MATERIAL {
-            return;
+            return 0.0;
         }
         room.lit.clear();
         room.lit.extend(lighting[i * lights..(i + 1) * lights].iter().map(|v| f64::from(*v)));
@@ -93,10 +110,27 @@ pub fn widen(
         let at_k = Some(f64::from(temperature_k[i])).filter(|t| t.is_finite());
         let at_k = at_k.unwrap_or(setting.temperature_k[0]);
         let sigmas = std::iter::once(sigma_k).chain(of_lights).chain([of_texture]);
-        wider.widen(usize::from(material[i]), at_k, room, sigmas);
-    });
+        wider.widen(usize::from(material[i]), at_k, room, sigmas)
+    };
+    let off: Vec<f64> = each.enumerate().map_init(Room::default, one).collect();
+    let categories = category_shares.len() / pixels.max(1);
+    // Where what is not known of the cube may move χ², materials were compared at one of its values only.
+    for i in (0..pixels).filter(|i| off[*i] > HARMLESS) {
+        if let (Some(candidates), Some(flags)) = (candidates.get_mut(i), flags.get_mut(i)) {
+            *candidates = setting.library.len().max(2) as u16;
+            *flags |= flag::UNDECIDED;
+        }
+        [&mut *possible_95, &mut *common_95, &mut *possible_99]
+            .into_iter()
+            .filter_map(|sets| sets.get_mut(i))
+            .for_each(|set| *set = ANYTHING);
+        category_shares.iter_mut().skip(i * categories).take(categories).for_each(|share| *share = f32::NAN);
+    }
     Ok(())
 }
+
+/// Deviations of the temperature, the texture and the lighting factors of a pixel.
+type Sigmas<'a> = ((&'a mut f32, &'a mut f32), &'a mut [f32]);
 
 /// Something of a pixel that its counts tell.
 #[derive(Debug)]
@@ -159,12 +193,19 @@ struct Wider<'a> {
 }
 
 impl Wider<'_> {
-    /// Widens the deviations of what is followed of a pixel of material `m`.
-    fn widen<'s>(&self, m: usize, at_k: f64, room: &mut Room, sigmas: impl Iterator<Item = &'s mut f32>) {
+    /// Widens the deviations of what is followed of a pixel of material `m`; by how much its χ² is off on average as the shared unknowns are
+    /// not known.
+    fn widen<'s>(
+        &self,
+        m: usize,
+        at_k: f64,
+        room: &mut Room,
+        sigmas: impl Iterator<Item = &'s mut f32>,
+    ) -> f64 {
         let Self { tangents, effects, estimated, .. } = self;
         let Room { tangent, lit, slopes } = room;
         if !tangents.at(m, at_k, lit, tangent) {
-            return;
+            return 0.0;
         }
         let effects = || effects.iter().map(|(effect, _)| effect).chain(estimated);
         slopes.resize_with(effects().count(), Vec::new);
@@ -189,6 +230,10 @@ impl Wider<'_> {
             let by_shared = self.shared.map_or(0.0, |shared| shared.sigma_of(by_shared));
             *sigma = f64::from(*sigma).hypot(off).hypot(moved).hypot(by_shared) as f32;
         }
+        let Some(shared) = self.shared else { return 0.0 };
+        let own = &mut slopes[self.effects.len()..];
+        own.iter_mut().for_each(|slope| tangent.take_out(slope));
+        shared.off_chi_square(&|a, b| dot(&own[a], &own[b]))
     }
 }
 

@@ -4,7 +4,7 @@
 //! temperature, air of another length by Lambert's law.
 
 use super::cause::Cause;
-use super::model::{Light, Path, Setting};
+use super::setting::{Light, Path, Setting};
 use hadar::error::{Error, Result};
 use hadar::planck::photon_radiance_into;
 use hadar::spectrum::Bands;
@@ -168,13 +168,14 @@ impl Told {
 
     /// A light with a factor at each node.
     fn light(&mut self, light: usize, factor: impl Fn(usize) -> f64) {
+        let factors: Vec<f64> = (0..self.bands.nodes_cm1().len()).map(|i| factor(i).max(0.0)).collect();
         match self.surroundings.get_mut(light) {
-            Some(Light::Radiance(radiance)) => {
-                radiance.iter_mut().enumerate().for_each(|(i, s)| *s *= factor(i).max(0.0));
-            }
-            // Counts have bands, not nodes: where each has one, they are the same.
+            Some(Light::Radiance(radiance)) => radiance.iter_mut().zip(&factors).for_each(|(s, x)| *s *= x),
+            // Of bands, not of nodes.
             Some(Light::Counts(counts)) => {
-                counts.iter_mut().enumerate().for_each(|(i, n)| *n *= factor(i).max(0.0));
+                let means = self.bands.weigh(&factors);
+                let each = counts.iter_mut().zip(means.iter().zip(self.bands.widths_cm1()));
+                each.for_each(|(n, (sum, width))| *n *= sum / width);
             }
             None => {}
         }

@@ -79,17 +79,16 @@ fn sentence(result: &Decomposed) -> String {
             false => format!("{} pixels as one blackbody each: no material is told.", whole(seen as u64)),
         };
     }
-    if result.model.verdict == ModelVerdict::Rejected {
+    let taken_back = match result.model.verdict {
+        ModelVerdict::Rejected => Some(("The cube does not follow its model", "if it held")),
+        ModelVerdict::SharedNotTold => {
+            Some(("What the whole cube shares is not told well enough", "with it as estimated"))
+        }
+        _ => None,
+    };
+    if let Some((why, condition)) = taken_back {
         return format!(
-            "The cube does not follow its model: {} pixels ({}) would have one material of {} left if it held; none is decided.",
-            of(result.decided_if_model_holds, seen),
-            share(result.decided_if_model_holds as f64 / seen.max(1) as f64),
-            result.materials.len()
-        );
-    }
-    if result.model.verdict == ModelVerdict::SharedNotTold {
-        return format!(
-            "What the whole cube shares is not told well enough: {} pixels ({}) would have one material of {} left with it as estimated; none is decided.",
+            "{why}: {} pixels ({}) would have one material of {} left {condition}; none is decided.",
             of(result.decided_if_model_holds, seen),
             share(result.decided_if_model_holds as f64 / seen.max(1) as f64),
             result.materials.len()

@@ -122,13 +122,13 @@ fn shared(result: &LibraryFound) -> String {
     let mut out =
         "Unknown for the whole cube: in the deviations, as the pixels do not tell it here\n".to_owned();
     for row in &result.shared {
-        let share_of = row.unit.is_empty();
+        let share_of = row.stated.unit.is_empty();
         let _ = write!(
             out,
             "  {}, known to {}{}: moves emissivities by {} rms",
-            shared::named(row.unknown, row.light, row.order),
-            significant(if share_of { 100.0 * row.sigma_stated } else { row.sigma_stated }, 2),
-            if share_of { " %".to_owned() } else { format!(" {}", row.unit) },
+            shared::named(row.stated.unknown, row.stated.light, row.stated.order),
+            significant(if share_of { 100.0 * row.stated.sigma_stated } else { row.stated.sigma_stated }, 2),
+            if share_of { " %".to_owned() } else { format!(" {}", row.stated.unit) },
             significant(row.emissivity_rms, 2)
         );
         match row.lost {

@@ -4,11 +4,10 @@
 
 use super::DecomposeStudy;
 use crate::cube_sample::{LOOKED, some};
-use crate::model_judged::said;
-use crate::shared_unknown::Of;
+use crate::shared_unknown::{Of, Stated};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
-use hadar_estimate::decompose::{Cause, Method, Options, Shared, Told, Unknown, estimate};
+use hadar_estimate::decompose::{Method, Options, Shared, Told, Unknown, estimate};
 use hadar_scenario::decompose::SharedUnknown;
 use serde::Serialize;
 
@@ -30,8 +29,8 @@ pub struct SharedFound {
     pub pixels: usize,
     /// Whether the last round moved nothing.
     pub settled: bool,
-    /// By how much χ² of a pixel is off on average as they are not known.
-    pub off_chi_square: f64,
+    /// By how much χ² of a pixel is off on average as they are not known; nothing where the prior is all that is known.
+    pub off_chi_square_mean: Option<f64>,
     /// Whether materials can be decided with what is known of them.
     pub told: bool,
 }
@@ -39,22 +38,13 @@ pub struct SharedFound {
 /// One of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SharedRow {
-    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape`, `light-temperature`, `light-missing` or `air`.
-    pub unknown: &'static str,
-    /// Which of the surroundings, from 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub light: Option<usize>,
-    /// Order of the polynomial of a shape.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub order: Option<usize>,
-    /// Deviation that was stated.
-    pub sigma_stated: f64,
+    /// Which one.
+    #[serde(flatten)]
+    pub stated: Stated,
     /// By how much it is otherwise than told.
     pub estimate: f64,
     /// Deviation of that, together with all others.
     pub sigma: f64,
-    /// `cm^-1`, `K`, `m`, or nothing for a share.
-    pub unit: &'static str,
     /// Others, by their places in this list, from which the pixels do not tell it apart.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub same_as: Vec<usize>,
@@ -115,39 +105,25 @@ impl Estimated {
 
     /// Whether materials can be decided.
     pub(super) fn is_told(&self) -> bool {
-        self.shared.settled && self.shared.pixels > 0 && self.shared.off_chi_square < HARMLESS
+        self.shared.settled
+            && self.shared.pixels > 0
+            && self.shared.off_chi_square_mean.is_some_and(|off| off < HARMLESS)
     }
 
     pub(super) fn found(&self) -> SharedFound {
         let shared = &self.shared;
-        let row = |(i, one): (usize, &Unknown)| {
-            let (unknown, light, _, unit) = said(&one.cause);
-            let order = match one.cause {
-                Cause::LightShape { order, .. } => Some(order),
-                _ => None,
-            };
-            SharedRow {
-                unknown: if order.is_some() { "light-shape" } else { unknown },
-                light,
-                order,
-                sigma_stated: one.sigma,
-                estimate: shared.amounts[i],
-                sigma: shared.sigma(i),
-                unit,
-                same_as: shared
-                    .same
-                    .iter()
-                    .filter(|pair| pair.contains(&i))
-                    .map(|[a, b]| a + b - i)
-                    .collect(),
-            }
+        let row = |(i, one): (usize, &Unknown)| SharedRow {
+            stated: Stated::of(one),
+            estimate: shared.amounts[i],
+            sigma: shared.sigma(i),
+            same_as: shared.same.iter().filter(|pair| pair.contains(&i)).map(|[a, b]| a + b - i).collect(),
         };
         SharedFound {
             unknowns: shared.unknowns.iter().enumerate().map(row).collect(),
             noise_factor: shared.noise,
             pixels: shared.pixels,
             settled: shared.settled,
-            off_chi_square: if shared.off_chi_square.is_finite() { shared.off_chi_square } else { 0.0 },
+            off_chi_square_mean: shared.off_chi_square_mean,
             told: self.is_told(),
         }
     }

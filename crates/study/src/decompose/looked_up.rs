@@ -125,30 +125,7 @@ impl DecomposeStudy {
                 None => classes.push((class.clone(), vec![place])),
             }
         }
-        if scenario.unknown.lighting_total.is_some() && lights.is_empty() {
-            let found = Error::malformed("a total of no lighting", "write [[environment]], or leave it out");
-            return Err(at("unknown.lighting_total")(found));
-        }
-        if let Some(other) = scenario.vision.hues_deg.keys().find(|name| !names.contains(name)) {
-            let found = Error::unknown_name("material", other, names.iter().map(String::as_str));
-            return Err(at(&format!("vision.hues.{other}"))(found));
-        }
-        if let Some(sky) = scenario.vision.sky.filter(|sky| *sky >= lights.len()) {
-            let found = format!("environment {sky} as the sky, of {}", lights.len());
-            let error = Error::malformed(found, "count the [[environment]] tables from 0");
-            return Err(at("vision.sky")(error));
-        }
-        if scenario.vision.sky.is_some() && scenario.unknown.gain {
-            let found = "the light of a sky in counts of unknown scale";
-            return Err(at("vision.sky")(Error::malformed(found, "write unknown.gain = false")));
-        }
-        if matches!(scenario.spatial, Some(SpatialPrior::TexSgd { .. }))
-            && scenario.library.emissivity_error.is_some_and(|error| error > 0.0)
-        {
-            let found = "its cost knows no errors of the library";
-            let instead = "write prior = \"potts\", or leave library.emissivity_error out";
-            return Err(at("spatial.prior")(Error::malformed(found, instead)));
-        }
+        check(scenario, &names, lights.len()).map_err(|(key, error)| at(&key)(error))?;
         let categories =
             parts(&scenario.categories, &names, &classes).map_err(|(key, error)| at(&key)(error))?;
         let truth = scenario.truth.as_ref();
@@ -201,6 +178,39 @@ impl DecomposeStudy {
             _ => error.in_file(&self.scenario.cube.data),
         }
     }
+}
+
+/// What of a scenario does not go together, with the key that it is about.
+fn check(
+    scenario: &DecomposeScenario,
+    names: &[String],
+    lights: usize,
+) -> std::result::Result<(), (String, Error)> {
+    if scenario.unknown.lighting_total.is_some() && lights == 0 {
+        let found = Error::malformed("a total of no lighting", "write [[environment]], or leave it out");
+        return Err(("unknown.lighting_total".into(), found));
+    }
+    if let Some(other) = scenario.vision.hues_deg.keys().find(|name| !names.contains(name)) {
+        let found = Error::unknown_name("material", other, names.iter().map(String::as_str));
+        return Err((format!("vision.hues.{other}"), found));
+    }
+    if let Some(sky) = scenario.vision.sky.filter(|sky| *sky >= lights) {
+        let found = format!("environment {sky} as the sky, of {}", lights);
+        let error = Error::malformed(found, "count the [[environment]] tables from 0");
+        return Err(("vision.sky".into(), error));
+    }
+    if scenario.vision.sky.is_some() && scenario.unknown.gain {
+        let found = "the light of a sky in counts of unknown scale";
+        return Err(("vision.sky".into(), Error::malformed(found, "write unknown.gain = false")));
+    }
+    if matches!(scenario.spatial, Some(SpatialPrior::TexSgd { .. }))
+        && scenario.library.emissivity_error.is_some_and(|error| error > 0.0)
+    {
+        let found = "its cost knows no errors of the library";
+        let instead = "write prior = \"potts\", or leave library.emissivity_error out";
+        return Err(("spatial.prior".into(), Error::malformed(found, instead)));
+    }
+    Ok(())
 }
 
 /// A material of the library, or a member of a class that stands there.

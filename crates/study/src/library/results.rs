@@ -3,6 +3,7 @@
 use crate::Warning;
 use crate::decompose::{FlagCount, There, flags};
 use crate::heat_cube::Measured;
+use crate::shared_unknown::Stated;
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar_estimate::decompose::{Maps, NO_MATERIAL};
@@ -62,21 +63,12 @@ pub struct LibraryFound {
 /// What an unknown does to the emissivities.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SharedOfLibrary {
-    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape` or `light-temperature`.
-    pub unknown: &'static str,
-    /// Which of the surroundings, from 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub light: Option<usize>,
-    /// Order of the polynomial of a shape.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub order: Option<usize>,
-    /// Deviation that was stated.
-    pub sigma_stated: f64,
-    /// `cm^-1`, `K`, or nothing for a share.
-    pub unit: &'static str,
-    /// What that does to an emissivity, rms over bands and clusters.
+    /// Which one.
+    #[serde(flatten)]
+    pub stated: Stated,
+    /// What its deviation does to an emissivity, rms over bands and clusters.
     pub emissivity_rms: f64,
-    /// Clusters that no cluster is like then.
+    /// Clusters that no cluster is like then: nothing is known of their emissivities.
     pub lost: usize,
 }
 

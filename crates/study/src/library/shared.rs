@@ -2,20 +2,22 @@
 //!
 //! The library is made once more with each unknown by its deviation otherwise than told. A cluster of the second library is that of the first
 //! with which it has most pixels in common; the difference Δe of their emissivities is one deviation, whose square is added to the variance in
-//! each band, and to those of its magnitude and mean. The cube does not tell these unknowns here: an emissivity is as free as they are.
+//! each band, and to those of its magnitude and mean; where there is none, nothing is known of the emissivity. The cube does not tell these unknowns here: an emissivity is as free as they are.
 //!
 //! Assumptions: to first order; unknowns are independent.
 
 use super::LibraryStudy;
 use super::results::SharedOfLibrary;
-use crate::model_judged::said;
-use crate::shared_unknown::{Of, spectra};
+use crate::shared_unknown::{Of, Stated, spectra};
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar_estimate::decompose::{Cause, Maps, NO_MATERIAL, Setting, Told};
+use hadar_estimate::decompose::{Maps, NO_MATERIAL, Setting, Told};
 use hadar_estimate::separation::{Cluster, Found};
 use hadar_scenario::decompose::SharedUnknown;
 use std::sync::Arc;
+
+/// Deviation of an even distribution from 0 to 1: what is known of an emissivity beforehand.
+const BLIND: f64 = 0.288_675;
 
 impl LibraryStudy {
     /// Each unknown put into the deviations of the clusters, and what it did.
@@ -44,31 +46,20 @@ impl LibraryStudy {
             (0..measured.bands.len()).filter(|band| !measured.bad_bands.contains(band)).collect();
         let mut rows = Vec::new();
         for unknown in of.unknowns(&scenario.unknown.shared)? {
-            let (name, light, _, unit) = said(&unknown.cause);
-            let order = match unknown.cause {
-                Cause::LightShape { order, .. } => Some(order),
-                _ => None,
-            };
             let other = again(&told.with(&unknown.cause, unknown.sigma)?.setting())?;
             let (mut square, mut count, mut lost) = (0.0, 0_usize, 0);
             for place in 0..found.clusters.len() {
-                let Some(like) = counterpart(&found.maps, &other.maps, place) else {
+                let like = counterpart(&found.maps, &other.maps, place);
+                let Some(like) = like.and_then(|like| other.clusters.get(like)) else {
                     lost += 1;
+                    blind(&mut found.clusters[place], &used);
                     continue;
                 };
-                let Some(like) = other.clusters.get(like) else { continue };
                 square += widened(&mut found.clusters[place], like, &used);
                 count += used.len();
             }
-            rows.push(SharedOfLibrary {
-                unknown: if order.is_some() { "light-shape" } else { name },
-                light,
-                order,
-                sigma_stated: unknown.sigma,
-                unit,
-                emissivity_rms: (square / count.max(1) as f64).sqrt(),
-                lost,
-            });
+            let emissivity_rms = (square / count.max(1) as f64).sqrt();
+            rows.push(SharedOfLibrary { stated: Stated::of(&unknown), emissivity_rms, lost });
         }
         Ok(rows)
     }
@@ -86,6 +77,12 @@ fn counterpart(maps: &Maps, other: &Maps, place: usize) -> Option<usize> {
     }
     let (best, most) = counts.into_iter().max_by_key(|(_, count)| *count)?;
     (2 * most > all).then_some(usize::from(best))
+}
+
+/// An emissivity of which nothing is known.
+fn blind(cluster: &mut Cluster, used: &[usize]) {
+    used.iter().for_each(|band| cluster.sigma[*band] = cluster.sigma[*band].hypot(BLIND));
+    cluster.sigma_mean = cluster.sigma_mean.hypot(BLIND);
 }
 
 /// Puts the difference from another emissivity into the deviations; Σ Δe².

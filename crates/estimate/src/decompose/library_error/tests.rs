@@ -1,5 +1,5 @@
 use super::super::maps::Maps;
-use super::super::model::{Light, Setting};
+use super::super::setting::{Light, Setting};
 use super::super::{Options, decompose};
 use super::*;
 use hadar::correlation::matern;

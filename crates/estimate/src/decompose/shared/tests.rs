@@ -4,8 +4,10 @@ use super::*;
 use crate::decompose::effect::Effect;
 use crate::decompose::judge::tests::{EXACT, Otherwise, PIXELS, causes, counted, state, told};
 use crate::decompose::tangent::{Tangent, Tangents};
-use crate::decompose::{judge, widen};
+use crate::decompose::{Light, widen};
+use hadar::cube::{MemoryCube, Shape};
 use hadar::random::generator;
+use hadar::spectrum::Bands;
 use rand_distr::{Distribution, Poisson};
 
 /// The slope of each cause is the difference of the counts with a little more and less of it.
@@ -154,4 +156,55 @@ fn a_larger_noise_is_found() {
     );
     let shared = estimate(&told, &[], Some(0.5), &Options::default(), &[cube]).unwrap();
     assert!((shared.noise / 1.3 - 1.0).abs() < 0.02, "{}", shared.noise);
+}
+
+/// A mirror among pixels that are nearly black, which none of the sample is: what is not known of the sky may move it by far more than its noise. It
+/// is not decided, and may be anything; those that are nearly black stay decided.
+#[test]
+fn a_pixel_that_hangs_on_what_is_not_known_is_not_decided() {
+    let mut told = told();
+    told.lighting_total = None;
+    let count = told.bands.nodes_cm1().len();
+    told.library = vec![
+        (0..count).map(|i| 0.99 + 0.005 * (0.3 * i as f64).sin()).collect(),
+        (0..count).map(|i| 0.1 + 0.05 * (0.2 * i as f64).cos()).collect(),
+    ];
+    // A sky whose shape is not known, of which a mirror shows more than its strength.
+    let cause = Cause::LightShape { light: 0, order: 1 };
+    let tangents = Tangents::new(&told.setting()).unwrap();
+    let cube = |materials: &[usize]| {
+        let mut samples = Vec::new();
+        for (i, m) in materials.iter().enumerate() {
+            let mut mean = Vec::new();
+            tangents.mean((*m, 290.0 + i as f64 % 15.0, &[0.6, 0.3]), &mut mean).unwrap();
+            samples.extend(mean);
+        }
+        let shape = Shape::new(1, materials.len(), samples.len() / materials.len()).unwrap();
+        Cube::F64(Box::new(MemoryCube::new(shape, samples).unwrap()))
+    };
+    let options = Options { categories: vec![1, 2], ..Options::default() };
+    let black = [cube(&[0; 60])];
+    let shared = estimate(&told, &[Unknown { cause, sigma: 0.3 }], None, &options, &black).unwrap();
+    assert!(shared.pixels == 60 && shared.off_chi_square_mean.unwrap() < 0.1, "{shared:?}");
+    let setting = told.setting();
+    let both = cube(&[0, 0, 0, 1]);
+    let mut maps = decompose(&setting, &options, &both, &|_| ()).unwrap();
+    assert!((0..4).all(|i| maps.is_decided(i)), "{maps:?}");
+    widen(&setting, &mut maps, &[], &[], Some(&shared)).unwrap();
+    assert!((0..3).all(|i| maps.is_decided(i)) && !maps.is_decided(3), "{maps:?}");
+    assert!(maps.possible_99[3] == u64::MAX && maps.possible_99[0] == 1);
+}
+
+/// A shape of a light that is counted is that of its bands, also where a band has several nodes.
+#[test]
+fn a_shape_of_counts_is_that_of_bands() {
+    let mut told = told();
+    told.bands = Bands::from_ranges(&[(800.0, 900.0), (900.0, 1000.0), (1000.0, 1100.0)]).unwrap();
+    told.surroundings = vec![Light::Counts(vec![100.0; 3])];
+    let tilted = told.with(&Cause::LightShape { light: 0, order: 1 }, 0.3).unwrap();
+    let Light::Counts(counts) = &tilted.surroundings[0] else { panic!("{tilted:?}") };
+    // Centres of the bands at −2/3, 0 and 2/3 of the range.
+    for (n, expected) in counts.iter().zip([80.0, 100.0, 120.0]) {
+        assert!((n - expected).abs() < 0.5, "{counts:?}");
+    }
 }

@@ -27,13 +27,14 @@ pub(super) fn text(found: &SharedFound) -> String {
 }
 
 fn line(row: &SharedRow, all: &[SharedRow]) -> String {
-    let (factor, unit) = match row.unit {
-        "" if row.unknown != "light-missing" => (100.0, " %"),
+    let (factor, unit) = match row.stated.unit {
+        "" if row.stated.unknown != "light-missing" => (100.0, " %"),
         "" => (1.0, ""),
         unit => (1.0, unit),
     };
     let space = if unit.is_empty() || unit.starts_with(' ') { "" } else { " " };
-    let (estimate, sigma, stated) = (factor * row.estimate, factor * row.sigma, factor * row.sigma_stated);
+    let (estimate, sigma, stated) =
+        (factor * row.estimate, factor * row.sigma, factor * row.stated.sigma_stated);
     // As many digits as the deviation leaves.
     let digits = if estimate == 0.0 { 1.0 } else { (estimate.abs() / sigma).log10().floor() + 2.0 };
     let mut out = format!(
@@ -43,7 +44,7 @@ fn line(row: &SharedRow, all: &[SharedRow]) -> String {
         significant(sigma, 1),
         significant(stated, 2),
     );
-    if row.sigma > HARDLY * row.sigma_stated {
+    if row.sigma > HARDLY * row.stated.sigma_stated {
         out.push_str("; hardly told by the pixels");
     }
     for other in row.same_as.iter().filter_map(|i| all.get(*i)) {
@@ -53,7 +54,7 @@ fn line(row: &SharedRow, all: &[SharedRow]) -> String {
 }
 
 fn name(row: &SharedRow) -> String {
-    named(row.unknown, row.light, row.order)
+    named(row.stated.unknown, row.stated.light, row.stated.order)
 }
 
 /// An unknown of the whole cube by its name.
