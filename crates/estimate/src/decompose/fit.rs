@@ -6,8 +6,7 @@
 //! another look: what is left of it is its square.
 
 use super::kernel::{Asked, Sums, sums};
-use super::model::MOST;
-use super::model::Model;
+use super::model::{MOST, Model};
 use super::step::{Limits, State, Step};
 
 /// Length of the last step, squared, in deviations: of a fit that is only compared with others, and of the one that is told.

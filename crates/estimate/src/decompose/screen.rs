@@ -19,8 +19,7 @@
 //!
 //! Assumptions: none for the bound; the gain is known (else nothing is excluded).
 
-use super::model::MOST;
-use super::model::Model;
+use super::model::{MOST, Model};
 use super::space::{Space, dot};
 use super::step::State;
 use hadar::simd::{Aligned, Chunk, LANES, added, dispatched, fold};
