@@ -11,7 +11,7 @@ use crate::text::footing::{read_as, warnings};
 use crate::text::numbers::degrees;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
-use hadar_scenario::decompose::CubeUnit;
+use hadar_scenario::decompose::{CubeUnit, PixelUnknown};
 use hadar_study::decompose::{CORRELATION_CM1, Decomposed, ModelVerdict, TruthFound};
 use std::fmt::Write as _;
 
@@ -291,6 +291,22 @@ fn neighbours(result: &Decomposed) -> String {
     }
 }
 
+/// What nothing is stated of, and what is therefore taken as exact.
+pub(crate) fn exact(unknown: &PixelUnknown) -> String {
+    let shared = &unknown.shared;
+    let parts = [
+        ("the scale of the counts", unknown.gain || shared.gain.is_some()),
+        ("the bands", shared.wavelength_shift_cm1.is_some()),
+        ("the surroundings", shared.sky_scale.or(shared.sky_shape).or(shared.light_temperature_k).is_some()),
+    ];
+    let silent: Vec<&str> =
+        parts.into_iter().filter(|(_, is_stated)| !is_stated).map(|(what, _)| what).collect();
+    if silent.is_empty() {
+        return String::new();
+    }
+    format!("  taken as exact: {}; [unknown] states how well they are known\n", silent.join(", "))
+}
+
 fn assumptions(result: &Decomposed) -> String {
     let scenario = &result.scenario;
     let [low, high] = scenario.unknown.temperature_k;
@@ -346,8 +362,9 @@ fn assumptions(result: &Decomposed) -> String {
     };
     format!(
         "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent{library}\n  \
-         unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}\n",
+         unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}{}\n",
         if scenario.unknown.gain { ", gain" } else { "" },
+        exact(&scenario.unknown),
         neighbours(result),
     )
 }

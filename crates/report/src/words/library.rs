@@ -5,7 +5,7 @@ use crate::text::columns::{Columns, left, right};
 use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
 use crate::text::numbers::degrees;
-use crate::words::decompose::shared;
+use crate::words::decompose::{exact, shared};
 use crate::words::pictures::thinned;
 use hadar::words::{fixed, quantity, share, significant, whole};
 use hadar_study::library::{LibraryFound, TruthOfClusters};
@@ -152,7 +152,7 @@ fn assumptions(result: &LibraryFound) -> String {
         "Assumptions\n  groups: NEM at a largest emissivity of {} under the smoothest of some lightings, ratios, K-means; then least squares on the heat signal\n  \
          beforehand: mean emissivity {} +- {}, shape +- {}, to a quarter over {}\n  \
          unknown: temperature {low} to {high} K, lighting of {} surroundings, {total}\n  noise: {noise}; bands independent\n  \
-         errors: all temperatures, lightings and emissivities unknown together; made of {} pixels\n\n",
+         errors: all temperatures, lightings and emissivities unknown together; made of {} pixels\n{}\n",
         scenario.clusters.max_emissivity,
         known.mean,
         known.magnitude,
@@ -160,6 +160,7 @@ fn assumptions(result: &LibraryFound) -> String {
         quantity(known.correlation_cm1, "cm^-1"),
         scenario.environment.len(),
         whole((result.drawn - result.without_nem) as u64),
+        exact(&scenario.unknown),
     )
 }
 
