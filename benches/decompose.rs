@@ -60,6 +60,8 @@ impl Case {
             lighting_total: Some(1.0),
             gain: false,
             bad_bands: &[],
+            path: None,
+            light_besides: &[],
         }
     }
 
