@@ -110,6 +110,9 @@ fn add_maps(bundle: &mut Bundle, block: &Block, size: [usize; 2]) -> Result<()> 
     bundle.add("lighting_sigma.npy", npy_map(&deep(lights), &maps.lighting_sigma)?);
     bundle.add("p_value.npy", npy_map(&size, &maps.p_value)?);
     bundle.add("posterior.npy", npy_map(&size, &maps.posterior)?);
+    if !maps.other.is_empty() {
+        bundle.add("none_of_these.npy", npy_map(&size, &maps.other)?);
+    }
     bundle.add("candidates.npy", npy_map(&size, &maps.candidates)?);
     let ranks = maps.ranked.len() / maps.material.len().max(1);
     bundle.add("candidates_k.npy", npy_map(&deep(ranks), &maps.ranked)?);

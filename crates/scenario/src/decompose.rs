@@ -154,6 +154,8 @@ pub struct LibrarySpec {
     pub materials: Option<Vec<MaterialRef>>,
     /// Prior probability of each of them, in any scale; equal if silent.
     pub prior: Option<Vec<f64>>,
+    /// Prior probability that a surface is none of them; taken for impossible if silent.
+    pub none_of_these: Option<f64>,
     /// Root mean square error of the emissivities.
     pub emissivity_error: Option<f64>,
     /// Length over which these errors are correlated, cm⁻¹.

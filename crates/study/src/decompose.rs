@@ -19,7 +19,7 @@ pub use kept::{Block, Keep, Kept, MapFiles};
 pub use looked_up::{CANDIDATES, DecomposeStudy};
 pub use ranks::{Count, ranked};
 pub(super) use results::flags;
-pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
+pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, NoneOfThese, TruthFound};
 pub use safety::{NotExcluded, SafetyRow};
 pub use segmented::{CategoryRow, ObjectRow, PossibleRow, Segmented};
 pub(super) use truth::{There, Truth};
@@ -95,7 +95,8 @@ impl DecomposeStudy {
         let lights = self.told.surroundings.len();
         let (files, height) = match keep {
             Keep::InFiles { folder, rows } if !self.needs_all() => {
-                (Some(MapFiles::create(folder, rows, shape, (lights, self.candidates))?), rows)
+                let layers = (lights, self.candidates, self.scenario.library.none_of_these.is_some());
+                (Some(MapFiles::create(folder, rows, shape, layers)?), rows)
             }
             _ => (None, shape.rows()),
         };
@@ -121,7 +122,8 @@ impl DecomposeStudy {
         let mut held = self.truth.as_ref().map(|truth| (truth, Held::new(self, method)));
         let mut asked: Option<Asked> = None;
         let mut take = |first: usize, mut maps: Maps| {
-            let all = (height >= shape.rows()).then_some(&maps);
+            // The model is judged with the materials that are told.
+            let all = (height >= shape.rows() && options.other.is_none()).then_some(&maps);
             let asked = match &mut asked {
                 Some(asked) => &*asked,
                 none => none.insert(Asked::of(self, method, &setting, &options, (all, estimated.as_ref()))?),
@@ -230,6 +232,7 @@ impl DecomposeStudy {
         });
         let categories = if self.categories.is_empty() { Vec::new() } else { self.categories.sets() };
         let ranked = self.candidates;
-        Options { prior: self.prior.clone(), library_error, skipping, spatial, categories, ranked }
+        let (prior, other) = (self.prior.clone(), spec.none_of_these);
+        Options { prior, library_error, other, skipping, spatial, categories, ranked }
     }
 }

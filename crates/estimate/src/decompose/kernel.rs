@@ -49,7 +49,7 @@ pub(super) fn sums(model: &Model, asked: Asked<'_>, sums: &mut Sums) {
 }
 
 /// N′ of every band at a state.
-fn mean_counts(model: &Model, asked: Asked<'_>) -> Vec<f64> {
+pub(super) fn mean_counts(model: &Model, asked: Asked<'_>) -> Vec<f64> {
     let (mut mean, _) = model.emitted(asked.m, asked.temperature_k);
     let scale = model.scale(asked.mixture);
     mean.iter_mut().zip(&*model.var_added).for_each(|(n, var)| *n = scale.mul_add(*n, *var));

@@ -17,6 +17,7 @@
 //! pixels of one material share of an error does not average out in them.
 
 mod filter;
+mod other;
 mod with_errors;
 
 use super::fit::{COMPARED, Fit, MOST_LOOKS};
@@ -27,9 +28,10 @@ use super::step::State;
 use super::thresholds::{CUT, NO_FIT};
 use filter::{BEFORE, Found, Law, filter, logarithm_of_all, room_for};
 use hadar::correlation::matern;
-use hadar::error::{Result, check};
+use hadar::error::{Error, Result, check};
 use hadar::simd::{Aligned, LANES, dispatched};
 use hadar::statistics::chi_square_survival;
+pub(super) use other::Other;
 
 /// Shares of the stated error at which materials are compared, besides all of it.
 const LADDER: [f64; 5] = [0.5, 0.25, 0.125, 0.0625, 0.0];

@@ -3,7 +3,7 @@
 //! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads
 //! and of rows that are worked at once, and only these are in memory.
 
-use super::library_error::{Errors, LibraryError};
+use super::library_error::{Errors, LibraryError, Other};
 use super::model::Model;
 use super::pixel::{ANY_LIGHTING, NO_MATERIAL, Pixel, Room, Spared, Task, flag};
 use super::possible::{ANYTHING, Members, Possible};
@@ -24,6 +24,8 @@ pub struct Options {
     pub prior: Vec<f64>,
     /// How wrong the library may be; exact if silent.
     pub library_error: Option<LibraryError>,
+    /// Prior probability that a surface is none of the library, with an emissivity that is smooth; taken for impossible if silent.
+    pub other: Option<f64>,
     /// Whether materials that a bound excludes are left out; the answer is the same.
     pub skipping: Skipping,
     /// What neighbours tell about a pixel; each is for itself if silent.
@@ -53,6 +55,8 @@ pub struct Maps {
     pub p_value: Vec<f32>,
     /// [`Pixel::posterior`].
     pub posterior: Vec<f32>,
+    /// [`Pixel::other`]; empty where that is not asked.
+    pub other: Vec<f32>,
     /// [`Pixel::ranked`], `[row][column][rank]`.
     pub ranked: Vec<u16>,
     /// Their posteriors, likewise.
@@ -109,6 +113,11 @@ fn whole<S: Sample>(
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<()> {
     options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
+    if options.spatial.is_some() && options.other.is_some() {
+        let found =
+            "surfaces of none of the materials beside a prior over the image, which knows only materials";
+        return Err(Error::malformed(found, "leave one of them out"));
+    }
     let model = Model::new(setting)?;
     let per_unit = 1.0 / setting.units_per_count;
     let signed = is_signed(&model);
@@ -133,6 +142,7 @@ fn whole<S: Sample>(
         surroundings: setting.surroundings.len(),
         categories: task.members.is_some(),
         ranked: options.ranked,
+        other: options.other.is_some(),
     };
     let Some(prior) = &options.spatial else {
         return by_rows.in_blocks(blocks, || task.room(), pixel, layers);
@@ -156,6 +166,8 @@ pub(super) struct Layers {
     /// Whether there are sets of categories.
     pub(super) categories: bool,
     pub(super) ranked: usize,
+    /// Whether a surface of none of the materials is asked for.
+    pub(super) other: bool,
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -272,9 +284,10 @@ impl Task {
         let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
         let largest = errors.as_ref().map_or(0.0, |errors| errors.largest);
         let screen = (!model.gain).then(|| Screen::new(&model, &kinds, largest));
+        let other = options.other.map(|p| Other::new(setting, p, &prior)).transpose()?;
         let members = Members::new(&options.categories, &kind_of, &alike, &handicap)?;
         let (textures, skip) = (setting.textures(), options.skipping.skips());
-        Ok(Self { errors, model, screen, members, kinds, alike, kind_of, textures, handicap, skip })
+        Ok(Self { errors, other, model, screen, members, kinds, alike, kind_of, textures, handicap, skip })
     }
 
     /// Keeps the shares of the categories of a pixel, or those of the pixel before once more.
@@ -347,6 +360,7 @@ impl Maps {
             all.texture_sigma.extend(row.texture_sigma);
             all.p_value.extend(row.p_value);
             all.posterior.extend(row.posterior);
+            all.other.extend(row.other);
             all.ranked.extend(row.ranked);
             all.ranked_posterior.extend(row.ranked_posterior);
             all.candidates.extend(row.candidates);
@@ -360,7 +374,7 @@ impl Maps {
         all
     }
 
-    fn of(pixels: &[Pixel], Layers { surroundings, categories, ranked }: Layers) -> Self {
+    fn of(pixels: &[Pixel], Layers { surroundings, categories, ranked, other }: Layers) -> Self {
         let all = || pixels.iter();
         let possible = |of: fn(&Possible) -> u64| -> Vec<u64> {
             if categories { all().map(|p| of(&p.possible)).collect() } else { Vec::new() }
@@ -379,6 +393,7 @@ impl Maps {
             texture_sigma: all().map(|p| p.texture_sigma as f32).collect(),
             p_value: all().map(|p| p.p_value as f32).collect(),
             posterior: all().map(|p| p.posterior as f32).collect(),
+            other: if other { all().map(|p| p.other as f32).collect() } else { Vec::new() },
             ranked: all().flat_map(|p| p.ranked.materials[..ranks].iter().copied()).collect(),
             ranked_posterior: all().flat_map(|p| p.ranked.posteriors[..ranks].iter().copied()).collect(),
             candidates: all().map(|p| p.candidates).collect(),

@@ -146,8 +146,12 @@ fn compared<S: Sample>(
         }));
         room.iter().all(|n| n.is_finite())
     };
-    let layers =
-        Layers { surroundings: setting.surroundings.len(), categories: false, ranked: options.ranked };
+    let layers = Layers {
+        surroundings: setting.surroundings.len(),
+        categories: false,
+        ranked: options.ranked,
+        other: false,
+    };
     let mut all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| {
         let own = |room: &mut Vec<f64>, sample: &[S], _, _: &mut _, _: &mut _| match counts(room, sample) {
             true => pixel(room),

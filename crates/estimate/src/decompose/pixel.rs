@@ -8,9 +8,9 @@
 
 use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
 use super::kernel::{Asked, Sums, contrast, sums};
-use super::library_error::{Errors, Workplace};
+use super::library_error::{Errors, Other, Workplace};
 use super::model::Model;
-use super::possible::{CANDIDATE_SHARE, Members, Possible, TIE};
+use super::possible::{self, CANDIDATE_SHARE, Members, Possible, TIE};
 use super::ranked::Ranked;
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::setting::MOST_SURROUNDINGS;
@@ -37,7 +37,7 @@ pub mod flag {
     pub const NO_INFORMATION: u8 = 4;
     /// The lighting could be nearly anything: a factor has half the deviation of a blind guess or more.
     pub const LIGHTING_UNKNOWN: u8 = 8;
-    /// No material of the library fits (p below 1e-4).
+    /// No material of the library fits (p below 1e-4), or one that is none of the library is more probable.
     pub const NO_FIT: u8 = 16;
     /// Several materials are left.
     pub const UNDECIDED: u8 = 32;
@@ -61,7 +61,7 @@ pub mod flag {
 /// What is found of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pixel {
-    /// The most probable material of the library, [`NO_MATERIAL`] where nothing tells.
+    /// The most probable material of the library, [`NO_MATERIAL`] where nothing tells, or where it is none of the library.
     pub material: u16,
     /// Its temperature, K; NaN where the pixel was left out or emits nothing.
     pub temperature_k: f64,
@@ -77,6 +77,8 @@ pub struct Pixel {
     pub p_value: f64,
     /// Posterior probability of the material.
     pub posterior: f64,
+    /// Posterior probability that it is none of the library; 0 where that is not asked.
+    pub other: f64,
     /// It and those that come next to it.
     pub ranked: Ranked,
     /// Materials that 95 % of the posterior leave.
@@ -98,6 +100,7 @@ impl Pixel {
         texture_sigma: f64::NAN,
         p_value: f64::NAN,
         posterior: 0.0,
+        other: f64::NAN,
         ranked: Ranked::NOTHING,
         candidates: 0,
         flags: flag::SKIPPED,
@@ -164,6 +167,8 @@ pub(super) struct Task {
     pub(super) handicap: Vec<f64>,
     /// Errors of the library.
     pub(super) errors: Option<Errors>,
+    /// A surface of none of its materials, where that is asked.
+    pub(super) other: Option<Other>,
     /// What its materials are parts of, where categories are given.
     pub(super) members: Option<Members>,
     /// Whether bounds exclude materials.
@@ -338,29 +343,9 @@ impl Task {
         best
     }
 
-    /// A start where no space of few dimensions holds the material: the best of some temperatures, each with its best mixture.
+    /// [`scan`] of a kind.
     pub(super) fn scan(&self, kind: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
-        hadar::stop::check();
-        let model = &self.model;
-        let [low, high] = model.range_k;
-        let mut best = (f64::INFINITY, State::at(low));
-        let count = 8;
-        for i in 0..=count {
-            let mut state = State::at(low + (high - low) * f64::from(i) / f64::from(count));
-            state.mixture[..model.vertices].fill(1.0 / model.vertices as f64);
-            for _ in 0..2 {
-                let (temperature_k, mixture) = (state.temperature_k, &state.mixture[..model.vertices]);
-                sums(model, Asked { m: self.kinds[kind], shifted, temperature_k, mixture }, at);
-                spared.looks += 1;
-                if at.deviance < best.0 {
-                    best = (at.deviance, state);
-                }
-                if !state.step(at, &model.limits()).square.is_finite() {
-                    break;
-                }
-            }
-        }
-        best.1
+        scan(&self.model, self.kinds[kind], shifted, at, spared)
     }
 
     /// Degrees of freedom that a state leaves to its residual.
@@ -376,15 +361,35 @@ impl Task {
         chi_square_survival(chi_square, self.freedom(state) as f64)
     }
 
+    /// The best fit of none of the library's materials, beside the best of the library; nothing where that is not asked.
+    fn other(&self, room: &mut Room, spared: &mut Spared) -> Option<(usize, Fit)> {
+        let (other, &(kind, fit)) = (self.other.as_ref()?, room.fits.first()?);
+        let best = Fit { deviance: fit.deviance - self.handicap[kind], ..fit };
+        let at = (&self.model, self.kinds[kind], &best);
+        let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
+        other.fit(at, self.errors.as_ref(), room, spared)
+    }
+
     fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
-        let model = &self.model;
-        let weight = |one: &Fit, best: &Fit| libm::exp(-0.5 * (one.deviance - best.deviance));
-        let total: f64 =
-            room.fits.iter().map(|(kind, one)| self.alike[*kind] as f64 * weight(one, &fit)).sum();
+        let other = self.other(room, spared);
+        let fit_deviance = fit.deviance;
+        let mut model = &self.model;
+        let of_other = other.map_or(f64::INFINITY, |(_, other)| other.deviance);
+        let least = fit.deviance.min(of_other);
+        let weight = |one: &Fit| libm::exp(-0.5 * (one.deviance - least));
+        let other_weight = libm::exp(-0.5 * (of_other - least));
+        let known: f64 = room.fits.iter().map(|(kind, one)| self.alike[*kind] as f64 * weight(one)).sum();
+        let total = known + other_weight;
+        let other_share = other_weight / total;
         // The fewest that hold the share, and all that are as probable as the last of them.
         let (mut held, mut candidates, mut last, mut fits) = (0.0, 0, 0.0, 0);
+        let mut other_is_left = false;
         for (kind, one) in &room.fits {
-            let each = weight(one, &fit) / total;
+            let each = weight(one) / total;
+            if !other_is_left && other_share >= each && held < CANDIDATE_SHARE {
+                other_is_left = other.is_some();
+                (held, last) = (held + other_share, other_share);
+            }
             if held >= CANDIDATE_SHARE && each < last * (1.0 - TIE) {
                 break;
             }
@@ -393,18 +398,34 @@ impl Task {
             fits += 1;
             last = each;
         }
+        other_is_left |= other.is_some() && held < CANDIDATE_SHARE;
+        candidates += usize::from(other_is_left);
         let possible = self.members.as_ref().map(|members| {
-            members.possible(&room.fits, |one| weight(one, &fit) / total, fits, &mut room.shares)
+            let mut possible =
+                members.possible(&room.fits, |one| weight(one) / total, fits, &mut room.shares);
+            if self.other.as_ref().is_some_and(|other| other.is_not_excluded(other_share)) {
+                possible.at_99 = possible::ANYTHING;
+            }
+            possible
         });
         let others = room.fits.iter().filter(|(other, _)| *other != kind);
-        let others = others.map(|(other, one)| (*other, weight(one, &fit) / total));
-        let ranked = self.ranked(std::iter::once((kind, 1.0 / total)).chain(others));
-        let m = self.kinds[kind];
-        let (fit, looks) = match &self.errors {
+        let others = others.map(|(other, one)| (*other, weight(one) / total));
+        let ranked = self.ranked(std::iter::once((kind, weight(&fit) / total)).chain(others));
+        let (m, weight_of_fit) = (self.kinds[kind], weight(&fit));
+        let (mut fit, looks) = match &self.errors {
             None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
             Some(errors) => room.workplace.fit(model, errors, m, &room.shifted, fit.state, &mut room.sums),
         };
         spared.looks += looks as u64;
+        let p_value = self.p_value(&fit.state, room.sums.chi_square);
+        let mixture = &fit.state.mixture[..model.vertices];
+        let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
+        let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
+        let is_other = other.is_some() && of_other < fit_deviance;
+        if let (Some(hypothesis), Some(other)) = (&self.other, other.filter(|_| is_other)) {
+            let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
+            (model, fit) = hypothesis.told(other, room);
+        }
         let sums = &room.sums;
         let mixture = &fit.state.mixture[..model.vertices];
         let deviations = fit.state.deviations(sums, &model.limits());
@@ -426,32 +447,54 @@ impl Task {
         }
         let any_lighting = ANY_LIGHTING * model.lighting_total.unwrap_or(1.0);
         let no_lighting = lighting_sigma.iter().any(|sigma| *sigma > any_lighting);
-        let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
-        let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
-        let p_value = self.p_value(&fit.state, sums.chi_square);
         raise(at_limit, flag::TEMPERATURE_AT_LIMIT);
         raise(lit_at_limit && !lighting_sigma.contains(&f64::INFINITY), flag::LIGHTING_AT_LIMIT);
         raise(no_information, flag::NO_INFORMATION);
         raise(no_lighting, flag::LIGHTING_UNKNOWN);
-        raise(p_value < NO_FIT, flag::NO_FIT);
+        raise(p_value < NO_FIT || is_other, flag::NO_FIT);
         raise(candidates > 1, flag::UNDECIDED);
         raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
-        let is_told = flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0;
+        let is_told = flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0 && !other_is_left;
         Pixel {
-            material: if no_information { NO_MATERIAL } else { m as u16 },
+            material: if no_information || is_other { NO_MATERIAL } else { m as u16 },
             temperature_k: if no_temperature { f64::NAN } else { fit.state.temperature_k },
             sigma_k,
             lighting: model.lighting(mixture),
             lighting_sigma,
             texture_sigma: if self.textures.is_empty() { f64::NAN } else { sigma_of(&self.textures) },
             p_value,
-            posterior: 1.0 / total,
+            posterior: if is_other { other_share } else { weight_of_fit / total },
+            other: other_share,
             ranked: if no_information { Ranked::NOTHING } else { ranked },
             candidates: candidates as u16,
             flags,
             possible: possible.filter(|_| is_told).unwrap_or(Possible::ANYTHING),
         }
     }
+}
+
+/// A start where no space of few dimensions holds material `m`: the best of some temperatures, each with its best mixture.
+pub(super) fn scan(model: &Model, m: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
+    hadar::stop::check();
+    let [low, high] = model.range_k;
+    let mut best = (f64::INFINITY, State::at(low));
+    let count = 8;
+    for i in 0..=count {
+        let mut state = State::at(low + (high - low) * f64::from(i) / f64::from(count));
+        state.mixture[..model.vertices].fill(1.0 / model.vertices as f64);
+        for _ in 0..2 {
+            let (temperature_k, mixture) = (state.temperature_k, &state.mixture[..model.vertices]);
+            sums(model, Asked { m, shifted, temperature_k, mixture }, at);
+            spared.looks += 1;
+            if at.deviance < best.0 {
+                best = (at.deviance, state);
+            }
+            if !state.step(at, &model.limits()).square.is_finite() {
+                break;
+            }
+        }
+    }
+    best.1
 }
 
 #[cfg(test)]

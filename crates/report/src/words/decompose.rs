@@ -12,7 +12,7 @@ use crate::text::numbers::degrees;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar_scenario::decompose::{CubeUnit, PixelUnknown};
-use hadar_study::decompose::{CORRELATION_CM1, Decomposed, ModelVerdict, TruthFound};
+use hadar_study::decompose::{CORRELATION_CM1, Decomposed, ModelVerdict, NoneOfThese, TruthFound};
 use std::fmt::Write as _;
 
 /// Materials that are listed.
@@ -27,6 +27,7 @@ pub fn text(result: &Decomposed) -> String {
     let mut out = format!("{}\n{safety}\n{}", sentence(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
     out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
+    out.push_str(&result.none_of_these.as_ref().map_or_else(String::new, none_of_these));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
         out.push_str(&segmented::text(segmentation, is_rejected));
@@ -110,6 +111,18 @@ fn sentence(result: &Decomposed) -> String {
         }
     }
     out
+}
+
+/// Surfaces that are none of the library.
+fn none_of_these(found: &NoneOfThese) -> String {
+    format!(
+        "None of these materials (smooth emissivities, prior {})\n  likeliest in {} pixels, the only candidate in {}; more probable than 1 % in {}\n  \
+         such a pixel is of no category, may be of any, and has a temperature of its own with its deviation\n\n",
+        share(found.prior),
+        whole(found.likeliest as u64),
+        whole(found.alone as u64),
+        whole(found.above_one_percent as u64),
+    )
 }
 
 fn found(result: &Decomposed) -> String {
@@ -291,6 +304,14 @@ fn neighbours(result: &Decomposed) -> String {
     }
 }
 
+/// That nothing else can be there, where nothing is said of it.
+fn in_library(result: &Decomposed) -> &'static str {
+    match result.scenario.library.none_of_these {
+        None => "  every surface is taken for one of these materials; library.none_of_these states a doubt\n",
+        Some(_) => "",
+    }
+}
+
 /// What nothing is stated of, and what is therefore taken as exact.
 pub(crate) fn exact(unknown: &PixelUnknown) -> String {
     let shared = &unknown.shared;
@@ -364,7 +385,7 @@ fn assumptions(result: &Decomposed) -> String {
         "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent{library}\n  \
          unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}{}\n",
         if scenario.unknown.gain { ", gain" } else { "" },
-        exact(&scenario.unknown),
+        exact(&scenario.unknown) + in_library(result),
         neighbours(result),
     )
 }

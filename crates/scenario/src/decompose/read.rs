@@ -180,6 +180,7 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
         prior: section.read("prior", |entry| {
             entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0")).collect()
         })?,
+        none_of_these: section.number("none_of_these")?,
         emissivity_error: section.number("emissivity_error")?,
         emissivity_correlation_cm1: section.quantity("emissivity_correlation")?,
     };

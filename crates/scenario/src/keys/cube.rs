@@ -135,6 +135,10 @@ const LIGHT_KEYS: &[Key] = &[
 pub(crate) static LIGHT: Table =
     Table::of("Spectrum of one of the surroundings that light the pixels.", &[LIGHT_KEYS]);
 
+const PROBABILITY: Value = Value::Number(Allowed {
+    holds: |value| value > 0.0 && value < 1.0,
+    expected: "a probability above 0 and below 1",
+});
 const LIBRARY_KEYS: &[Key] = &[
     Key::row(
         "path",
@@ -159,6 +163,14 @@ const LIBRARY_KEYS: &[Key] = &[
         "[1.0, 0.2]",
         "Prior probability of each of them, in any scale.",
         "posterior of the materials",
+    ),
+    Key::row(
+        "none_of_these",
+        PROBABILITY,
+        Means("impossible"),
+        "0.1",
+        "Prior probability that a surface is none of them, with an emissivity that is smooth and otherwise unknown.",
+        "posterior of the materials: one more, whose emissivity is drawn",
     ),
     Key::row(
         "emissivity_error",

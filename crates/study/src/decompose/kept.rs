@@ -126,6 +126,8 @@ pub struct MapFiles {
     lighting_sigma: NpyRows<f32>,
     p_value: NpyRows<f32>,
     posterior: NpyRows<f32>,
+    /// Where that is asked.
+    none_of_these: Option<NpyRows<f32>>,
     candidates_k: NpyRows<u16>,
     candidates_k_posterior: NpyRows<f32>,
     texture: NpyRows<f32>,
@@ -134,12 +136,13 @@ pub struct MapFiles {
 }
 
 impl MapFiles {
-    /// Files in `folder` for so many surroundings and most probable materials, `height` rows in a block.
+    /// Files in `folder` for so many surroundings and most probable materials, and for what is none of them if that is asked; `height`
+    /// rows in a block.
     pub(super) fn create(
         folder: &Path,
         height: usize,
         shape: Shape,
-        (surroundings, ranked): (usize, usize),
+        (surroundings, ranked, none_of_these): (usize, usize, bool),
     ) -> Result<Self> {
         let size = [shape.rows(), shape.columns()];
         let map = |name: &str| NpyRows::create(&folder.join(name), &size);
@@ -157,6 +160,7 @@ impl MapFiles {
             lighting_sigma: lit("lighting_sigma.npy")?,
             p_value: map("p_value.npy")?,
             posterior: map("posterior.npy")?,
+            none_of_these: none_of_these.then(|| map("none_of_these.npy")).transpose()?,
             candidates_k: NpyRows::create(&folder.join("candidates_k.npy"), &deep(ranked))?,
             candidates_k_posterior: NpyRows::create(
                 &folder.join("candidates_k_posterior.npy"),
@@ -174,6 +178,7 @@ impl MapFiles {
         self.candidates.write(*first, &maps.candidates)?;
         self.candidates_k.write(*first, &maps.ranked)?;
         self.flags.write(*first, &maps.flags)?;
+        self.none_of_these.as_ref().map_or(Ok(()), |file| file.write(*first, &maps.other))?;
         for (file, values) in [
             (&self.temperature_k, &maps.temperature_k),
             (&self.temperature_sigma_k, &maps.temperature_sigma_k),
@@ -211,8 +216,8 @@ impl MapFiles {
 
     /// Where they are, in the order of the report.
     #[must_use]
-    pub fn paths(&self) -> [&Path; 14] {
-        [
+    pub fn paths(&self) -> Vec<&Path> {
+        let all = [
             self.material.path(),
             self.temperature_k.path(),
             self.temperature_sigma_k.path(),
@@ -227,6 +232,7 @@ impl MapFiles {
             self.texture.path(),
             self.texture_sigma.path(),
             self.thermal.path(),
-        ]
+        ];
+        all.into_iter().chain(self.none_of_these.as_ref().map(NpyRows::path)).collect()
     }
 }

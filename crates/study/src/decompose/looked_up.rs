@@ -203,6 +203,11 @@ fn check(
         let found = "the light of a sky in counts of unknown scale";
         return Err(("vision.sky".into(), Error::malformed(found, "write unknown.gain = false")));
     }
+    if scenario.spatial.is_some() && scenario.library.none_of_these.is_some() {
+        let found = "it knows no surface that is none of the library";
+        let instead = "leave [spatial] or library.none_of_these out";
+        return Err(("spatial".into(), Error::malformed(found, instead)));
+    }
     if matches!(scenario.spatial, Some(SpatialPrior::TexSgd { .. }))
         && scenario.library.emissivity_error.is_some_and(|error| error > 0.0)
     {

@@ -13,7 +13,7 @@ use crate::model_judged::{ModelJudged, ModelVerdict, fits};
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::error::Result;
-use hadar_estimate::decompose::{Maps, Method, Spared, Spatial, flag};
+use hadar_estimate::decompose::{Maps, Method, NO_MATERIAL, Spared, Spatial, flag};
 use hadar_formats::cube::Found;
 use hadar_scenario::DecomposeScenario;
 use serde::Serialize;
@@ -45,6 +45,9 @@ pub struct Decomposed {
     /// What was estimated for the whole cube; nothing where nothing is shared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shared: Option<SharedFound>,
+    /// Surfaces that are none of the library; nothing where that is not asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub none_of_these: Option<NoneOfThese>,
     /// Pixels that were left out: a sample of them is missing, or they were named or found to be bad.
     pub skipped: usize,
     /// What was named or found to be bad.
@@ -72,6 +75,19 @@ pub struct Decomposed {
     /// The maps.
     #[serde(skip)]
     pub kept: Kept,
+}
+
+/// Pixels whose surface may be none of the library.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NoneOfThese {
+    /// Prior probability of that.
+    pub prior: f64,
+    /// Pixels of which it is more probable than every material.
+    pub likeliest: usize,
+    /// Those of them that have no other candidate.
+    pub alone: usize,
+    /// Pixels of which its posterior probability is above 1 %.
+    pub above_one_percent: usize,
 }
 
 /// What was found of one material.
@@ -126,6 +142,8 @@ pub(super) struct Counted {
     materials: BTreeMap<u16, [usize; 2]>,
     /// Pixels with a p-value that some material fits, the sum of these, and pixels that none fits.
     p_values: (usize, f64, usize),
+    /// Pixels of which none of the library is likeliest, those without another candidate, and those that it has more than 1 % of.
+    none_of_these: [usize; 3],
     spared: Spared,
     spatial: Option<Spatial>,
 }
@@ -149,6 +167,12 @@ impl Counted {
                 Some(false) => self.p_values.2 += 1,
                 None => {}
             }
+        }
+        for (i, other) in maps.other.iter().enumerate() {
+            let is_likeliest = maps.material[i] == NO_MATERIAL && maps.posterior[i] == *other;
+            let is_alone = is_likeliest && maps.candidates[i] == 1;
+            let counts = [is_likeliest, is_alone, *other > 0.01];
+            self.none_of_these.iter_mut().zip(counts).for_each(|(sum, one)| *sum += usize::from(one));
         }
         self.pixels += maps.material.len();
         self.spared = self.spared + maps.spared;
@@ -287,6 +311,9 @@ pub(super) fn summary(
         spectra: members.len(),
         pixels: members.iter().map(|member| counted.of(*member)[0]).sum(),
     });
+    let [likeliest, alone, above_one_percent] = counted.none_of_these;
+    let none_of_these = study.scenario.library.none_of_these;
+    let none_of_these = none_of_these.map(|prior| NoneOfThese { prior, likeliest, alone, above_one_percent });
     let flags = counted.flags(&mut warnings, &study.bad);
     if let Some(found) = &segmentation {
         let guessed = found.objects.iter().filter(|object| 2 * object.decided < object.pixels).count();
@@ -305,6 +332,7 @@ pub(super) fn summary(
         decided_if_model_holds: counted.decided,
         model,
         shared,
+        none_of_these,
         undecided: pixels - decided - skipped,
         skipped,
         bad: study.bad.clone(),

@@ -1,0 +1,150 @@
+//! A surface of none of the library's materials: an emissivity that is smooth, and otherwise unknown.
+//!
+//! Its emissivity is drawn from a Gaussian process of constant mean μ, deviation s and the law of [`super`] along wavenumbers, with a
+//! quarter of the correlation left at ℓ = [`CORRELATION_CM1`]. Of the laws (μ, s) of [`LAWS`] the one counts that costs a pixel least:
+//! nearly black as paints, fabrics and plants are, or anything between a mirror and a blackbody. Such a surface costs
+//! rᵀC⁻¹r + ln det C + ln det(I + P) at its best temperature and lighting, and a material that is known the same with its own
+//! C and information I, P the inverse variances of temperature and lighting within their ranges: −2 ln of the mean likelihood over
+//! these (Laplace). The freedom of the emissivity is paid for by the determinant, so that a material of the library that fits
+//! wins where the counts tell it from what is merely smooth, and does not where they do not.
+//!
+//! The odds are within a factor of 10 of those of likelihoods integrated over temperature and lighting, of 3 in most pixels.
+//!
+//! With π its prior probability and πₘ those of the library's (Σ πₘ = 1 − π), its posterior is that of one more material.
+//!
+//! Assumptions: the emissivity is Gaussian, so a little of it lies beyond 0 and 1. The best of some laws costs less than their mean:
+//! a surface that is none of these is excluded more seldom than its prior says, never more often.
+
+use super::*;
+use crate::decompose::kernel::{Asked as Looked, mean_counts, sums as look};
+use crate::decompose::pixel::{Spared, scan};
+use crate::decompose::possible::MISSED;
+use crate::decompose::setting::Setting;
+
+/// Mean and deviation of an emissivity.
+const LAWS: [[f64; 2]; 4] = [[0.95, 0.03], [0.9, 0.06], [0.75, 0.15], [0.4, 0.25]];
+/// Difference of wavenumbers at which a quarter of the correlation is left, cm⁻¹.
+const CORRELATION_CM1: f64 = 100.0;
+/// Shares of the range of temperatures at which a fit starts besides.
+const ACROSS: [f64; 3] = [0.1, 0.4, 0.7];
+/// The law whose flat emissivity a start is looked for with.
+const START: usize = 1;
+
+/// The hypothesis, of the bands and lights of a setting.
+#[derive(Debug)]
+pub(in crate::decompose) struct Other {
+    model: Model,
+    errors: Errors,
+    /// −2 ln of its prior, to that of the most probable material of the library.
+    handicap: f64,
+    /// (1 − π)/π.
+    odds_against: f64,
+}
+
+impl Other {
+    /// Of prior probability `probability`, beside materials of prior probabilities in any scale.
+    pub(in crate::decompose) fn new(setting: &Setting<'_>, probability: f64, prior: &[f64]) -> Result<Self> {
+        let is_share = probability > 0.0 && probability < 1.0;
+        if !is_share {
+            let quantity = "probability that a surface is none of the library";
+            return Err(Error::out_of_range(quantity, probability, "", "above 0 and below 1"));
+        }
+        let flat: Vec<Vec<f64>> =
+            LAWS.iter().map(|[mean, _]| vec![*mean; setting.bands.nodes_cm1().len()]).collect();
+        let model = Model::new(&Setting { library: &flat, ..*setting })?;
+        let errors = Errors::new(&model, LibraryError { relative: 1.0, correlation_cm1: CORRELATION_CM1 })?;
+        let (all, most) = prior.iter().fold((0.0, 0.0_f64), |(all, most), p| (all + p, most.max(*p)));
+        let odds_against = (1.0 - probability) / probability;
+        Ok(Self { model, errors, handicap: 2.0 * libm::log(odds_against * most / all), odds_against })
+    }
+
+    /// Its best fit, with the cost of its prior, on the scale of the deviance of `best`, material `m` of `library`, and its law.
+    pub(in crate::decompose) fn fit(
+        &self,
+        (library, m, best): (&Model, usize, &Fit),
+        errors: Option<&Errors>,
+        (shifted, workplace, sums): (&[f64], &mut Workplace, &mut Sums),
+        spared: &mut Spared,
+    ) -> Option<(usize, Fit)> {
+        let from = scan(&self.model, START, shifted, sums, spared);
+        let [low, high] = self.model.range_k;
+        let mut starts = [best.state, from, from, from, from];
+        for (start, share) in starts[2..].iter_mut().zip(ACROSS) {
+            start.temperature_k = share.mul_add(high - low, low);
+        }
+        for start in starts {
+            for (m, [mean, deviation]) in LAWS.into_iter().enumerate() {
+                let (share, none) = (deviation / mean, f64::INFINITY);
+                let asked = Asked { kind: 0, m, share, start, short: COMPARED, beside: none, worse: none };
+                workplace.queue.push(asked);
+            }
+        }
+        spared.looks += workplace.run(&self.model, &self.errors, shifted, sums) as u64;
+        let least = |a: &(Asked, Fit, f64), b: &(Asked, Fit, f64)| a.1.deviance.total_cmp(&b.1.deviance);
+        let (asked, fit, _) = workplace.done.drain(..).min_by(least)?;
+        let (_, fit) = self.told((asked.m, fit), (shifted, workplace, sums));
+        let narrower = volume(&self.model, sums);
+        let state = &best.state;
+        let offset = match errors {
+            // Of exact materials deviances are known, which Σ ln N′ and χ² become but for what is the same for all.
+            None => {
+                let mixture = &state.mixture[..library.vertices];
+                let at = Looked { m, shifted, temperature_k: state.temperature_k, mixture };
+                look(library, at, sums);
+                best.chi_square + logarithm_of_all(&mean_counts(library, at)) - best.deviance
+            }
+            Some(errors) => {
+                workplace.fit(library, errors, m, shifted, *state, sums);
+                0.0
+            }
+        };
+        let deviance = fit.deviance - offset + narrower - volume(library, sums) + self.handicap;
+        Some((asked.m, Fit { deviance, ..fit }))
+    }
+
+    /// Whether it is among what 99 % leave, by the rules of [`crate::decompose::possible`], of this share of the posterior.
+    pub(in crate::decompose) fn is_not_excluded(&self, share: f64) -> bool {
+        let odds = share / (1.0 - share).max(f64::MIN_POSITIVE);
+        share > MISSED || odds * self.odds_against > MISSED / (1.0 - MISSED)
+    }
+
+    /// The same to its end; the sums are those of the last look.
+    pub(in crate::decompose) fn told(
+        &self,
+        (law, fit): (usize, Fit),
+        (shifted, workplace, sums): (&[f64], &mut Workplace, &mut Sums),
+    ) -> (&Model, Fit) {
+        let [mean, deviation] = LAWS[law];
+        let none = f64::INFINITY;
+        let (m, share, start) = (law, deviation / mean, fit.state);
+        workplace.queue.push(Asked { kind: 0, m, share, start, short: TOLD, beside: none, worse: none });
+        workplace.run(&self.model, &self.errors, shifted, sums);
+        (&self.model, workplace.done.pop().map_or(fit, |(_, fit, _)| fit))
+    }
+}
+
+/// ln det(I + P) of what was seen at a state.
+fn volume(model: &Model, seen: &Sums) -> f64 {
+    let count = model.unknowns();
+    let width_k = model.range_k[1] - model.range_k[0];
+    let mut rest = seen.information;
+    let mut sum = 0.0;
+    for i in 0..count {
+        rest[i][i] += 12.0 / if i == 0 { width_k * width_k } else { 1.0 };
+    }
+    // Gauss's elimination of a symmetric matrix, whose pivots P keeps above 0.
+    for i in 0..count {
+        let pivot = rest[i][i].max(f64::MIN_POSITIVE);
+        sum += libm::log(pivot);
+        for j in i + 1..count {
+            let factor = rest[j][i] / pivot;
+            for k in i + 1..count {
+                rest[j][k] -= factor * rest[i][k];
+            }
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests;
