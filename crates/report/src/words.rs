@@ -20,6 +20,7 @@ pub mod probability;
 pub(crate) mod range;
 pub(crate) mod render;
 pub(crate) mod rule;
+mod safety;
 pub(crate) mod several;
 pub(crate) mod shortfall;
 pub(crate) mod simulate;

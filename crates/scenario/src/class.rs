@@ -3,6 +3,7 @@
 //! A class may stand wherever a material of target, alternatives, envelope or library may. Its members are names of the library,
 //! patterns for these, files, folders, or patterns for the files of a folder.
 
+use super::emissivity_error;
 use super::entries::{Entries, Part};
 use super::paths::{Paths, file, is_path};
 use super::section::{Entry, Section, without_repetition};
@@ -47,7 +48,7 @@ fn one(entry: &Entry<'_>) -> Result<ClassSpec> {
         weights.iter().map(|weight| weight.number("1.0")).collect::<Result<Vec<f64>>>()
     })?;
     let sample = section.choice("covariance", &[("sample", ())])?.is_some();
-    let error = section.number("emissivity_error")?;
+    let error = emissivity_error::read(&section, emissivity_error::Of::Absolute)?;
     let length = section.quantity("correlation")?;
     let spread = Spread::stated(sample, error, length).map_err(|error| entry.fail(error))?;
     let mixtures = section.read("mixtures", Entry::boolean)?.unwrap_or(false);

@@ -5,7 +5,7 @@
 
 pub(super) mod category;
 mod image;
-pub(super) mod read;
+pub(crate) mod read;
 pub(super) mod write;
 
 pub use category::{CategorySpec, SegmentationSpec};

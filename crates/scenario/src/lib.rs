@@ -22,6 +22,7 @@ mod camera;
 pub mod cameras;
 mod class;
 pub mod decompose;
+mod emissivity_error;
 mod entries;
 pub mod envelope;
 pub mod examples;
@@ -49,6 +50,7 @@ mod written;
 pub use air_ranging::{AirRangingScenario, RangingScenario};
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
+use decompose::CategorySpec;
 pub use decompose::DecomposeScenario;
 pub use envelope::Envelope;
 pub use library::LibraryScenario;
@@ -123,6 +125,8 @@ pub struct Scenario {
     pub envelope: Option<Envelope>,
     /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
     pub sensitivity: Option<SensitivitySpec>,
+    /// What materials are parts of: where those that matter for safety cannot be excluded is said.
+    pub categories: Vec<CategorySpec>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -150,6 +154,7 @@ impl PartialEq for Scenario {
             && self.requirement == other.requirement
             && self.envelope == other.envelope
             && self.sensitivity == other.sensitivity
+            && self.categories == other.categories
     }
 }
 

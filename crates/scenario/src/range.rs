@@ -6,6 +6,7 @@
 pub(super) mod read;
 pub(super) mod write;
 
+use super::decompose::Bad;
 use super::{BandsSpec, CameraSpec, SceneSpec, Source};
 pub use hadar::ranging::depth::Demand;
 use hadar::ranging::derivative::Derivative;
@@ -82,6 +83,8 @@ pub struct CubeSpec {
     pub photons_per_unit: Option<f64>,
     /// Variance of the electronic noise; the camera's if silent.
     pub noise: Option<NoiseSource>,
+    /// What is done with pixels that are found to be bad.
+    pub bad: Bad,
     /// Depth; windows have bounds on their disparity alone if silent.
     pub depth: Option<DepthSource>,
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::decompose::category::{Told, categories};
 use super::envelope::LIGHTING_ROUNDING;
 use super::keys::files;
 use super::kind::Kind;
@@ -48,6 +49,7 @@ pub(super) fn of_root(
         camera: None,
         requirement: root.read("requirement", requirement)?.unwrap_or_default(),
         sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
+        categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
         source: Source::default(),
     })
 }

@@ -5,6 +5,7 @@
 //! this program for a good laboratory spectrum. How far laboratories differ: M. Langsdale et al., Remote Sens. 13, 102
 //! (2021), doi:10.3390/rs13010102; satellites' emissivities miss laboratory spectra by 0.01 and more (ASTER GED).
 
+use super::emissivity_error;
 use super::entries::Entries;
 use super::section::Entry;
 use hadar::error::Result;
@@ -29,7 +30,7 @@ impl SensitivitySpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
         let section = entry.section()?;
         let default = Self::default();
-        let emissivity_error = section.number("emissivity_error")?;
+        let emissivity_error = emissivity_error::read(&section, emissivity_error::Of::Absolute)?;
         let correlation_cm1 = section.quantity("correlation")?;
         Ok(Self {
             emissivity_error: emissivity_error.unwrap_or(default.emissivity_error),

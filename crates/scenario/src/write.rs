@@ -5,6 +5,7 @@
 
 use toml::Value;
 
+use super::decompose::category::categories_written;
 use super::entries::{Document, Entries};
 use super::paths::Paths;
 use super::{
@@ -30,6 +31,7 @@ impl Scenario {
             .put("requirement", requirement(&self.requirement))
             .put_if("envelope", self.envelope.as_ref().map(|envelope| envelope.written(paths)))
             .put_if("sensitivity", self.sensitivity.map(|spec| spec.entries()))
+            .put_if("category", categories_written(&self.categories))
     }
 }
 

@@ -8,6 +8,7 @@
 //! | 4 | saturated | a sample of which is at the value where readings are cut off |
 //! | 5 | too-bright | a sample of which is more than 4 times what a blackbody at the highest temperature, or any light, sends |
 //! | 6 | named | that stands in `cube.bad_pixels` |
+//! | 7 | outlier | far beyond all around it: of pictures alone (`cube_outliers`), never of these cubes |
 //!
 //! A band is bad where it is missing in most pixels, or one value in all that were looked at while noise would move it. Readings are
 //! cut off at the largest value that 20 of the samples looked at have, if ten times as many have it as the next one and fewer are above.
@@ -40,7 +41,7 @@ const PILED_OVER_NEXT: usize = 10;
 const OTHERS: usize = 16;
 
 /// Names of the codes, from 1.
-pub const NAMES: [&str; 6] = ["missing", "dead", "stuck", "saturated", "too-bright", "named"];
+pub const NAMES: [&str; 7] = ["missing", "dead", "stuck", "saturated", "too-bright", "named", "outlier"];
 
 /// Bad pixels and bands of a cube.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
@@ -77,7 +78,7 @@ pub(super) fn bands_found(found: &[BadBand]) -> impl Iterator<Item = Warning> + 
 /// Pixels that are bad for one reason.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BadPixels {
-    /// `missing`, `dead`, `stuck`, `saturated`, `too-bright` or `named`.
+    /// `missing`, `dead`, `stuck`, `saturated`, `too-bright`, `named` or `outlier`.
     pub why: &'static str,
     /// Its number in `bad_pixels.npy`.
     pub code: u8,

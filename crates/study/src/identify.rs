@@ -7,6 +7,7 @@ mod exact;
 mod matrix;
 mod priors;
 mod results;
+mod safety;
 mod samples;
 mod scaling;
 mod within_reach;
@@ -18,7 +19,11 @@ pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
 pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
 pub use priors::PriorAverage;
 pub(super) use results::PhotonsRequired;
-pub use results::{Identifiability, Identification, NearestProof, NearestState, PairResult, Prediction};
+pub use results::{
+    Identifiability, Identification, NearestProof, NearestState, PairResult, Prediction, SafetyMaterial,
+    SafetyOfTarget,
+};
+pub(super) use safety::AT_99;
 pub use samples::SampleSpectra;
 pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
@@ -67,6 +72,7 @@ impl Study {
             photon_radiance: self.photon_radiance(),
             identifiability: self.identifiability(&pairs),
             prior_average: None,
+            safety: self.safety(&pairs),
             pairs,
             limiting,
             classes: self.classes.clone(),

@@ -29,6 +29,7 @@ mod condition;
 pub mod cube_bad;
 mod cube_bands;
 mod cube_noise;
+mod cube_outliers;
 mod cube_rows;
 mod cube_sample;
 mod cube_unit;
@@ -77,7 +78,8 @@ pub use decision::YesNo;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestProof, NearestState, PairResult,
-    Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial, Watch,
+    Passband, Prediction, PriorAverage, Reached, Rows, SafetyMaterial, SafetyOfTarget, SampleSpectra,
+    Scaling, TargetVerdict, Trial, Watch,
 };
 pub use looked_up::Study;
 pub use own_cameras::OwnCameras;
@@ -87,8 +89,8 @@ pub use rule::{
     Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, IdealCamera, LightTime,
     LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
     Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
-    RuleStudy, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
-    WithoutPlaceholders,
+    RuleStudy, SafetyOfRule, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told,
+    WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -18,7 +18,7 @@ mod witness;
 pub use looked_up::RangeStudy;
 pub(crate) use overfull::Overfull;
 pub use results::{
-    BoundMaps, CellMedians, DepthFinding, DepthSolutions, DepthVerdict, Geometry, Line, Matched,
+    BadInView, BoundMaps, CellMedians, DepthFinding, DepthSolutions, DepthVerdict, Geometry, Line, Matched,
     ObjectBounds, PictureKind, Ranging, Signal, SignalBounds,
 };
 
@@ -197,7 +197,10 @@ impl RangeStudy {
         }
         let solve_for = match plan.bounds_alone {
             true => None,
-            false => self.solutions(&informed, shape, (&ground, &windows), &variances)?,
+            false => {
+                let ground = Ground { windows_of: self.windows_of(&informed, shape), ..ground };
+                self.solutions(&informed, shape, (&ground, &windows), &variances)?
+            }
         };
         // The views that are matched have no diffraction.
         let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
@@ -219,7 +222,7 @@ impl RangeStudy {
         })?;
         let mut result = Ranging {
             scenario: self.scenario.clone(),
-            verdict: self.verdict(objects.first())?,
+            verdict: self.verdict(objects.first(), self.windows_of(&informed, shape))?,
             read: self.read(),
             shape,
             geometry: self.geometry(ground.var_diffraction_px2)?,
@@ -229,6 +232,7 @@ impl RangeStudy {
             lines,
             matched: matched.unwrap_or_default(),
             quantile_error: None,
+            bad: self.bad(),
             missing_windows,
             maps_begin_at: Some([maps.rows.start, maps.columns.start]),
             stats: ledger.close(),
@@ -237,6 +241,42 @@ impl RangeStudy {
         };
         result.warnings = self.warnings(&result);
         Ok(result)
+    }
+
+    /// What was found to be bad in the views, where anything was.
+    fn bad(&self) -> Vec<BadInView> {
+        let Resolved::Cube(cube) = &self.subject else { return Vec::new() };
+        let views = ["left", "right"].into_iter().zip(&cube.bad);
+        let found = views.filter(|(_, found)| !found.pixels.is_empty());
+        let of = |(view, found): (&'static str, &crate::cube_bad::BadFound)| BadInView {
+            view,
+            pixels: found.pixels.clone(),
+            map: found.map.clone(),
+        };
+        found.map(of).collect()
+    }
+
+    /// Windows of the left view of a cube, judged or not, but for those that show what is infinitely far; `None` of scenes, all of which is
+    /// known.
+    fn windows_of(&self, informed: &Informed, shape: Shape) -> Option<usize> {
+        let (Resolved::Cube(_), Some(map)) = (&self.subject, informed.left.first()) else { return None };
+        let half = [self.scenario.stereo.window.half_rows(), self.scenario.stereo.window.half_columns()];
+        let depth_m = &informed.truth.depth_m;
+        if !depth_m.iter().any(|depth_m| depth_m.is_infinite()) {
+            return Some(map.rows.len() * map.columns.len());
+        }
+        let [half_rows, half_columns] = half;
+        let is_far = |row: usize, column: usize| {
+            (row - half_rows..=row + half_rows).any(|y| {
+                let first = y * shape.columns() + column;
+                depth_m
+                    .get(first - half_columns..=first + half_columns)
+                    .is_some_and(|depths| depths.iter().any(|depth_m| depth_m.is_infinite()))
+            })
+        };
+        let of_row =
+            |i: usize| map.columns.clone().filter(|column| !is_far(map.rows.start + i, *column)).count();
+        Some(parallel::map(map.rows.len(), of_row).into_iter().sum())
     }
 
     fn request<'a>(&self, noise: &'a NoiseVariance, cells: &'a [Cell], shape: Shape) -> Request<'a> {
@@ -299,6 +339,7 @@ impl RangeStudy {
             var_diffraction_px2: self.var_diffraction_px2()?,
             truth,
             columns: shape.columns(),
+            windows_of: None,
         })
     }
 

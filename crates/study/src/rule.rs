@@ -17,6 +17,7 @@ mod ideal;
 mod not_in_force;
 mod resolution;
 mod results;
+mod safety;
 mod search;
 mod stand_in;
 mod temperature;
@@ -34,6 +35,7 @@ pub use results::{
     LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult, WhoMeets,
     WithoutPlaceholders,
 };
+pub use safety::SafetyOfRule;
 pub use stand_in::{StandIn, StandInAnswer, StandInScene};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
 

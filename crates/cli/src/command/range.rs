@@ -1,5 +1,6 @@
 //! `hadar range`: bounds of passive ranging: by stereo from a scene or a heat cube, or by the air on the path (`signal = "air"`).
 
+use super::decompose::FoundBad;
 use super::global::Global;
 use super::several;
 use clap::Args;
@@ -27,6 +28,9 @@ pub(super) struct RangeArgs {
     /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
     #[arg(long, conflicts_with = "trials")]
     check: bool,
+    /// What is done with pixels of a cube that are found to be bad: cube.bad of the scenario
+    #[arg(long, value_enum)]
+    bad: Option<FoundBad>,
     /// By air: the N of all bands that tell most of the distance, with what no other choice can exceed
     #[arg(long, value_name = "N")]
     bands: Option<usize>,
@@ -37,7 +41,12 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
 }
 
 fn one(scenario: &Path, args: &RangeArgs, global: &Global) -> Result<u8> {
-    let scenario = RangingScenario::from_written(&global.written(scenario)?)?;
+    let mut scenario = RangingScenario::from_written(&global.written(scenario)?)?;
+    if let (RangingScenario::Stereo(scenario), Some(bad)) = (&mut scenario, args.bad)
+        && let Subject::Cube(cube) = &mut scenario.subject
+    {
+        cube.bad = bad.into();
+    }
     scenario.check_asked(args.trials, args.bands)?;
     match scenario {
         RangingScenario::Stereo(scenario) => by_stereo(args, global, &scenario),

@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::folder::Scratch;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
-use hadar_formats::cube::{NpyRows, write_npy_to};
+use hadar_formats::cube::{NpyRows, npy_map, write_npy_to};
 use hadar_study::range::{MapSink, Ranging, Signal};
 use std::sync::OnceLock;
 
@@ -47,6 +47,10 @@ fn file_name(signal: Signal) -> String {
 
 /// The maps of all windows.
 pub(super) fn add_maps(bundle: &mut Bundle, result: &Ranging, large: Option<&MapFiles>) -> Result<()> {
+    for view in &result.bad {
+        let size = [result.shape.rows(), result.shape.columns()];
+        bundle.add(format!("bad_pixels_{}.npy", view.view), npy_map(&size, &view.map)?);
+    }
     if let Some(files) = large.and_then(|large| large.files.get()) {
         for (signal, file) in files {
             bundle.add_file(file_name(*signal), file.path());

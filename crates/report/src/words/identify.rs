@@ -15,7 +15,7 @@ use crate::text::footing::footing;
 use crate::text::numbers::{numbers, significant};
 use crate::text::pairs::pair_table;
 use crate::words::size::ROUNDED;
-use crate::words::{Say, classes, conditions, probability as words};
+use crate::words::{Say, classes, conditions, probability as words, safety};
 use hadar::order;
 use hadar_study::{Answers, Check, Identification, NearestProof, Study, YesNo};
 use std::fmt::Write as _;
@@ -54,6 +54,7 @@ pub fn text(answers: &Answers, study: &Study) -> String {
 /// Distances to all alternatives.
 fn identification(result: &Identification, study: &Study) -> String {
     let mut out = verdict(result, study);
+    out.push_str(&safety::of_target(&result.safety));
     if result.prior_average.is_none() && !study.scenario().unknown.priors.is_empty() {
         out.push_str("For a target in the state of the scenario; on average over the priors: --average.\n");
     }

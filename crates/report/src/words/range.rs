@@ -9,21 +9,37 @@ use super::Say;
 use super::demand::error_of;
 use hadar::words::{self, significant};
 use hadar_study::range::{DepthFinding, Signal};
+use std::fmt::Write as _;
 
 impl Say for DepthFinding {
     fn say(&self) -> String {
         match self {
-            Self::Judged { met, error, share, required_share, signal, beside } => {
+            Self::Judged { met, error, share, required_share, signal, beside, windows: [judged, of] } => {
                 let mut out = format!(
-                    "{}: depth can be measured to within {} in {} of the windows at best, by the {} ({} demanded)",
-                    if *met { "Yes" } else { "No" },
+                    "{}: depth can be measured to within {} in {} of {} at best, by the {} ({} demanded)",
+                    match met {
+                        Some(true) => "Yes",
+                        Some(false) => "No",
+                        None => "Undecided",
+                    },
                     error_of(*error),
                     words::share(*share),
+                    if judged == of { "the windows".to_owned() } else { format!("all {of} windows") },
                     signal.name(),
                     words::share(*required_share),
                 );
                 if let Some((signal, share)) = beside {
                     out += &format!("; a {} allows it in {}", beside_it(*signal), words::share(*share));
+                }
+                if judged < of {
+                    let _ = write!(
+                        out,
+                        "; {judged} of {of} windows were judged: the others have no depth, a missing sample or no partner in the right \
+                         view, and count as not reaching it"
+                    );
+                    if met.is_none() {
+                        out += ", but could";
+                    }
                 }
                 out + "."
             }

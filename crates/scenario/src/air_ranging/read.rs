@@ -1,5 +1,6 @@
 //! Reads a scenario of ranging by air: every key checked, every error one line with file, line and key.
 
+use super::super::emissivity_error;
 use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::read::{environment, prior, target};
@@ -89,6 +90,7 @@ impl AirRangingScenario {
             requirement: Requirement::default(),
             envelope: None,
             sensitivity: None,
+            categories: Vec::new(),
             source: Source::default(),
         };
         let distances_m = match root.get("distances") {
@@ -181,7 +183,7 @@ fn unknown(entry: &Entry<'_>) -> Result<(Unknown, AirUnknown)> {
             }
         }
     }
-    let error = section.number("emissivity_error")?;
+    let error = emissivity_error::read(&section, emissivity_error::Of::Absolute)?;
     let correlation = section.quantity("emissivity_correlation")?;
     let is_unknown = named.contains(&EMISSIVITY);
     for (key, given) in [("emissivity_error", error), ("emissivity_correlation", correlation)] {

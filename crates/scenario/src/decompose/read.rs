@@ -1,5 +1,6 @@
 //! Reads a decomposition scenario: every key checked, every error one line with file, line and key.
 
+use super::super::emissivity_error;
 use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::{axes, file, is_path, material, variable};
@@ -85,7 +86,7 @@ impl Default for PixelUnknown {
 }
 
 /// What is done with what is found to be bad.
-pub(super) const BAD: [(&str, Bad); 2] = [("leave-out", Bad::LeaveOut), ("keep", Bad::Keep)];
+pub(crate) const BAD: [(&str, Bad); 2] = [("leave-out", Bad::LeaveOut), ("keep", Bad::Keep)];
 
 pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
     let section = entry.section()?;
@@ -180,8 +181,12 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
         prior: section.read("prior", |entry| {
             entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0")).collect()
         })?,
+<<<<<<< HEAD
         none_of_these: section.number("none_of_these")?,
         emissivity_error: section.number("emissivity_error")?,
+=======
+        emissivity_error: emissivity_error::read(&section, emissivity_error::Of::Share)?,
+>>>>>>> h2
         emissivity_correlation_cm1: section.quantity("emissivity_correlation")?,
     };
     if spec.path.is_none() && spec.materials.is_none() {

@@ -174,10 +174,10 @@ const LIBRARY_KEYS: &[Key] = &[
     ),
     Key::row(
         "emissivity_error",
-        A_SHARE,
+        Value::Either(&[A_SHARE, Value::Text]),
         Means("exact"),
-        "0.01",
-        "Root mean square error of the emissivities, as a share of each: 0.01 is 0.009 where the emissivity is 0.9.",
+        "\"1 %\"",
+        "Root mean square error of the emissivities, as a share of each: 1 % is 0.009 where the emissivity is 0.9; a bare number is taken as that, an absolute error is refused.",
         "covariance of the residuals",
     ),
     Key::row(
@@ -382,6 +382,11 @@ const SURFACES: Key = Key::row(
     "[\"car\", \"tyres of car\"]",
     "Surfaces of a scene to be rendered that it is.",
     "map of the truth beside the rendered cube",
+);
+/// `[[category]]` of a task or a rule: what `safety` says of it.
+pub(crate) static CATEGORY_OF_TASK: Table = Table::of(
+    "A kind of thing, and what it is made of: with safety = true, identify and rule say where it cannot be excluded.",
+    &[CATEGORY_KEYS],
 );
 /// `[[category]]` of a cube.
 pub(crate) static CATEGORY: Table =

@@ -69,6 +69,7 @@ const TASK: &[Key] = &[
     table("requirement", &task::REQUIREMENT),
     silent("the scene as it is", table("envelope", &task::ENVELOPE)),
     table("sensitivity", &task::SENSITIVITY),
+    silent("no categories", tables("category", &cube::CATEGORY_OF_TASK)),
 ];
 /// A task.
 pub(crate) static SCENARIO: Table =

@@ -452,6 +452,14 @@ const VIEWS_KEYS: &[Key] = &[
         "noise of a sample beside its shot noise (S14 to S16)",
     ),
     Key::row(
+        "bad",
+        Value::Choice(&["leave-out", "keep"]),
+        Is("\"leave-out\""),
+        "\"keep\"",
+        "What is done with pixels that are found to be bad (dead, stuck, or far beyond all around them): they are missing, or taken like all others.",
+        "which samples are used",
+    ),
+    Key::row(
         "depth",
         Value::Either(&[LENGTH, Value::File]),
         Means("bounds are on disparity alone"),
@@ -534,10 +542,10 @@ const AIR_UNKNOWN_KEYS: &[Key] = &[
     LIGHTING_TOTAL,
     Key::row(
         "emissivity_error",
-        POSITIVE_SHARE,
+        Value::Either(&[POSITIVE_SHARE, Value::Text]),
         Means("0.01, where the emissivity is unknown"),
-        "0.01",
-        "Root mean square error of the emissivity, where that is among the unknowns.",
+        "\"0.01 absolute\"",
+        "Root mean square error of the emissivity, absolute (a bare number is taken as that), where that is among the unknowns.",
         "covariance of the emissivity",
     ),
     Key::row(

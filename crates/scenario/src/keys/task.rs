@@ -190,10 +190,10 @@ const CLASS_KEYS: &[Key] = &[
     ),
     Key::row(
         "emissivity_error",
-        A_SHARE,
+        Value::Either(&[A_SHARE, Value::Text]),
         Means("no scatter about the members"),
-        "0.01",
-        "Root mean square by which emissivities scatter about each member.",
+        "\"0.01 absolute\"",
+        "Root mean square by which emissivities scatter about each member, absolute; a bare number is taken as that, a share is refused.",
         "covariance of the emissivity in the distance",
     ),
     Key::row(
@@ -395,10 +395,10 @@ pub(crate) static ENVELOPE: Table = Table::of(
 const SENSITIVITY_KEYS: &[Key] = &[
     Key::row(
         "emissivity_error",
-        A_SHARE,
+        Value::Either(&[A_SHARE, Value::Text]),
         Is("0.005"),
-        "0.005",
-        "Root mean square error of the emissivities, absolute: 0.005 of 1.",
+        "\"0.005 absolute\"",
+        "Root mean square error of the emissivities, absolute: 0.005 of 1; a bare number is taken as that, a share is refused.",
         "draws of spectra whose distances are compared",
     ),
     Key::row(

@@ -1,5 +1,6 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
+use super::super::decompose::read::BAD;
 use super::super::keys::files;
 use super::super::kind::Kind as FileKind;
 use super::super::paths::{axes, file, is_cube, variable};
@@ -72,6 +73,7 @@ fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
             Ok(_) => file(entry).map(NoiseSource::File),
             Err(_) => entry.number("50.0").map(NoiseSource::Uniform),
         })?,
+        bad: section.choice("bad", &BAD)?.unwrap_or_default(),
         depth: section.read("depth", |entry| {
             let text = entry.text("\"12 m\" or \"depth.npy\"")?.trim();
             if is_cube(Path::new(text)) {

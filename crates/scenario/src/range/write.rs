@@ -1,6 +1,7 @@
 //! Writes a ranging scenario with every default filled in, as TOML and, in the same structure, for JSON.
 
 use super::super::camera;
+use super::super::decompose::{Bad, read::BAD};
 use super::super::entries::{Document, Entries};
 use super::super::paths::Paths;
 use super::super::scene::scene_document;
@@ -36,6 +37,8 @@ fn cube(spec: &CubeSpec, paths: Paths<'_>) -> Entries {
         Some(NoiseSource::Uniform(var)) => entries.put("noise_variance", *var),
         Some(NoiseSource::File(path)) => entries.put("noise_variance", paths.file(path)),
     };
+    let bad = BAD.iter().find(|(_, one)| *one == spec.bad && spec.bad != Bad::default());
+    let entries = entries.put_if("bad", bad.map(|(name, _)| *name));
     match &spec.depth {
         None => entries,
         Some(DepthSource::Uniform(depth_m)) => {

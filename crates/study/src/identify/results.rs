@@ -29,6 +29,9 @@ pub struct Identification {
     /// What the members of classes say together, alternative by alternative; empty without classes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub classes: Vec<ClassAnswer>,
+    /// Whether each category with `safety = true` is excluded where the target is; empty without such categories.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub safety: Vec<SafetyOfTarget>,
     /// What it rests on that the camera tells an alternative, hardest first; empty where it was not asked for.
     pub conditions: Vec<Condition>,
     /// What the reader must know.
@@ -230,4 +233,32 @@ impl PairResult {
             DistanceKind::LocalUnknownGain => self.distance_local_unknown_gain,
         }
     }
+}
+
+/// Whether a category that matters for safety is excluded where the target is.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct SafetyOfTarget {
+    /// Its name.
+    pub category: String,
+    /// What is there.
+    pub target: String,
+    /// Whether the target is of the category itself.
+    pub is_target: bool,
+    /// Whether every one of its materials is excluded.
+    pub excluded: bool,
+    /// Its materials, in the order in which they are named.
+    pub materials: Vec<SafetyMaterial>,
+}
+
+/// A material of a category that matters for safety, against the target.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct SafetyMaterial {
+    /// Its name.
+    pub material: String,
+    /// Whether it is among the alternatives: if not, nothing is known of it.
+    pub compared: bool,
+    /// Whether what is proved of the camera excludes it.
+    pub excluded: bool,
+    /// The least probability that it is left among what 99 % leave, by any test; `None` without a camera or where it was not compared.
+    pub probability_left_at_least: Option<f64>,
 }

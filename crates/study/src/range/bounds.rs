@@ -29,6 +29,8 @@ pub(super) struct Ground<'a> {
     pub(super) truth: &'a Truth,
     /// Columns of the view.
     pub(super) columns: usize,
+    /// Windows that a share is of, where it is not those that have a bound: the others reach nothing.
+    pub(super) windows_of: Option<usize>,
 }
 
 /// A window as one signal has it.
@@ -113,7 +115,10 @@ impl Ground<'_> {
         if ranked.is_empty() {
             return Ok(None);
         }
-        let rank = rank(self.requirement.share, ranked.len());
+        let rank = rank(self.requirement.share, self.windows_of.unwrap_or(ranked.len()));
+        if rank >= ranked.len() {
+            return Ok(None);
+        }
         let (_, decisive, _) =
             ranked.select_nth_unstable_by(rank, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         Ok(Some(*decisive))

@@ -4,8 +4,9 @@ use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use super::watched::Watch;
 use crate::cube_bands::{InOrder, axes_in_doubt};
+use crate::cube_outliers::Picture;
 use crate::cube_unit::check_counts;
-use crate::cube_without::without_dead;
+use crate::cube_without::without;
 use crate::{bands, camera, camera_bands, stage};
 use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
@@ -16,6 +17,7 @@ use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::spectrum::Bands;
 use hadar_formats::cube::Opened;
+use hadar_scenario::decompose::Bad;
 use hadar_scenario::range::{CubeSpec, DepthSource, NoiseSource, Subject};
 use hadar_scenario::{RangeScenario, SceneSpec};
 
@@ -171,16 +173,26 @@ fn cube(
         }
     };
     let photons_per_unit = spec.photons_per_unit.unwrap_or(1.0);
-    let mut watches = Vec::new();
+    let (mut watches, mut bad) = (Vec::new(), Vec::new());
+    let var_added = match &noise {
+        NoiseVariance::None | NoiseVariance::PerSample(_) => Vec::new(),
+        NoiseVariance::Uniform(var) => vec![*var],
+        NoiseVariance::PerBand(var) => var.clone(),
+    };
+    let picture =
+        Picture { counts_per_unit: photons_per_unit, var_added: &var_added, keeps: spec.bad == Bad::Keep };
     // What is dead is seen by the watch, and by nobody else.
     let mut watched = |key: &'static str, view: Cube| {
         let (view, watch) = Watch::over(view);
         watches.push(watch);
-        without_dead(view, photons_per_unit).map_err(at(key))
+        let found = picture.find(&view).map_err(at(key))?;
+        let view = without(view, &found.map);
+        bad.push(found);
+        Ok::<_, Error>(view)
     };
     let left = watched("cube.left", left)?;
     let right = right.map(|right| watched("cube.right", right)).transpose()?;
-    Ok(Measured { left, read, warnings, right, watches, noise, photons_per_unit, depth })
+    Ok(Measured { left, read, warnings, right, watches, noise, photons_per_unit, depth, bad })
 }
 
 fn depth_map(depth: &Cube, shape: Shape) -> Result<Vec<f64>> {

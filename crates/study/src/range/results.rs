@@ -1,6 +1,7 @@
 //! What a ranging study finds, as data.
 
 use crate::Warning;
+use crate::cube_bad::BadPixels;
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::ranging::depth::DepthSolution;
@@ -73,6 +74,9 @@ pub struct Ranging {
     /// Relative error of medians and quantiles, at most, where there are too many windows to keep them all; none where exact.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quantile_error: Option<f64>,
+    /// Pixels that were found to be bad in each view; their samples are missing. None where all are good.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bad: Vec<BadInView>,
     /// Windows that hold a missing sample, and have no bound; none where there are none.
     #[serde(skip_serializing_if = "is_none")]
     pub missing_windows: usize,
@@ -88,6 +92,18 @@ pub struct Ranging {
     pub maps: BoundMaps,
 }
 
+/// Bad pixels of a view.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct BadInView {
+    /// `left` or `right`.
+    pub view: &'static str,
+    /// How many pixels are bad, by why.
+    pub pixels: Vec<BadPixels>,
+    /// The code of every pixel, 0 for good ones, `[row][column]`.
+    #[serde(skip)]
+    pub map: Vec<u8>,
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
 const fn is_none(count: &usize) -> bool {
     *count == 0
@@ -100,12 +116,17 @@ pub struct DepthVerdict {
     pub met: Option<bool>,
     /// The answer, in JSON a sentence.
     pub sentence: DepthFinding,
-    /// Share of the windows that reach it by the heat cube.
+    /// Share of the windows that reach it by the heat cube: of a cube those without a bound (no depth, a missing sample, no partner in the
+    /// right view) are counted, as not reaching it.
     pub share: Option<f64>,
     /// Share demanded.
     pub required_share: f64,
     /// The signal that decides.
     pub signal: Signal,
+    /// Windows that were judged: those with a bound and a depth.
+    pub windows: usize,
+    /// All windows of the left view, but for those that show what is stated to be infinitely far; of a scene those that both cameras see.
+    pub windows_of: usize,
 }
 
 /// What there is to be said of depth.
@@ -113,8 +134,8 @@ pub struct DepthVerdict {
 pub enum DepthFinding {
     /// Windows were held against the demand.
     Judged {
-        /// Whether enough of them reach it.
-        met: bool,
+        /// Whether enough of them reach it; `None` where windows that could not be judged decide.
+        met: Option<bool>,
         /// Error demanded.
         error: Demand,
         /// Share of the windows that reach it.
@@ -125,6 +146,8 @@ pub enum DepthFinding {
         signal: Signal,
         /// Another signal, and its share.
         beside: Option<(Signal, f64)>,
+        /// Windows that were judged, and all that there are.
+        windows: [usize; 2],
     },
     /// Depth is not known.
     NoDepth {

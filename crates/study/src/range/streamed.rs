@@ -153,7 +153,7 @@ impl RangeStudy {
         demand::spared(Thing::Sections, Reason::NotAsked, 1);
         let mut result = Ranging {
             scenario: self.scenario.clone(),
-            verdict: self.verdict(Some(&all))?,
+            verdict: self.verdict(Some(&all), Some(windows))?,
             shape,
             read: self.read(),
             geometry: self.geometry(var_diffraction_px2)?,
@@ -163,6 +163,7 @@ impl RangeStudy {
             lines: setting.lines(&counted)?,
             matched: Vec::new(),
             quantile_error: Some(QUANTILE_ERROR),
+            bad: self.bad(),
             missing_windows,
             maps_begin_at: Some([setting.rows.start, setting.columns.start]),
             stats: ledger.close(),
@@ -309,7 +310,13 @@ impl Setting<'_> {
             var_diffraction_px2: self.var_diffraction_px2[0],
             truth,
             columns: self.shape.columns(),
+            windows_of: None,
         }
+    }
+
+    /// Windows, judged or not.
+    fn windows(&self) -> usize {
+        self.rows.len() * self.columns.len()
     }
 
     /// Medians of the four cells, and of the fullest by another derivative.
@@ -358,7 +365,7 @@ impl Setting<'_> {
 
     /// The disparity error at the demanded share, and a window within a step of it.
     fn at_share(&self, errors: &Distribution) -> Option<(f64, (usize, usize))> {
-        let rank = rank(self.study.scenario.requirement.share, errors.len() as usize);
+        let rank = rank(self.study.scenario.requirement.share, self.windows());
         let (error_px, place) = errors.nth(rank as u64)?;
         let (row, column) = (place as usize / self.columns.len(), place as usize % self.columns.len());
         error_px.is_finite().then_some((error_px, (self.rows.start + row, self.columns.start + column)))
@@ -386,7 +393,7 @@ impl Setting<'_> {
             Ok(())
         })?;
         let errors = locked(&errors);
-        let share = met.load(Ordering::Relaxed) as f64 / errors.len() as f64;
+        let share = met.load(Ordering::Relaxed) as f64 / self.windows() as f64;
         let met = share >= self.study.scenario.requirement.share;
         let found = self.at_share(&errors).map(|(error_px, _)| error_px / allowed_px);
         Ok(found.map(|ratio| if met { ratio.min(1.0) } else { ratio.max(1.0 + f64::EPSILON) }))

@@ -2,6 +2,7 @@
 
 use super::watched::Watch;
 use crate::Warning;
+use crate::cube_bad::BadFound;
 use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
@@ -40,6 +41,8 @@ pub(super) struct Measured {
     pub(super) noise: NoiseVariance,
     pub(super) photons_per_unit: f64,
     pub(super) depth: Option<Depth>,
+    /// Pixels of each view that were found to be bad; their samples are missing in it.
+    pub(super) bad: Vec<BadFound>,
 }
 
 /// Depth of a cube's pixels, m.

@@ -52,10 +52,12 @@ impl RangeStudy {
         let met = share >= requirement.share;
         let verdict = DepthVerdict {
             met: Some(met),
-            sentence: self.judged(met, share, Signal::HeatCube, None),
+            sentence: self.judged(Some(met), share, (Signal::HeatCube, None), [windows; 2]),
             share: Some(share),
             required_share: requirement.share,
             signal: Signal::HeatCube,
+            windows,
+            windows_of: windows,
         };
         let mut stats = self.looked_up.clone().and(&decision.stats.work(shape.len()));
         stats.compute(Thing::Sections, 1);
@@ -72,6 +74,7 @@ impl RangeStudy {
             lines: Vec::new(),
             matched: Vec::new(),
             quantile_error: None,
+            bad: self.bad(),
             missing_windows: 0,
             maps_begin_at: None,
             stats,
@@ -98,29 +101,63 @@ impl RangeStudy {
         warnings
     }
 
-    pub(super) fn verdict(&self, all: Option<&ObjectBounds>) -> Result<DepthVerdict> {
+    /// The verdict on all windows, of which a cube has `windows_of`, judged or not: yes where those that reach the demand are enough of all,
+    /// no where those that could not be judged would not be enough with them, else undecided.
+    pub(super) fn verdict(
+        &self,
+        all: Option<&ObjectBounds>,
+        windows_of: Option<usize>,
+    ) -> Result<DepthVerdict> {
         let by = |signal: Signal| all.and_then(|all| all.signals.iter().find(|found| found.signal == signal));
+        // Windows that reach it, of all.
+        let reach = |found: &SignalBounds| {
+            let reach = (found.share? * found.windows as f64).round();
+            let of = windows_of.unwrap_or(found.windows).max(found.windows);
+            Some((reach, of, if of == found.windows { found.share? } else { reach / of as f64 }))
+        };
         // Bands joined in the detector are read once: with much noise the image then tells more than the cube.
         let share_of = |signal: Signal| by(signal).and_then(|found| found.share).unwrap_or(-1.0);
         let image_tells_more = self.scenario.stereo.joined == Joined::OneReading
             && share_of(Signal::ThermalImage) > share_of(Signal::HeatCube);
         let signal = if image_tells_more { Signal::ThermalImage } else { Signal::HeatCube };
         let cube = by(signal);
-        let share = cube.and_then(|found| found.share);
         let required = self.scenario.requirement.share;
-        let met = share.map(|share| share >= required);
-        let sentence = match (met, cube) {
-            (Some(met), Some(_)) => {
-                let other = if image_tells_more { Signal::HeatCube } else { Signal::ThermalImage };
-                self.judged(met, share.unwrap_or(f64::NAN), signal, by(other))
+        let judged = cube.map_or(0, |found| found.windows);
+        let (mut met, mut share, mut windows_of) = (None, None, windows_of.unwrap_or(judged).max(judged));
+        let sentence = match (cube.and_then(reach), cube) {
+            (Some((met_by, of, own)), Some(_)) => {
+                let at_most = (met_by + (of - judged) as f64) / of as f64;
+                met = match () {
+                    () if own >= required => Some(true),
+                    () if judged == of || at_most < required => Some(false),
+                    () => None,
+                };
+                (share, windows_of) = (Some(own), of);
+                let other = by(if image_tells_more { Signal::HeatCube } else { Signal::ThermalImage });
+                let beside = other.and_then(|other| Some((other.signal, reach(other)?.2)));
+                self.judged(met, own, (signal, beside), [judged, of])
             }
             (None, Some(cube)) => DepthFinding::NoDepth { disparity_error_px: cube.disparity_error_px },
             (_, None) => DepthFinding::NoBound,
         };
-        Ok(DepthVerdict { met, sentence, share, required_share: required, signal })
+        Ok(DepthVerdict {
+            met,
+            sentence,
+            share,
+            required_share: required,
+            signal,
+            windows: judged,
+            windows_of,
+        })
     }
 
-    fn judged(&self, met: bool, share: f64, signal: Signal, other: Option<&SignalBounds>) -> DepthFinding {
+    fn judged(
+        &self,
+        met: Option<bool>,
+        share: f64,
+        (signal, beside): (Signal, Option<(Signal, f64)>),
+        windows: [usize; 2],
+    ) -> DepthFinding {
         let requirement = self.scenario.requirement;
         DepthFinding::Judged {
             met,
@@ -128,7 +165,8 @@ impl RangeStudy {
             share,
             required_share: requirement.share,
             signal,
-            beside: other.and_then(|other| Some((other.signal, other.share?))),
+            beside,
+            windows,
         }
     }
 }
@@ -197,6 +235,16 @@ impl Measured {
     /// What the files say that is in doubt, and what was seen of their samples.
     fn said(&self) -> Vec<Warning> {
         let mut said = self.warnings.clone();
+        for (view, found) in ["left", "right"].into_iter().zip(&self.bad) {
+            let of = found.map.len();
+            let pixels = found.pixels.iter().filter(|bad| bad.why != "missing");
+            said.extend(pixels.map(|bad| Warning::ViewFoundBad {
+                view,
+                pixels: bad.pixels,
+                of,
+                why: bad.why,
+            }));
+        }
         for (view, watch) in ["left", "right"].into_iter().zip(&self.watches) {
             let Tally { pixels, most, at_most, dark } = watch.tally();
             if dark > 0 && dark as f64 >= DARK * pixels as f64 {

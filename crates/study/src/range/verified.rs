@@ -200,6 +200,7 @@ impl RangeStudy {
             var_diffraction_px2: change.var_diffraction_px2,
             truth,
             columns: shape.columns(),
+            windows_of: self.windows_of(informed, shape),
         };
         let window = self.scenario.stereo.window;
         let windows = ground.windows(&left, [window.half_rows(), window.half_columns()]);

@@ -169,7 +169,8 @@ impl TellApart {
         let requirement = self.requirement(&cameras, &envelope, alone);
         let companions =
             if asked.extent == Extent::Everything { self.companions(&cameras)? } else { Vec::new() };
-        Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable, companions })
+        let safety = super::safety::rows(&self.scenario.categories, &envelope, &cameras, self.required);
+        Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety })
     }
 
     /// What sizing practice says of the cameras, each at the distance of its limiting scene, if the rule says how large a target is.

@@ -3,6 +3,7 @@
 use super::results::{
     ApproachResult, CameraVerdict, EnvelopeResult, NotIdentifiable, RuleRequirement, StopResult, WhoMeets,
 };
+use super::safety::SafetyOfRule;
 use super::uncertainty::MarginUncertainty;
 use crate::companion::Companion;
 use crate::condition::Condition;
@@ -110,6 +111,9 @@ pub struct ApartAnswer {
     pub not_identifiable: Option<NotIdentifiable>,
     /// What sizing practice says of every camera at its worst distance, where the rule says how large the target is.
     pub companions: Vec<Companion>,
+    /// Whether each camera excludes each category with `safety = true`; empty without such categories.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub safety: Vec<SafetyOfRule>,
 }
 
 /// A clause that demands a quantity.
@@ -342,6 +346,9 @@ impl Serialize for RuleAnswer {
                 map.serialize_entry("cameras", &only.cameras)?;
                 map.serialize_entry("not_identifiable", &only.not_identifiable)?;
                 map.serialize_entry("companions", &only.companions)?;
+                if !only.safety.is_empty() {
+                    map.serialize_entry("safety", &only.safety)?;
+                }
             }
             _ => {
                 map.serialize_entry("cameras", &self.cameras)?;

@@ -98,6 +98,8 @@ warnings! {
     BandsFoundBad { bands: Vec<usize>, why: &'static str } = "bands-found-bad";
     /// Pixels that are left out as they were found to be bad.
     PixelsFoundBad { pixels: usize, of: usize, why: &'static str } = "pixels-found-bad";
+    /// Pixels of a view that are missing as they were found to be bad.
+    ViewFoundBad { view: &'static str, pixels: usize, of: usize, why: &'static str } as PixelsFoundBad;
     /// Pixels that no material explains.
     LibraryDoesNotFit { pixels: usize, of: usize } = "library-does-not-fit";
     /// A cube that does not follow the model it is decomposed with.

@@ -102,6 +102,7 @@ fn the_example_is_the_case_of_the_paper() {
         },
         envelope: None,
         sensitivity: None,
+        categories: Vec::new(),
         source: Source::default(),
     };
     assert_eq!(scenario, expected);
@@ -437,6 +438,7 @@ prop_compose! {
             requirement: Requirement { reliability, by, speed_m_s, time_s: speed_m_s.map(f64::recip) },
             envelope,
             sensitivity: None,
+            categories: Vec::new(),
             source: Source::default(),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::degrees;
+use crate::words::safety::article;
 use hadar::words::{share, significant, whole};
 use hadar_estimate::segmentation::{Agreement, Rule};
 use hadar_study::decompose::{ObjectRow, Segmented};
@@ -17,9 +18,7 @@ const NAMED: usize = 3;
 pub(super) fn safety(found: &Segmented, is_rejected: bool) -> String {
     let mut out = String::new();
     for row in &found.safety {
-        let article =
-            if row.category.starts_with(['a', 'e', 'i', 'o', 'A', 'E', 'I', 'O']) { "An" } else { "A" };
-        let name = &row.category;
+        let (article, name) = (article(&row.category), &row.category);
         let _ = match (row.pixels, row.objects.len()) {
             _ if is_rejected => writeln!(
                 out,

@@ -11,7 +11,7 @@ use crate::words::probability::{demanded, reliability};
 use crate::words::shortfall::in_words;
 use crate::words::size::rows::in_unit;
 use crate::words::warnings::say_the_same;
-use crate::words::{companion, conditions};
+use crate::words::{companion, conditions, safety};
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
@@ -115,6 +115,7 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
         significant(apart.requirement.distance, 4),
         demanded(apart.requirement.distance)
     );
+    out.push_str(&safety::of_rule(&apart.safety));
     apart.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
     if let Some(part) = &apart.not_identifiable {
         let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));

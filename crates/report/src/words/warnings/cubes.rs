@@ -79,9 +79,17 @@ words! {
         },
     }
     PixelsFoundBad {
-        meaning: "Pixels of a cube are dead, stuck at one value, cut off, or brighter than anything in the range can be.",
+        meaning: "Pixels of a cube are dead, stuck at one value, cut off, brighter than anything in the range can be, or far beyond all around them.",
         remedy: "Nothing; write cube.bad = \"keep\" to take them like all others; a wider unknown.temperature where what is there is hotter.",
         PixelsFoundBad { pixels, of, why } => format!("{pixels} of {of} pixels are {why}: they were left out (bad_pixels.npy)"),
+        ViewFoundBad { view, pixels, of, why: "outlier" } => format!(
+            "{pixels} of {of} pixels of the {view} view are outliers, far beyond all around them (hot, or a thing of a pixel or two): their \
+             samples count as missing (bad_pixels_{view}.npy); cube.bad = \"keep\" takes them as they are"
+        ),
+        ViewFoundBad { view, pixels, of, why } => format!(
+            "{pixels} of {of} pixels of the {view} view are {why}: their samples count as missing (bad_pixels_{view}.npy); \
+             cube.bad = \"keep\" takes them as they are"
+        ),
     }
     LibraryDoesNotFit {
         meaning: "Pixels of a cube are explained by no material of the library.",
