@@ -200,7 +200,8 @@ impl Response {
     #[must_use]
     pub fn at_values(&self, finer: &Finer) -> Self {
         let values = finer.at_values(&self.values);
-        let factor = DMatrix::from_fn(values.len(), self.factor.ncols(), |j, k| self.factor[(finer.place(j), k)]);
+        let factor =
+            DMatrix::from_fn(values.len(), self.factor.ncols(), |j, k| self.factor[(finer.place(j), k)]);
         Self { values, factor, ..self.clone() }
     }
 
@@ -284,7 +285,8 @@ mod tests {
     /// readings by the sum over these, fits on `parts`.
     fn held(parts: usize, true_parts: usize, sigma: f64, draws: u64) -> [f64; 2] {
         let (twin, truth) = (FilterWheelTwin::cut(parts).unwrap(), FilterWheelTwin::cut(true_parts).unwrap());
-        let [finer, finest] = [parts, true_parts].map(|parts| Finer::cut(&response_values_cm1(), parts).unwrap());
+        let [finer, finest] =
+            [parts, true_parts].map(|parts| Finer::cut(&response_values_cm1(), parts).unwrap());
         let fine = truth.wheel.centres_cm1().to_vec();
         let typical = truth.prior.mean();
         // By Cholesky, not by the modes that the fit has.

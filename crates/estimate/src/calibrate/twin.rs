@@ -116,8 +116,7 @@ impl FilterWheelTwin {
         let peak = values.iter().map(typical).fold(0.0, f64::max);
         let scaled = |centres: &[f64]| -> Vec<f64> { centres.iter().map(|nu| typical(nu) / peak).collect() };
         let counts = counts_per_radiance(&values, &scaled(&values));
-        let centres =
-            if parts == 1 { values } else { Finer::cut(&values, parts)?.centres_cm1().to_vec() };
+        let centres = if parts == 1 { values } else { Finer::cut(&values, parts)?.centres_cm1().to_vec() };
         let truth: Vec<f64> = centres.iter().map(|nu| microbolometer(0.0, 0.06, *nu)).collect();
         let typical = scaled(&centres);
         let filters = FILTERS.iter().map(|filter| passband(*filter, &centres)).collect();

@@ -1,7 +1,9 @@
 //! The response of a camera behind a filter wheel by blackbodies, the wheel's relative transmittance, and radiances behind the filters.
 
+use super::left_out::LeftOut;
 use super::stated::{taken_as_black, uncertainty_not_stated};
 use super::whole::{at, open, samples, shown};
+use crate::cube_bad::BadBand;
 use crate::heat_cube::columns;
 use crate::{Warning, WorstBlackbody};
 use hadar::calibration::determined::{CurvePrior, Determined};
@@ -40,6 +42,7 @@ pub struct ResponseStudy {
     /// The parts of each value, over which readings are summed.
     finer: Finer,
     names: Vec<String>,
+    left_out: Vec<LeftOutFilter>,
     /// Of every filter, over the parts.
     transmittances: Vec<Vec<f64>>,
     /// At the parts.
@@ -65,6 +68,17 @@ pub struct ResponseRow {
     pub sigma_readings_alone: Option<f64>,
 }
 
+/// A filter that is left out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LeftOutFilter {
+    /// Its name.
+    pub filter: String,
+    /// Its band of the cubes, from 0.
+    pub band: usize,
+    /// `named`, `missing`, `stuck` or `saturated`.
+    pub why: &'static str,
+}
+
 /// Radiances of a scene behind the filters, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Serialize)]
 pub struct FilterRadiances {
@@ -85,8 +99,10 @@ pub struct FilterRadiances {
 pub struct ResponseFound {
     /// The question.
     pub scenario: ResponseScenario,
-    /// Names of the filters.
+    /// Names of the filters; those left out are not among them.
     pub filters: Vec<String>,
+    /// Filters that are left out of all cubes, with why.
+    pub left_out: Vec<LeftOutFilter>,
     /// The response.
     pub response: Vec<ResponseRow>,
     /// Covariance of its values, row after row.
@@ -147,10 +163,16 @@ impl ResponseStudy {
         let typical = spec.typical.as_ref().map(|path| typical(path, parts_cm1)).transpose();
         let typical =
             typical.map_err(at(source, "response.typical"))?.unwrap_or_else(|| vec![1.0; parts_cm1.len()]);
+        let mut named = Vec::new();
+        let mut opened = |file: &CubeFile, key: &str| -> Result<Cube> {
+            let (cube, bad) = open(file, source, key)?;
+            named.extend(bad);
+            Ok(cube)
+        };
         let mut cubes = Vec::new();
         for (k, blackbody) in scenario.blackbodies.iter().enumerate() {
             let key = format!("blackbody[{k}].data");
-            let cube = open(&blackbody.data, source, &key)?;
+            let cube = opened(&blackbody.data, &key)?;
             check_filters(&cube, names.len()).map_err(at(source, &key))?;
             if let Some(first) = cubes.first() {
                 same_size(&cube, first, "blackbody[0]").map_err(at(source, &key))?;
@@ -158,16 +180,18 @@ impl ResponseStudy {
             cubes.push(cube);
         }
         let scene = scenario.scene.as_ref().map(|spec| {
-            let scene = open(&spec.data, source, "scene.data")?;
+            let scene = opened(&spec.data, "scene.data")?;
             same_size(&scene, &cubes[0], "blackbody[0]").map_err(at(source, "scene.data"))?;
             let file = CubeFile { path: spec.reference.clone(), ..spec.data.clone() };
-            let reference = open(&file, source, "scene.reference")?;
+            let reference = opened(&file, "scene.reference")?;
             same_size(&reference, &scene, "the scene").map_err(at(source, "scene.reference"))?;
             Ok([scene, reference])
         });
-        let study = Self {
+        let scene = scene.transpose()?;
+        let mut study = Self {
             scenario: scenario.clone(),
-            scene: scene.transpose()?,
+            scene,
+            left_out: Vec::new(),
             centres_cm1,
             finer,
             names,
@@ -175,6 +199,7 @@ impl ResponseStudy {
             typical,
             cubes,
         };
+        study.leave_out(&named).map_err(at(source, "blackbody"))?;
         let wheel = study.wheel_of_values(1.0)?;
         if let Some([like, dependent]) = wheel.dependent() {
             let [like, dependent] = [like, dependent].map(|q| &study.names[q]);
@@ -186,6 +211,36 @@ impl ResponseStudy {
             return Err(at(source, "response.filters")(error));
         }
         Ok(study)
+    }
+
+    fn warnings_of_left_out(&self) -> impl Iterator<Item = Warning> + '_ {
+        ["missing", "stuck", "saturated"].into_iter().filter_map(|why| {
+            let of = self.left_out.iter().filter(|one| one.why == why);
+            let filters: Vec<String> = of.map(|one| one.filter.clone()).collect();
+            (!filters.is_empty()).then_some(Warning::FiltersLeftOut { filters, why })
+        })
+    }
+
+    /// Leaves the filters out whose bands are bad in some cube.
+    fn leave_out(&mut self, named: &[usize]) -> Result<()> {
+        let left_out = LeftOut::of(self.names.len(), named, &[], &self.cubes, self.scenario.noise)?;
+        if left_out.bands.is_empty() {
+            return Ok(());
+        }
+        let name = |band: usize| self.names.get(band).cloned().unwrap_or_default();
+        let of = |bad: &BadBand| LeftOutFilter { filter: name(bad.band), band: bad.band, why: bad.why };
+        self.left_out = left_out.bands.iter().map(of).collect();
+        let is_good = |band: usize| left_out.good.contains(&band);
+        let mut places = (0..).map(is_good);
+        self.names.retain(|_| places.next().unwrap_or(false));
+        let mut places = (0..).map(is_good);
+        self.transmittances.retain(|_| places.next().unwrap_or(false));
+        let cubes = std::mem::take(&mut self.cubes);
+        self.cubes = cubes.into_iter().map(|cube| left_out.without(cube)).collect::<Result<_>>()?;
+        if let Some([scene, reference]) = self.scene.take() {
+            self.scene = Some([left_out.without(scene)?, left_out.without(reference)?]);
+        }
+        Ok(())
     }
 
     /// The sum that a reading is.
@@ -237,7 +292,7 @@ impl ResponseStudy {
         let known = Determined::of(&of_values.scores(&readings, about)?, &prior_of_values)?;
         // Of readings that are all fitted nothing is left to be tested.
         let chi_square_reduced = (found.freedom > TESTED).then(|| found.chi_square_readings / found.freedom);
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<Warning> = self.warnings_of_left_out().collect();
         let misfit = chi_square_reduced.filter(|chi| *chi > most_by_chance(found.freedom.max(TESTED)));
         warnings.extend(misfit.map(|chi_square| self.does_not_fit(&found, chi_square)));
         warnings.extend(uncertainty_not_stated(specs));
@@ -278,6 +333,7 @@ impl ResponseStudy {
         Ok(ResponseFound {
             scenario: scenario.clone(),
             filters: self.names.clone(),
+            left_out: self.left_out.clone(),
             response: (0..values).map(row).collect(),
             covariance: covariance.transpose().iter().copied().collect(),
             // What a value sees of a curve that is level over the width of each value.
