@@ -182,7 +182,10 @@ fn bad_bands_of_a_spectrometer_are_left_out() {
     let without = folder.json(&["calibrate", "blackbody", "less.toml"]);
     assert_eq!(found["channels"], without["channels"]);
     assert_eq!(found["scene"]["sigma_noise"], without["scene"]["sigma_noise"]);
-    assert_eq!((&found["scene"]["bands"], &without["scene"]["bands"]), (&21.into(), &17.into()));
+    assert_eq!(
+        (&found["scene"]["shape"]["bands"], &without["scene"]["shape"]["bands"]),
+        (&21.into(), &17.into())
+    );
     // The radiances, and their noise without rows for bands that are left out, are read as they are.
     folder.file("light.csv", "wavenumber_cm1,sky\n700,0\n1300,0\n");
     let emissivities = "wavenumber_cm1,black,grey\n700,0.999,0.8\n1300,0.999,0.9\n";
