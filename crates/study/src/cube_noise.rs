@@ -20,6 +20,8 @@ const SAME_BAND: f64 = 0.25;
 pub(super) struct NoiseOfBands {
     /// Squared deviations, NaN of bands without a row; none where nothing is said.
     pub(super) var: Option<Vec<f64>>,
+    /// What all pixels are off by, each band for itself, a deviation that is in `var` as well; none where nothing is said.
+    pub(super) common: Option<Vec<f64>>,
     /// What all bands are off by together, a deviation; none where nothing is said.
     pub(super) together: Option<Vec<f64>>,
 }
@@ -34,7 +36,7 @@ pub(super) fn of_bands(
     match noise {
         None => Ok(NoiseOfBands::default()),
         Some(CubeNoise::Uniform(sigma)) => {
-            Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), together: None })
+            Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), ..NoiseOfBands::default() })
         }
         Some(CubeNoise::File(path)) => {
             let column = if unit == CubeUnit::Radiance { "sigma" } else { "electronic_sigma" };
@@ -120,6 +122,7 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
     let places = places(&grid, bands)?;
     check_wavenumbers(&grid, &places, centres_cm1, widths_cm1)?;
     let (common, coherent) = (place("sigma_common"), place("sigma_together"));
+    let mut own_common = vec![0.0; bands];
     let (mut var, mut together) = (vec![f64::NAN; bands], vec![0.0; bands]);
     for ((line, cells), i) in grid.rows.iter().zip(places) {
         let cell = |place: usize| cells.get(place).copied().unwrap_or(f64::NAN);
@@ -132,11 +135,15 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
             let found = Error::out_of_range("sigma", 0.0, "", "above 0, for nothing is known exactly");
             return Err(found.on_line(*line));
         }
+        if let Some(own) = own_common.get_mut(i) {
+            *own = more;
+        }
         let coherent = coherent.map_or(Ok(0.0), |place| at("sigma_together", cell(place)))?;
         if let (Some(var), Some(together)) = (var.get_mut(i), together.get_mut(i)) {
             (*var, *together) = (sigma * sigma + more * more, coherent);
         }
     }
     let together = together.iter().any(|sigma| *sigma > 0.0).then_some(together);
-    Ok(NoiseOfBands { var: Some(var), together })
+    let common = own_common.iter().any(|sigma| *sigma > 0.0).then_some(own_common);
+    Ok(NoiseOfBands { var: Some(var), common, together })
 }

@@ -230,6 +230,7 @@ impl DecomposeStudy {
         });
         let categories = if self.categories.is_empty() { Vec::new() } else { self.categories.sets() };
         let ranked = self.candidates;
-        Options { prior: self.prior.clone(), library_error, skipping, spatial, categories, ranked }
+        let alike = self.alike.clone();
+        Options { prior: self.prior.clone(), library_error, alike, skipping, spatial, categories, ranked }
     }
 }

@@ -59,6 +59,8 @@ pub(super) struct Measured {
     pub(super) var_added: Vec<f64>,
     /// What all bands and pixels are off by together, a deviation of each band in counts; none where nothing is said.
     pub(super) together: Option<Vec<f64>>,
+    /// What all pixels are off by alike, each band for itself, a deviation of each in counts; empty where nothing is said.
+    pub(super) common: Vec<f64>,
     /// What one count is in the unit of the cube.
     pub(super) units_per_count: f64,
 }
@@ -129,6 +131,7 @@ impl Said<'_> {
         let noise = NoiseOfBands {
             var: noise.var.map(|var| opened.rising(&var)),
             together: noise.together.map(|sigma| opened.rising(&sigma)),
+            common: noise.common.map(|sigma| opened.rising(&sigma)),
         };
         let absent = opened.absent();
         let InOrder { cube, found: read, .. } = opened;
@@ -169,12 +172,12 @@ impl Said<'_> {
         let cube = without(cube, &bad.map);
         let lights = self.lights(lit, (&cube, &bad_bands, units_per_count), &mut warnings)?;
         // Of a band that the file lacks there is none.
-        let together = noise.together.map(|sigma| {
-            sigma
-                .into_iter()
-                .map(|sigma| if sigma.is_nan() { 0.0 } else { sigma / units_per_count })
-                .collect()
-        });
+        let in_counts = |sigma: Vec<f64>| -> Vec<f64> {
+            let one = |sigma: f64| if sigma.is_nan() { 0.0 } else { sigma / units_per_count };
+            sigma.into_iter().map(one).collect()
+        };
+        let together = noise.together.map(in_counts);
+        let common = noise.common.map(in_counts).unwrap_or_default();
         Ok(Measured {
             cube,
             read,
@@ -186,6 +189,7 @@ impl Said<'_> {
             counts_per_radiance,
             var_added,
             together,
+            common,
             units_per_count,
         })
     }
