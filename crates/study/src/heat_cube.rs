@@ -21,7 +21,7 @@ use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
 use hadar_formats::spectra::measured;
-use hadar_scenario::decompose::{Bad, CubeUnit, HeatCube, LightSource};
+use hadar_scenario::decompose::{Bad, CubeNoise, CubeUnit, HeatCube, LightSource};
 use hadar_scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use std::path::Path;
 
@@ -168,7 +168,11 @@ impl Said<'_> {
         bad.bands.extend(absent.into_iter().map(|band| BadBand { band, why: "absent" }));
         bad.bands.sort_by_key(|bad| bad.band);
         warnings.extend(bad.warnings(shape));
-        noise_of_left_out(&mut var_added, &bad_bands).map_err(at("cube.noise"))?;
+        let in_table = |error: Error| match &self.cube.noise {
+            Some(CubeNoise::File(path)) => error.in_file(path),
+            _ => error,
+        };
+        noise_of_left_out(&mut var_added, &bad_bands).map_err(in_table).map_err(at("cube.noise"))?;
         let cube = without(cube, &bad.map);
         let lights = self.lights(lit, (&cube, &bad_bands, units_per_count), &mut warnings)?;
         // Of a band that the file lacks there is none.
