@@ -20,6 +20,7 @@
 //!
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 
+mod alike;
 mod cause;
 mod distil;
 mod effect;
@@ -49,6 +50,7 @@ mod thresholds;
 mod together;
 mod told;
 
+pub use alike::Alike;
 pub use cause::Cause;
 pub use distil::{Distilled, Residue, Sky, distil};
 pub use inverse_error::{InverseError, inverse_error};

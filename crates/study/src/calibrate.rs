@@ -1,6 +1,7 @@
 //! Calibrations answered: cubes opened, and what they tell of the camera. A kind a file.
 
 mod blackbody;
+mod left_out;
 mod noise;
 mod opened;
 mod response;
@@ -11,6 +12,6 @@ mod whole;
 
 pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, Worst};
 pub use noise::{NoiseFound, NoiseStudy};
-pub use response::{FilterRadiances, ResponseFound, ResponseRow, ResponseStudy};
+pub use response::{FilterRadiances, LeftOutFilter, ResponseFound, ResponseRow, ResponseStudy};
 pub use scene_radiance::SceneFound;
 pub use stripes::{Samples, StripesFound, StripesStudy};

@@ -43,12 +43,17 @@ const OTHERS: usize = 16;
 /// Names of the codes, from 1.
 pub const NAMES: [&str; 7] = ["missing", "dead", "stuck", "saturated", "too-bright", "named", "outlier"];
 
+/// Why a band is left out that nobody named.
+const BAND_NAMES: [&str; 4] = ["absent", "missing", "stuck", "saturated"];
+/// Noise in steps of whole numbers that moves readings: by less of it most are the same number.
+const MOVES: f64 = 0.3;
+
 /// Bad pixels and bands of a cube.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct BadFound {
     /// How many pixels are bad, by why.
     pub pixels: Vec<BadPixels>,
-    /// Bands that were found to be bad, besides those named.
+    /// Bands that were found to be bad or that the file lacks, besides those named.
     pub bands: Vec<BadBand>,
     /// The code of every pixel, 0 for good ones; empty where all are.
     #[serde(skip)]
@@ -69,7 +74,7 @@ impl BadFound {
 
 /// What the reader must know of bands that were found to be bad.
 pub(super) fn bands_found(found: &[BadBand]) -> impl Iterator<Item = Warning> + '_ {
-    ["missing", "stuck"].into_iter().filter_map(|why| {
+    BAND_NAMES.into_iter().filter_map(|why| {
         let bands: Vec<usize> = found.iter().filter(|bad| bad.why == why).map(|bad| bad.band).collect();
         (!bands.is_empty()).then_some(Warning::BandsFoundBad { bands, why })
     })
@@ -91,7 +96,7 @@ pub struct BadPixels {
 pub struct BadBand {
     /// Its place, from 0, in rising wavenumber.
     pub band: usize,
-    /// `missing` or `stuck`.
+    /// `absent` (the file has no such band), `missing`, `stuck`, of a calibration also `saturated` and `named`.
     pub why: &'static str,
 }
 
@@ -130,6 +135,49 @@ pub(super) fn bands_without_readings(cube: &Cube, bad_bands: &[usize]) -> Result
         Cube::F32(rows) => Ok(readings.bands(&some(rows.as_ref(), LOOKED)?)),
         Cube::F64(rows) => Ok(readings.bands(&some(rows.as_ref(), LOOKED)?)),
     }
+}
+
+/// Bands of a blackbody's cube without readings that scatter by `noise`, besides those that are left out: of these some are cut off.
+pub(super) fn bands_of_blackbody(cube: &Cube, bad_bands: &[usize], noise: f64) -> Result<Vec<BadBand>> {
+    match cube {
+        Cube::F32(rows) => Ok(bands_among(&some(rows.as_ref(), LOOKED)?, bad_bands, noise)),
+        Cube::F64(rows) => Ok(bands_among(&some(rows.as_ref(), LOOKED)?, bad_bands, noise)),
+    }
+}
+
+fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f64) -> Vec<BadBand> {
+    let bands = looked.shape().bands();
+    let values = || looked.samples().iter().map(|sample| -> f64 { (*sample).into() });
+    // An even surface reads one whole number in all pixels where noise is far below one.
+    let moves = noise > MOVES || values().any(|value| value.is_finite() && value.fract() != 0.0);
+    let (none, var) = (vec![0.0; bands], vec![if moves { 1.0 } else { 0.0 }; bands]);
+    let readings = Readings {
+        bad_bands,
+        units_per_count: 1.0,
+        var_added: &var,
+        least: &none,
+        most: &none,
+        keeps: false,
+        gain: true,
+    };
+    let mut found = readings.bands(looked);
+    let is_known = |band: &usize| bad_bands.contains(band);
+    let used: Vec<usize> = (0..bands)
+        .filter(|band| !is_known(band) && !found.iter().any(|bad| bad.band == *band && bad.why == "missing"))
+        .collect();
+    let pixels = looked.samples().len() / bands;
+    let Some(most) = cut_off(looked, &used).filter(|_| moves && pixels >= SAYING) else { return found };
+    let is_cut = |band: &usize| {
+        let own = looked.samples().chunks(bands).filter_map(|pixel| pixel.get(*band));
+        OTHERS * own.filter(|sample| -> bool { Into::<f64>::into(**sample) >= most }).count() > pixels
+    };
+    let cut: Vec<usize> = used.iter().copied().filter(is_cut).collect();
+    // All of them are a cube without noise.
+    if cut.len() < used.len() {
+        found.retain(|bad| !cut.contains(&bad.band));
+        found.extend(cut.into_iter().map(|band| BadBand { band, why: "saturated" }));
+    }
+    found
 }
 
 impl Readings<'_> {
@@ -236,6 +284,9 @@ impl Readings<'_> {
         }
         // All of them alike is a cube without noise, or nothing at all.
         let used = bands - self.bad_bands.iter().filter(|band| **band < bands).count();
+        if found.len() >= used {
+            found.retain(|bad| bad.why == "missing");
+        }
         if found.len() >= used { Vec::new() } else { found }
     }
 }

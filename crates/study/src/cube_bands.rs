@@ -1,5 +1,8 @@
 //! A cube beside its bands: as many of them, the same ones, in rising wavenumber.
 //!
+//! A file may lack bands, cut out for absorption or a gap of the detector: where it says the centres of those it has, each is the nearest
+//! band of [bands], off it by no more than half that band's width; the others are absent, missing in every pixel.
+//!
 //! Bands are always counted in rising wavenumber here. A file that says its bands may have them in any order, as one of rising
 //! wavelength has; it is put right. Of a file that says nothing, that order is expected.
 
@@ -20,8 +23,8 @@ const UNEVEN: f64 = 1.4;
 pub(super) struct InOrder {
     pub(super) cube: Cube,
     pub(super) found: Found,
-    /// Which band of the file each of its bands is.
-    pub(super) order: Vec<usize>,
+    /// Which band of the file each of its bands is; none of one that the file lacks.
+    pub(super) order: Vec<Option<usize>>,
 }
 
 impl InOrder {
@@ -32,36 +35,97 @@ impl InOrder {
             let centre = |band: &usize| centres.get(*band).copied().unwrap_or(f64::NAN);
             order::ascending(&mut order, centre);
         }
-        Ok(Self { cube: cube.with_bands(order.clone())?, found, order })
+        let cube = cube.with_bands(order.clone())?;
+        Ok(Self { cube, found, order: order.into_iter().map(Some).collect() })
     }
 
-    /// Of a list in the order of the file, that in rising wavenumber.
-    pub(super) fn rising<T: Clone>(&self, of_file: &[T]) -> Vec<T> {
-        self.order.iter().filter_map(|band| of_file.get(*band).cloned()).collect()
+    /// Of a list in the order of the file, that in rising wavenumber; NaN of bands that the file lacks.
+    pub(super) fn rising(&self, of_file: &[f64]) -> Vec<f64> {
+        let at = |band: &Option<usize>| band.and_then(|band| of_file.get(band)).copied();
+        self.order.iter().map(|band| at(band).unwrap_or(f64::NAN)).collect()
     }
 
     /// Of a list in rising wavenumber, that in the order of the file.
     pub(super) fn of_file(&self, rising: &[f64]) -> Vec<f64> {
-        let mut of_file = vec![f64::NAN; rising.len()];
+        let mut of_file = vec![f64::NAN; self.found.shape.bands()];
         for (band, value) in self.order.iter().zip(rising) {
-            if let Some(own) = of_file.get_mut(*band) {
+            if let Some(own) = band.and_then(|band| of_file.get_mut(band)) {
                 *own = *value;
             }
         }
         of_file
     }
 
-    /// Bands that are left out, as is said (`named`, in the order of the file) and as the file says, in rising wavenumber.
+    /// Bands that the file lacks, in rising wavenumber.
+    pub(super) fn absent(&self) -> Vec<usize> {
+        (0..self.order.len()).filter(|band| self.order.get(*band).is_some_and(Option::is_none)).collect()
+    }
+
+    /// The cube among these bands: those that its file lacks are missing.
+    ///
+    /// # Errors
+    /// As [`Self::check`]; of a file that has fewer bands and says where they are, one that is none of these, or two that are one of them.
+    pub(super) fn among(self, bands: &Bands) -> Result<Self> {
+        let (own, wanted) = (self.order.len(), bands.len());
+        let (Some(centres), true) = (&self.found.centres_cm1, own < wanted) else {
+            self.check(bands)?;
+            return Ok(self);
+        };
+        let mut places = vec![None; wanted];
+        let mut order = places.clone();
+        let reaches: Vec<f64> = half_widths(bands).collect();
+        for (i, centre) in self.rising(centres).into_iter().enumerate() {
+            let off = |band: usize| {
+                bands.bands().get(band).map_or(f64::INFINITY, |band| (band.center_cm1 - centre).abs())
+            };
+            let nearest = (0..wanted).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0);
+            if off(nearest) > reaches.get(nearest).copied().unwrap_or(0.0) {
+                return Err(self.elsewhere(i, centre, bands, nearest));
+            }
+            if let Some(Some(twin)) = places.get(nearest) {
+                let found = format!(
+                    "bands {} and {} of the cube are both the band at {} cm^-1 of [bands]",
+                    self.of_the_file(*twin),
+                    self.of_the_file(i),
+                    significant(bands.bands().get(nearest).map_or(f64::NAN, |band| band.center_cm1), 6)
+                );
+                return Err(Error::malformed(found, "make [bands] as narrow as those of the cube"));
+            }
+            if let (Some(place), Some(of_file)) = (places.get_mut(nearest), order.get_mut(nearest)) {
+                (*place, *of_file) = (Some(i), self.order.get(i).copied().flatten());
+            }
+        }
+        Ok(Self { cube: self.cube.with_places(places)?, found: self.found, order })
+    }
+
+    fn of_the_file(&self, band: usize) -> usize {
+        self.order.get(band).copied().flatten().unwrap_or(band)
+    }
+
+    fn elsewhere(&self, own: usize, centre_cm1: f64, bands: &Bands, band: usize) -> Error {
+        let wanted = bands.bands().get(band).map_or(f64::NAN, |band| band.center_cm1);
+        let found = format!(
+            "band {} of the cube is at {} cm^-1 by its file, but at {} cm^-1 in [bands]",
+            self.of_the_file(own),
+            significant(centre_cm1, 6),
+            significant(wanted, 6)
+        );
+        Error::malformed(found, "leave [bands] out, or mend the wavelengths of the file")
+    }
+
+    /// Bands that are left out, as is said (`named`, in the order of the file), as the file says, and those it lacks, in rising wavenumber.
     ///
     /// # Errors
     /// A band that is not there, or all of them.
     pub(super) fn bad_bands(&self, named: &[usize]) -> Result<Vec<usize>> {
-        let bands = self.order.len();
-        if let Some(bad) = named.iter().find(|band| **band >= bands) {
-            let found = format!("band {bad} of {bands}");
-            return Err(Error::malformed(found, format!("count from 0 up to {}", bands - 1)));
+        let (bands, of_file) = (self.order.len(), self.found.shape.bands());
+        if let Some(bad) = named.iter().find(|band| **band >= of_file) {
+            let found = format!("band {bad} of {of_file}");
+            return Err(Error::malformed(found, format!("count from 0 up to {}", of_file - 1)));
         }
-        let is_bad = |band: &usize| named.contains(band) || self.found.bad_bands.contains(band);
+        let is_bad = |band: &Option<usize>| {
+            band.is_none_or(|band| named.contains(&band) || self.found.bad_bands.contains(&band))
+        };
         let bad: Vec<usize> = (0..bands).filter(|band| self.order.get(*band).is_some_and(is_bad)).collect();
         if bad.len() == bands {
             let instead = "leave some of them, or mend the list of the file";
@@ -101,25 +165,21 @@ impl InOrder {
     pub(super) fn check(&self, bands: &Bands) -> Result<()> {
         check_count(&self.found, bands)?;
         let Some(centres) = &self.found.centres_cm1 else { return Ok(()) };
-        let widths = bands.widths_cm1();
-        for (i, ((band, own), width)) in
-            bands.bands().iter().zip(self.rising(centres)).zip(widths).enumerate()
+        let halves = half_widths(bands);
+        for (i, ((band, own), half)) in bands.bands().iter().zip(self.rising(centres)).zip(halves).enumerate()
         {
-            // One node stands for its band; a filter reaches over its rows.
-            let half = 0.5 * width.max(band.high_cm1 - band.low_cm1);
             if (band.center_cm1 - own).abs() > half {
-                let place = self.order.get(i).copied().unwrap_or(i);
-                let found = format!(
-                    "band {place} of the cube is at {} cm^-1 by its file, but at {} cm^-1 in [bands]",
-                    significant(own, 6),
-                    significant(band.center_cm1, 6)
-                );
-                let instead = "leave [bands] out, or mend the wavelengths of the file";
-                return Err(Error::malformed(found, instead));
+                return Err(self.elsewhere(i, own, bands, i));
             }
         }
         Ok(())
     }
+}
+
+/// Half the width of each band: one node stands for its band; a filter reaches over its rows.
+fn half_widths(bands: &Bands) -> impl Iterator<Item = f64> {
+    let widths = bands.widths_cm1().into_iter().zip(bands.bands());
+    widths.map(|(width, band)| 0.5 * width.max(band.high_cm1 - band.low_cm1))
 }
 
 /// Refuses bands whose widths cannot be told from their distances, as where some are left out.
@@ -135,7 +195,7 @@ fn evenly_spaced(centres_cm1: &[f64]) -> Result<()> {
     );
     Err(Error::malformed(
         found,
-        "write their widths into the file (fwhm), or [bands] with rows = \"bands.csv\"",
+        "write their widths into the file (fwhm), or [bands] with start, stop and step of all of them, or with rows = \"bands.csv\"",
     ))
 }
 
@@ -154,6 +214,9 @@ fn check_count(found: &Found, bands: &Bands) -> Result<()> {
     }
     let instead = match found.axes_of_bands(bands.len()) {
         Some(axes) => format!("if these are the bands of its file, write axes = \"{axes}\""),
+        None if found.centres_cm1.is_none() && shape.bands() < bands.len() => {
+            "make [bands] those of the cube, or write into its file where the bands are that it has".into()
+        }
         None => "make [bands] those of the cube".into(),
     };
     let found = format!(

@@ -3,7 +3,7 @@
 //! A table has a column `sigma` (all noise of a sample; for radiances) or `electronic_sigma` (what is added to shot noise; for counts),
 //! and, where it is known, `sigma_common`: what all pixels are off by, each band for itself, as by noise of a calibration. For the interval of
 //! one pixel that is one more deviation, independent of its noise: the squares add. `sigma_together` is what all bands are off by together,
-//! as by temperatures of blackbodies: bands do not average it down, so that it is kept apart.
+//! as by temperatures of blackbodies: bands do not average it down, so that it is kept apart. A band that is left out may have no row.
 
 use hadar::error::{Error, Result, check};
 use hadar::grid::Grid;
@@ -18,8 +18,10 @@ const SAME_BAND: f64 = 0.25;
 /// Noise of the bands, in the unit of the cube.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct NoiseOfBands {
-    /// Squared deviations; none where nothing is said.
+    /// Squared deviations, NaN of bands without a row; none where nothing is said.
     pub(super) var: Option<Vec<f64>>,
+    /// What all pixels are off by, each band for itself, a deviation that is in `var` as well; none where nothing is said.
+    pub(super) common: Option<Vec<f64>>,
     /// What all bands are off by together, a deviation; none where nothing is said.
     pub(super) together: Option<Vec<f64>>,
 }
@@ -34,7 +36,7 @@ pub(super) fn of_bands(
     match noise {
         None => Ok(NoiseOfBands::default()),
         Some(CubeNoise::Uniform(sigma)) => {
-            Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), together: None })
+            Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), ..NoiseOfBands::default() })
         }
         Some(CubeNoise::File(path)) => {
             let column = if unit == CubeUnit::Radiance { "sigma" } else { "electronic_sigma" };
@@ -44,14 +46,15 @@ pub(super) fn of_bands(
 }
 
 /// Rows that say where they are, beside the bands that they are taken for.
-fn check_wavenumbers(grid: &Grid, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<()> {
+fn check_wavenumbers(grid: &Grid, places: &[usize], centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<()> {
     let named = |(place, name): (usize, &String)| match name.as_str() {
         "wavenumber_cm1" => Some((place, false)),
         "wavelength_um" => Some((place, true)),
         _ => None,
     };
     let Some((place, is_wavelength)) = grid.header.iter().enumerate().find_map(named) else { return Ok(()) };
-    for (i, ((line, cells), centre)) in grid.rows.iter().zip(centres_cm1).enumerate() {
+    for ((line, cells), i) in grid.rows.iter().zip(places.iter().copied()) {
+        let centre = centres_cm1.get(i).unwrap_or(&f64::NAN);
         let cell = cells.get(place).copied().unwrap_or(f64::NAN);
         let own = if is_wavelength { 1e4 / cell } else { cell };
         let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|k| centres_cm1.get(k));
@@ -71,6 +74,29 @@ fn check_wavenumbers(grid: &Grid, centres_cm1: &[f64], widths_cm1: &[f64]) -> Re
         }
     }
     Ok(())
+}
+
+/// The band of each row: those of a table with fewer rows than bands say it in a column `band`.
+fn places(grid: &Grid, bands: usize) -> Result<Vec<usize>> {
+    let named = grid.header.iter().position(|own| own == "band");
+    let rows = grid.rows.len();
+    let some = named.filter(|_| rows < bands);
+    if rows != bands && some.is_none() {
+        return Err(Error::Length { what: "noise of the bands".into(), found: rows, expected: bands });
+    }
+    let (mut places, mut next) = (Vec::with_capacity(rows), 0);
+    for (line, cells) in &grid.rows {
+        let band = named.map_or(next as f64, |place| cells.get(place).copied().unwrap_or(f64::NAN));
+        let place =
+            (0..bands).skip(next).take(if some.is_some() { bands } else { 1 }).find(|i| *i as f64 == band);
+        let Some(place) = place else {
+            let found = format!("band {band} in the place of {next}");
+            return Err(Error::malformed(found, "give a row for each band, counted from 0").on_line(*line));
+        };
+        places.push(place);
+        next = place + 1;
+    }
+    Ok(places)
 }
 
 fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<NoiseOfBands> {
@@ -93,24 +119,13 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
         };
         return Err(Error::malformed(found, instead));
     };
-    if grid.rows.len() != bands {
-        return Err(Error::Length {
-            what: "noise of the bands".into(),
-            found: grid.rows.len(),
-            expected: bands,
-        });
-    }
-    check_wavenumbers(&grid, centres_cm1, widths_cm1)?;
+    let places = places(&grid, bands)?;
+    check_wavenumbers(&grid, &places, centres_cm1, widths_cm1)?;
     let (common, coherent) = (place("sigma_common"), place("sigma_together"));
-    let (mut var, mut together) = (Vec::with_capacity(bands), Vec::with_capacity(bands));
-    for (i, (line, cells)) in grid.rows.iter().enumerate() {
+    let mut own_common = vec![0.0; bands];
+    let (mut var, mut together) = (vec![f64::NAN; bands], vec![0.0; bands]);
+    for ((line, cells), i) in grid.rows.iter().zip(places) {
         let cell = |place: usize| cells.get(place).copied().unwrap_or(f64::NAN);
-        if let Some(band) = place("band")
-            && cell(band) != i as f64
-        {
-            let found = format!("band {} in the place of {i}", cell(band));
-            return Err(Error::malformed(found, "give a row for each band, counted from 0").on_line(*line));
-        }
         let at = |name: &str, value: f64| {
             check::non_negative(name, value, "").map_err(|error| error.for_key(name).on_line(*line))
         };
@@ -120,9 +135,15 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
             let found = Error::out_of_range("sigma", 0.0, "", "above 0, for nothing is known exactly");
             return Err(found.on_line(*line));
         }
-        var.push(sigma * sigma + more * more);
-        together.push(coherent.map_or(Ok(0.0), |place| at("sigma_together", cell(place)))?);
+        if let Some(own) = own_common.get_mut(i) {
+            *own = more;
+        }
+        let coherent = coherent.map_or(Ok(0.0), |place| at("sigma_together", cell(place)))?;
+        if let (Some(var), Some(together)) = (var.get_mut(i), together.get_mut(i)) {
+            (*var, *together) = (sigma * sigma + more * more, coherent);
+        }
     }
     let together = together.iter().any(|sigma| *sigma > 0.0).then_some(together);
-    Ok(NoiseOfBands { var: Some(var), together })
+    let common = own_common.iter().any(|sigma| *sigma > 0.0).then_some(own_common);
+    Ok(NoiseOfBands { var: Some(var), common, together })
 }

@@ -232,7 +232,7 @@ impl DecomposeStudy {
         });
         let categories = if self.categories.is_empty() { Vec::new() } else { self.categories.sets() };
         let ranked = self.candidates;
-        let (prior, other) = (self.prior.clone(), spec.none_of_these);
-        Options { prior, library_error, other, skipping, spatial, categories, ranked }
+        let (prior, other, alike) = (self.prior.clone(), spec.none_of_these, self.alike.clone());
+        Options { prior, library_error, other, alike, skipping, spatial, categories, ranked }
     }
 }

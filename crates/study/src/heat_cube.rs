@@ -1,6 +1,6 @@
 //! A heat cube with what is around it, its bands and its noise looked up: what every question about a cube begins with.
 
-use super::cube_bad::{self, BadFound};
+use super::cube_bad::{self, BadBand, BadFound};
 use super::cube_bands::{InOrder, axes_in_doubt};
 use super::cube_noise::{NoiseOfBands, of_bands};
 use super::cube_rows;
@@ -21,7 +21,7 @@ use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
 use hadar_formats::spectra::measured;
-use hadar_scenario::decompose::{Bad, CubeUnit, HeatCube, LightSource};
+use hadar_scenario::decompose::{Bad, CubeNoise, CubeUnit, HeatCube, LightSource};
 use hadar_scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use std::path::Path;
 
@@ -59,6 +59,8 @@ pub(super) struct Measured {
     pub(super) var_added: Vec<f64>,
     /// What all bands and pixels are off by together, a deviation of each band in counts; none where nothing is said.
     pub(super) together: Option<Vec<f64>>,
+    /// What all pixels are off by alike, each band for itself, a deviation of each in counts; empty where nothing is said.
+    pub(super) common: Vec<f64>,
     /// What one count is in the unit of the cube.
     pub(super) units_per_count: f64,
 }
@@ -100,7 +102,8 @@ impl Said<'_> {
             }
             None => (BandSource::Rows(path.clone()), opened.bands().map_err(at("bands"))?),
         };
-        check_light(&opened.found).and_then(|()| opened.check(&bands)).map_err(at("cube.data"))?;
+        let opened =
+            check_light(&opened.found).and_then(|()| opened.among(&bands)).map_err(at("cube.data"))?;
         let doubt = axes_in_doubt(&opened.found, self.bands.map(|_| &bands));
         let mut warnings: Vec<Warning> = doubt.into_iter().collect();
         if asked.is_in_wavelength() && opened.found.centres_cm1.is_none() && bands.len() > 1 {
@@ -128,7 +131,9 @@ impl Said<'_> {
         let noise = NoiseOfBands {
             var: noise.var.map(|var| opened.rising(&var)),
             together: noise.together.map(|sigma| opened.rising(&sigma)),
+            common: noise.common.map(|sigma| opened.rising(&sigma)),
         };
+        let absent = opened.absent();
         let InOrder { cube, found: read, .. } = opened;
         let lit = self.environment.iter().enumerate().map(|(k, source)| {
             sent(source, bands.nodes_cm1(), library).map_err(at(&format!("environment[{k}]")))
@@ -137,8 +142,8 @@ impl Said<'_> {
         let most = brightest(&bands, self.temperature_k[1], &lit);
         let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
         let added: Vec<f64> = (0..bands.len()).map(added).collect();
-        let Scale { counts_per_radiance, var_added, units_per_count } =
-            self.scale(&bands, &centres, &added, &most, camera.as_ref())?;
+        let Scale { counts_per_radiance, mut var_added, units_per_count } =
+            self.scale((&bands, &bad_bands), &centres, &added, &most, camera.as_ref())?;
         let shape = cube.shape();
         let named = self.cube.bad_pixels.as_ref();
         let named = named.map(|path| Map::open(path, shape, &[1])?.read(0..shape.rows()));
@@ -157,14 +162,26 @@ impl Said<'_> {
             keeps: self.cube.bad == Bad::Keep,
             gain: self.gain,
         };
-        let bad = readings.find(&cube, &named).map_err(at("cube.data"))?;
-        warnings.extend(bad.warnings(shape));
+        let mut bad = readings.find(&cube, &named).map_err(at("cube.data"))?;
         bad_bands.extend(bad.bands.iter().map(|bad| bad.band));
         bad_bands.sort_unstable();
+        bad.bands.extend(absent.into_iter().map(|band| BadBand { band, why: "absent" }));
+        bad.bands.sort_by_key(|bad| bad.band);
+        warnings.extend(bad.warnings(shape));
+        let in_table = |error: Error| match &self.cube.noise {
+            Some(CubeNoise::File(path)) => error.in_file(path),
+            _ => error,
+        };
+        noise_of_left_out(&mut var_added, &bad_bands).map_err(in_table).map_err(at("cube.noise"))?;
         let cube = without(cube, &bad.map);
         let lights = self.lights(lit, (&cube, &bad_bands, units_per_count), &mut warnings)?;
-        let together =
-            noise.together.map(|sigma| sigma.into_iter().map(|sigma| sigma / units_per_count).collect());
+        // Of a band that the file lacks there is none.
+        let in_counts = |sigma: Vec<f64>| -> Vec<f64> {
+            let one = |sigma: f64| if sigma.is_nan() { 0.0 } else { sigma / units_per_count };
+            sigma.into_iter().map(one).collect()
+        };
+        let together = noise.together.map(in_counts);
+        let common = noise.common.map(in_counts).unwrap_or_default();
         Ok(Measured {
             cube,
             read,
@@ -176,6 +193,7 @@ impl Said<'_> {
             counts_per_radiance,
             var_added,
             together,
+            common,
             units_per_count,
         })
     }
@@ -183,7 +201,7 @@ impl Said<'_> {
     /// What a sample is. `added` is the variance of its noise in the unit of the cube, `most` what can be sent in each band.
     fn scale(
         &self,
-        bands: &Bands,
+        (bands, bad_bands): (&Bands, &[usize]),
         centres_cm1: &[f64],
         added: &[f64],
         most: &[f64],
@@ -198,12 +216,15 @@ impl Said<'_> {
             },
             CubeUnit::Radiance => {
                 // A variance so much larger than that of the photons that the noise alone counts.
-                let least = added.iter().copied().fold(f64::INFINITY, f64::min);
+                // What is left out is worth nothing, whether it is a band of the file or not.
+                let used = |(band, value): (usize, f64)| (!bad_bands.contains(&band)).then_some(value);
+                let least = added.iter().copied().enumerate().filter_map(used).fold(f64::INFINITY, f64::min);
                 let joules = |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
                 let of_bands = || centres_cm1.iter().zip(&widths);
                 // Of what surfaces and lights can send, not of what the cube holds: no sample changes what another one is worth.
                 let largest = of_bands().zip(most).map(|((nu, width), sum)| joules(nu) * sum / width);
-                let units_per_count = least / (PER_VARIANCE * largest.fold(least.sqrt(), f64::max));
+                let largest = largest.enumerate().filter_map(used).fold(least.sqrt(), f64::max);
+                let units_per_count = least / (PER_VARIANCE * largest);
                 Scale {
                     counts_per_radiance: of_bands()
                         .map(|(nu, width)| joules(nu) / (units_per_count * width))
@@ -249,6 +270,18 @@ impl Said<'_> {
         })
         .collect()
     }
+}
+
+/// Bands that are left out need no noise of their own: they take the largest of the others.
+fn noise_of_left_out(var_added: &mut [f64], bad_bands: &[usize]) -> Result<()> {
+    let unknown = |(band, var): (usize, &f64)| (var.is_nan() && !bad_bands.contains(&band)).then_some(band);
+    if let Some(band) = var_added.iter().enumerate().find_map(unknown) {
+        let found = format!("no row for band {band} (in rising wavenumber), which has readings");
+        return Err(Error::malformed(found, "give its noise, or name the band in cube.bad_bands"));
+    }
+    let most = var_added.iter().copied().fold(0.0, f64::max);
+    var_added.iter_mut().filter(|var| var.is_nan()).for_each(|var| *var = most);
+    Ok(())
 }
 
 /// Name and rows (cm⁻¹, value) of a column.

@@ -1,4 +1,4 @@
-//! The bands of a cube in another order, or some of them.
+//! The bands of a cube in another order, some of them, or among others that it has not.
 
 use super::{Cube, Rows, Sample, Shape};
 use crate::error::{Error, Result};
@@ -30,7 +30,42 @@ impl<'a, S: Sample> Ordered<'a, S> {
     }
 }
 
+/// A cube among whose bands are some that another has not: of these it has NaN.
+#[derive(Debug)]
+struct Placed<S: Sample> {
+    cube: Box<dyn Rows<S>>,
+    places: Vec<Option<usize>>,
+    shape: Shape,
+}
+
 impl Cube {
+    /// The cube with bands in other places: band `i` of it is the band `places[i]` of this one, and missing (NaN) where there is none.
+    ///
+    /// # Errors
+    /// No place, or a band that is not there.
+    ///
+    /// ```
+    /// use hadar::cube::{Cube, MemoryCube, Shape};
+    /// let cube: Cube = MemoryCube::new(Shape::new(1, 1, 2)?, vec![1.0, 2.0])?.into();
+    /// let Cube::F64(wider) = cube.with_places(vec![Some(0), None, Some(1)])? else { return Ok(()) };
+    /// let mut buffer = Vec::new();
+    /// let samples = wider.read(0..1, &mut buffer)?;
+    /// assert!(samples[0] == 1.0 && samples[1].is_nan() && samples[2] == 2.0);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn with_places(self, places: Vec<Option<usize>>) -> Result<Self> {
+        let own = self.shape();
+        if let Some(beyond) = places.iter().flatten().find(|band| **band >= own.bands()) {
+            let found = format!("band {beyond} of {}", own.bands());
+            return Err(Error::malformed(found, "name bands that are there"));
+        }
+        let shape = Shape::new(own.rows(), own.columns(), places.len())?;
+        Ok(match self {
+            Self::F32(cube) => Self::F32(Box::new(Placed { cube, places, shape })),
+            Self::F64(cube) => Self::F64(Box::new(Placed { cube, places, shape })),
+        })
+    }
+
     /// The cube with bands in another order, or without some: band `i` of it is the band `order[i]` of this one.
     ///
     /// # Errors
@@ -51,6 +86,25 @@ impl Cube {
             Self::F32(cube) => Self::F32(Box::new(Ordered::new(cube, order)?)),
             Self::F64(cube) => Self::F64(Box::new(Ordered::new(cube, order)?)),
         })
+    }
+}
+
+impl<S: Sample> Rows<S> for Placed<S> {
+    fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        crate::stop::check();
+        let mut own = Vec::new();
+        let samples = self.cube.read(rows, &mut own)?;
+        buffer.clear();
+        let missing = S::of(f64::NAN);
+        for pixel in samples.chunks(self.cube.shape().bands()) {
+            let at = |place: &Option<usize>| place.and_then(|band| pixel.get(band)).copied();
+            buffer.extend(self.places.iter().map(|place| at(place).unwrap_or(missing)));
+        }
+        Ok(buffer)
     }
 }
 

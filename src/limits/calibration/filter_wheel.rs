@@ -19,7 +19,8 @@
 //! | T, u | K |
 //! | C, K, σ | counts |
 //!
-//! Assumptions: σ of a reading is known and independent of r; the sum stands for the integral, as the paper has it.
+//! Assumptions: σ of a reading is known and independent of r; the sum stands for the integral, as the paper has it;
+//! how fine a sum that takes is [`super::finer`]'s.
 
 use super::determined::without;
 use super::sent::{Sent, Unknown};

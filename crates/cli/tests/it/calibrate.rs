@@ -313,6 +313,10 @@ fn mistakes_are_one_message() {
     assert!(refusal.contains("sigma.csv") && refusal.contains("no column electronic_sigma"), "{refusal}");
     folder.file("sigma.csv", "band,electronic_sigma\n0,1\n");
     let refusal = folder.refusal(&["decompose", "b.toml"]);
+    // Rows that say their band may be fewer, but for bands that are read.
+    assert!(refusal.contains("sigma.csv") && refusal.contains("no row for band 1 "), "{refusal}");
+    folder.file("sigma.csv", "row,electronic_sigma\n0,1\n");
+    let refusal = folder.refusal(&["decompose", "b.toml"]);
     assert!(refusal.contains("noise of the bands: 1 values where 15 are needed"), "{refusal}");
     // Rows that say of which bands they are.
     let rows = |first: f64| {

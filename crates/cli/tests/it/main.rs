@@ -15,6 +15,7 @@ mod companion;
 mod cube_judges;
 mod cube_shares;
 mod cubes;
+mod cut_bands;
 mod decompose;
 mod decompose_by_rows;
 mod decompose_image;

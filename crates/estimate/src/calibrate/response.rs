@@ -18,11 +18,15 @@
 //!
 //! whose error common to all pixels is that of r: ∂S̄_q/∂r_j = g Δν T_qj (B_j(T₀) − S̄_q)/G_q(1).
 //!
+//! The sum stands for an integral: on a grid that is too coarse for the prior its error is far beyond the noise, and no deviation holds it.
+//! The wheel and the prior belong on the parts of [`hadar::calibration::finer`]; [`Response::at_values`] then has the values.
+//!
 //! Assumptions: normal readings; η = 1 where they are made; the prior is true. What the prior costs where it is not is
 //! (K − 1)(r − m), K the resolving kernels.
 
 use hadar::calibration::determined::CurvePrior;
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::finer::Finer;
 use hadar::calibration::sent::{Of, Unknown};
 use hadar::error::{Error, Result, check};
 use hadar::planck;
@@ -192,6 +196,15 @@ impl Response {
         })
     }
 
+    /// The same with the values alone, of a response at all parts of them.
+    #[must_use]
+    pub fn at_values(&self, finer: &Finer) -> Self {
+        let values = finer.at_values(&self.values);
+        let factor =
+            DMatrix::from_fn(values.len(), self.factor.ncols(), |j, k| self.factor[(finer.place(j), k)]);
+        Self { values, factor, ..self.clone() }
+    }
+
     /// Deviation of value j.
     #[must_use]
     pub fn sigma(&self, value: usize) -> f64 {
@@ -226,8 +239,11 @@ impl Response {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::calibrate::twin::FilterWheelTwin;
+    use crate::calibrate::twin::{FilterWheelTwin, KNOWN, normal, response_values_cm1};
     use hadar::calibration::determined::Determined;
+    use hadar::correlation::matern;
+    use hadar::random::generator;
+    use nalgebra::Cholesky;
 
     /// Deviations by the triangular factor are those that the bound has by projections and singular values.
     #[test]
@@ -263,5 +279,70 @@ mod tests {
             assert!((found.values[j] - expected).abs() < 1e-5, "{j} {} {expected}", found.values[j]);
         }
         assert!(found.offsets.iter().zip(&twin.offsets).all(|(a, b)| (a - b).abs() < 20.0));
+    }
+
+    /// Shares of 95 % intervals of the values, and of radiances behind the filters, that hold the truth: curves drawn from the prior at `true_parts` of each value,
+    /// readings by the sum over these, fits on `parts`.
+    fn held(parts: usize, true_parts: usize, sigma: f64, draws: u64) -> [f64; 2] {
+        let (twin, truth) = (FilterWheelTwin::cut(parts).unwrap(), FilterWheelTwin::cut(true_parts).unwrap());
+        let [finer, finest] =
+            [parts, true_parts].map(|parts| Finer::cut(&response_values_cm1(), parts).unwrap());
+        let fine = truth.wheel.centres_cm1().to_vec();
+        let typical = truth.prior.mean();
+        // By Cholesky, not by the modes that the fit has.
+        let covariance = DMatrix::from_fn(fine.len(), fine.len(), |i, j| {
+            let alike = matern(fine[i] - fine[j], KNOWN.correlation_cm1);
+            let own = if i == j { 1e-12 } else { 0.0 };
+            KNOWN.scale.powi(2) * typical[i] * typical[j] + KNOWN.shape.powi(2) * alike + own
+        });
+        let drawn = Cholesky::new(covariance).unwrap().l();
+        let some = |twin: &FilterWheelTwin| {
+            let mut twin = twin.clone();
+            twin.temperatures_k = (0..8).map(|k| 308.15 + 10.0 * f64::from(k)).collect();
+            twin.readings(sigma)
+        };
+        let (readings, exact) = (some(&twin), vec![0.0; 8]);
+        let [scene, reference] = [330.0, 308.15].map(|t| {
+            let mut radiance = vec![0.0; fine.len()];
+            planck::photon_radiance_into(&fine, t, &mut radiance);
+            radiance
+        });
+        let ones = vec![1.0; fine.len()];
+        let (mut values, mut radiances) = (0.0, 0.0);
+        for draw in 0..draws {
+            let mut rng = generator(42, draw);
+            let z = DVector::from_fn(fine.len(), |_, _| normal(&mut rng));
+            let off = &drawn * z;
+            let curve: Vec<f64> = typical.iter().zip(off.iter()).map(|(mean, off)| mean + off).collect();
+            let mut counts = truth.means(&readings, &curve, &exact);
+            counts.iter_mut().for_each(|count| *count += sigma * normal(&mut rng));
+            let found = Response::found(&twin.wheel, &twin.prior, &readings, &counts, &[]).unwrap();
+            let at_values = found.at_values(&finer);
+            for (j, own) in finest.at_values(&curve).iter().enumerate() {
+                values += f64::from(u8::from((at_values.values[j] - own).abs() < 1.96 * at_values.sigma(j)));
+            }
+            for q in 0..10 {
+                let of = |x: &[f64]| truth.wheel.counts(q, &curve, x);
+                let measured = found.radiance(&twin.wheel, q, of(&scene) - of(&reference), 308.15);
+                let off = measured.radiance - of(&scene) / of(&ones);
+                radiances += f64::from(u8::from(off.abs() < 1.96 * measured.sigma_common));
+            }
+        }
+        [values / (30.0 * draws as f64), radiances / (10.0 * draws as f64)]
+    }
+
+    /// Readings are integrals. 240 curves; the 30 values of one share their errors, so that the share scatters by less than 0.006.
+    /// The radiances, which are read without noise, have fewer errors that are independent: 0.01.
+    #[test]
+    fn intervals_hold_what_is_drawn_on_a_finer_grid() {
+        let own = Finer::of(&response_values_cm1(), KNOWN.correlation_cm1).unwrap().parts();
+        for sigma in [2.0, 0.2, 0.02, 0.0002] {
+            let [values, radiances] = held(own, 5 * own, sigma, 240);
+            assert!((0.93..0.97).contains(&values), "{sigma} {values}");
+            assert!((0.91..0.99).contains(&radiances), "{sigma} {radiances}");
+        }
+        // What the sum over the values alone held: .69 of them.
+        let [coarse, _] = held(1, 5 * own, 0.0002, 40);
+        assert!(coarse < 0.8, "{coarse}");
     }
 }

@@ -15,6 +15,7 @@
 use hadar::calibration::blackbody::Blackbodies;
 use hadar::calibration::determined::{CurvePrior, CurveSmoothness};
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::finer::Finer;
 use hadar::calibration::sent::{Of, Sent};
 use hadar::error::Result;
 use hadar::planck;
@@ -84,7 +85,7 @@ pub struct FilterWheelTwin {
     pub wheel: FilterWheel,
     /// What is known of the response: about the typical curve.
     pub prior: CurvePrior,
-    /// The true response at the 30 values.
+    /// The true response at the 30 values, or at their parts.
     pub response: Vec<f64>,
     /// K_q, counts.
     pub offsets: Vec<f64>,
@@ -102,13 +103,23 @@ impl FilterWheelTwin {
     /// # Errors
     /// None, unless a figure above is wrong.
     pub fn prototype() -> Result<Self> {
-        let centres = response_values_cm1();
+        Self::cut(1)
+    }
+
+    /// The same camera with each value of the response cut into an odd number of parts: what it reads is a finer sum.
+    ///
+    /// # Errors
+    /// An even number of parts.
+    pub fn cut(parts: usize) -> Result<Self> {
+        let values = response_values_cm1();
+        let typical = |nu: &f64| microbolometer(12.0, 0.0, *nu);
+        let peak = values.iter().map(typical).fold(0.0, f64::max);
+        let scaled = |centres: &[f64]| -> Vec<f64> { centres.iter().map(|nu| typical(nu) / peak).collect() };
+        let counts = counts_per_radiance(&values, &scaled(&values));
+        let centres = if parts == 1 { values } else { Finer::cut(&values, parts)?.centres_cm1().to_vec() };
         let truth: Vec<f64> = centres.iter().map(|nu| microbolometer(0.0, 0.06, *nu)).collect();
-        let typical: Vec<f64> = centres.iter().map(|nu| microbolometer(12.0, 0.0, *nu)).collect();
-        let peak = typical.iter().copied().fold(0.0, f64::max);
-        let typical: Vec<f64> = typical.iter().map(|r| r / peak).collect();
+        let typical = scaled(&centres);
         let filters = FILTERS.iter().map(|filter| passband(*filter, &centres)).collect();
-        let counts = counts_per_radiance(&centres, &typical);
         Ok(Self {
             prior: CurvePrior::smooth(&centres, &typical, KNOWN)?,
             wheel: FilterWheel::new(centres, filters, counts)?,

@@ -78,6 +78,8 @@ pub struct Together {
     pub moved: Vec<f64>,
     /// a of every material, cause and band; empty without stated errors.
     lean: Vec<f64>,
+    /// a of every shared unknown and band, of errors that all pixels have alike ([`super::alike`]).
+    pub(super) alike: Vec<f64>,
     /// The last of the causes, which are estimated with the pixels ([`super::shared`]).
     shared: usize,
     /// By how much each of these follows a unit of each cause, if it was taken for nothing.
@@ -106,6 +108,7 @@ impl Together {
             of_library: vec![0.0; causes],
             moved: vec![0.0; causes],
             lean: vec![0.0; materials * causes * bands],
+            alike: vec![0.0; shared * bands],
             ..Self::default()
         }
     }
@@ -122,6 +125,7 @@ impl Together {
             (&mut self.information, &other.information),
             (&mut self.moved, &other.moved),
             (&mut self.lean, &other.lean),
+            (&mut self.alike, &other.alike),
             (&mut self.cross.information, &other.cross.information),
             (&mut self.cross.moved, &other.cross.moved),
         ] {
@@ -375,6 +379,12 @@ impl Judge<'_> {
             for (w, (residual, rho)) in sums.residual.iter_mut().zip(rho.iter()).enumerate() {
                 residual[0] += weight * rho;
                 residual[1] += weight * tangent.kept(w);
+            }
+            let shared = slopes.iter().skip(slopes.len() - self.shared);
+            for (alike, one) in sums.alike.chunks_mut(rho.len().max(1)).zip(shared) {
+                for (alike, (d, sigma)) in alike.iter_mut().zip(one.iter().zip(&tangent.sigma)) {
+                    *alike += weight * d / sigma;
+                }
             }
             for (a, one) in slopes.iter().enumerate() {
                 sums.score[a] += weight * dot(one, rho);

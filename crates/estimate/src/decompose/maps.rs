@@ -3,6 +3,7 @@
 //! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads
 //! and of rows that are worked at once, and only these are in memory.
 
+use super::alike::Alike;
 use super::library_error::{Errors, LibraryError, Other};
 use super::model::Model;
 use super::pixel::{ANY_LIGHTING, NO_MATERIAL, Pixel, Room, Spared, Task, flag};
@@ -26,6 +27,8 @@ pub struct Options {
     pub library_error: Option<LibraryError>,
     /// Prior probability that a surface is none of the library, with an emissivity that is smooth; taken for impossible if silent.
     pub other: Option<f64>,
+    /// What all pixels are off by alike: deviations of what the whole cube shares hold it.
+    pub alike: Alike,
     /// Whether materials that a bound excludes are left out; the answer is the same.
     pub skipping: Skipping,
     /// What neighbours tell about a pixel; each is for itself if silent.

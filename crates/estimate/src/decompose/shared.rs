@@ -9,6 +9,9 @@
 //! and the pixels are fitted again at θ + δθ, until it no longer moves by a part of its deviation: Gauss and Newton's method for the most
 //! probable θ. What follows θ by a slope d has the variance dᵀ C d besides its own: the joint Cramér–Rao bound, with the prior.
 //!
+//! Errors that all pixels have alike ([`super::alike`]) are no noise of a pixel's own: with the columns E that they add to the scores, what
+//! follows θ by d has the variance |dᵀ C J V⁻¹ E|² besides.
+//!
 //! In units of s the matrix is 1 + WᵀW and has a Cholesky factor whatever the pixels tell. A factor of all noise comes from χ² alone.
 //!
 //! Assumptions: materials of pixels with one candidate are right; where most pixels have several, nothing is estimated and the prior stays.
@@ -67,6 +70,8 @@ pub struct Shared {
     /// Pairs that the pixels do not tell apart.
     pub same: Vec<[usize; 2]>,
     factor: Cholesky<f64, Dyn>,
+    /// What errors that all pixels have alike do to the amounts, in units of s: a column each.
+    alike: DMatrix<f64>,
 }
 
 impl Shared {
@@ -84,6 +89,7 @@ impl Shared {
             off_chi_square_mean: None,
             same: Vec::new(),
             factor: factor(DMatrix::identity(count, count))?,
+            alike: DMatrix::zeros(count, 1),
         })
     }
 
@@ -117,14 +123,26 @@ impl Shared {
     /// Deviation of what follows the unknowns by slopes.
     #[must_use]
     pub fn sigma_of(&self, slopes: &[f64]) -> f64 {
+        let scaled = DVector::from_iterator(
+            slopes.len(),
+            slopes.iter().zip(&self.unknowns).map(|(d, one)| d * one.sigma),
+        );
+        self.sigma_of_own(slopes).hypot(self.alike.tr_mul(&scaled).norm())
+    }
+
+    /// The same but for what all pixels are off by alike.
+    fn sigma_of_own(&self, slopes: &[f64]) -> f64 {
         slopes.iter().zip(self.image(slopes)).map(|(d, image)| d * image).sum::<f64>().max(0.0).sqrt()
     }
 
     /// Deviation of an unknown.
     #[must_use]
     pub fn sigma(&self, unknown: usize) -> f64 {
-        let slopes: Vec<f64> = (0..self.unknowns.len()).map(|i| f64::from(u8::from(i == unknown))).collect();
-        self.sigma_of(&slopes)
+        self.sigma_of(&self.along(unknown))
+    }
+
+    fn along(&self, unknown: usize) -> Vec<f64> {
+        (0..self.unknowns.len()).map(|i| f64::from(u8::from(i == unknown))).collect()
     }
 
     /// The setting with what is found put into it: the shift first, which reads the spectra anew.
@@ -142,7 +160,7 @@ impl Shared {
     }
 
     /// One round: the sums of the pixels at what is known so far. Whether it has settled.
-    fn step(&mut self, sums: &Together, noise_sigma: Option<f64>) -> Result<bool> {
+    fn step(&mut self, sums: &Together, noise_sigma: Option<f64>, alike: &DMatrix<f64>) -> Result<bool> {
         let count = self.unknowns.len();
         let first = sums.score.len() - count;
         let s: Vec<f64> = self.unknowns.iter().map(|one| one.sigma).collect();
@@ -169,6 +187,8 @@ impl Shared {
         let own = 0.5 * (&own + own.transpose());
         self.factor = factor(own + DMatrix::identity(count, count))?;
         let step = self.factor.solve(&towards);
+        let off = DMatrix::from_fn(count, alike.ncols(), |i, k| s[i] * alike[(i, k)] / scale[i]);
+        self.alike = self.factor.solve(&(scaled.transpose() * var.solve(&off)));
         // Far from the best fit pixels have wrong materials: no further than a prior deviation at once.
         let longest = step.amax();
         let step = if longest > 1.0 { step / longest } else { step };
@@ -178,7 +198,7 @@ impl Shared {
             if self.unknowns[i].cause.is_share() {
                 self.amounts[i] = self.amounts[i].max(LEAST_SHARE);
             }
-            settled &= (step * s[i]).abs() <= SETTLED * self.sigma(i);
+            settled &= (step * s[i]).abs() <= SETTLED * self.sigma_of_own(&self.along(i));
         }
         if let Some(noise_sigma) = noise_sigma {
             let ratio = (sums.chi_square / sums.freedom).sqrt();
@@ -226,7 +246,8 @@ pub fn estimate(
             let Some(sums) = telling(&found, &maps) else {
                 return Shared::prior(unknowns);
             };
-            if shared.step(sums, noise_sigma)? {
+            let alike = options.alike.of_scores(&sums.alike, &found.bands);
+            if shared.step(sums, noise_sigma, &alike)? {
                 shared.settled = true;
                 break;
             }

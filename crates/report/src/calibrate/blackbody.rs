@@ -21,9 +21,9 @@ pub fn bundle(result: &BlackbodyFound, format: CubeFormat) -> Result<Bundle> {
     bundle.add_table("channels.csv", response(result))?;
     bundle.add_table("temperatures.csv", temperatures(result))?;
     if let Some(scene) = &result.scene {
-        let centres: Vec<f64> = result.channels.iter().map(|row| row.wavenumber_cm1).collect();
+        let centres = &result.centres_cm1;
         let mut add =
-            |name: &str, samples: &[f32]| format.add(&mut bundle, name, scene.shape, samples, &centres);
+            |name: &str, samples: &[f32]| format.add(&mut bundle, name, scene.shape, samples, centres);
         add("radiance", &scene.radiance)?;
         add("sigma_common", &scene.sigma_common)?;
         if let Some(pixel) = &scene.sigma_pixel {
@@ -31,10 +31,10 @@ pub fn bundle(result: &BlackbodyFound, format: CubeFormat) -> Result<Bundle> {
         }
         // As `[cube] noise` of a decomposition takes it.
         let mut table = Table::new(["band", "wavenumber_cm1", "sigma", "sigma_common", "sigma_together"]);
-        for (c, row) in result.channels.iter().enumerate() {
+        for ((c, row), band) in result.channels.iter().enumerate().zip(&result.places) {
             let sigmas = [scene.sigma_noise[c], scene.sigma_common_most[c], scene.sigma_together[c]];
             let numbers = [[row.wavenumber_cm1].as_slice(), &sigmas].concat().into_iter().map(number);
-            table.push(std::iter::once(c.to_string()).chain(numbers).collect());
+            table.push(std::iter::once(band.to_string()).chain(numbers).collect());
         }
         bundle.add_table("sigma.csv", table)?;
     }

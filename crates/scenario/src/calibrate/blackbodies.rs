@@ -1,5 +1,6 @@
 //! Blackbodies that were read (`[[blackbody]]`), the noise of a sample (`[noise]`) and the cube to be calibrated (`[scene]`).
 
+use super::super::decompose::read::bad_bands;
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, variable};
 use super::super::section::{Entry, Section};
@@ -45,6 +46,8 @@ pub struct CubeFile {
     pub variable: Option<String>,
     /// Which of its dimensions is which.
     pub axes: Option<Axes>,
+    /// Bands that are left out of all cubes, counted from 0 in the order of this file.
+    pub bad_bands: Vec<usize>,
 }
 
 impl CubeFile {
@@ -53,7 +56,12 @@ impl CubeFile {
             path: file(&section.require("data")?)?,
             variable: variable(section)?,
             axes: axes(section)?,
+            bad_bands: bad_bands(section)?,
         })
+    }
+
+    fn written_bands(&self) -> Vec<i64> {
+        self.bad_bands.iter().map(|band| *band as i64).collect()
     }
 
     pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
@@ -61,6 +69,7 @@ impl CubeFile {
             .put("data", paths.file(&self.path))
             .put_if("variable", self.variable.clone())
             .put_if("axes", self.axes.map(|axes| axes.to_string()))
+            .put_if("bad_bands", (!self.bad_bands.is_empty()).then(|| self.written_bands()))
     }
 }
 

@@ -4,6 +4,7 @@ use super::cube::{AXES, BAD_BANDS, VARIABLE};
 use super::key::Silent::{Is, Means, Refused};
 use super::key::{
     A_SHARE, COUNT, KELVIN, KELVIN_FROM_ZERO, Key, POSITIVE, POSITIVE_SHARE, TIME, Table, Value, WAVENUMBER,
+    WHOLE,
 };
 use hadar::allowed::Allowed;
 
@@ -98,6 +99,14 @@ const fn data(example: &'static str) -> Key {
 }
 const DATA: Key = data("\"cold.npy\"");
 const SCENE_DATA: Key = data("\"scene.npy\"");
+const BAD_BANDS_OF_ALL: Key = Key::row(
+    "bad_bands",
+    Value::List(&WHOLE),
+    Is("[]"),
+    "[0, 53]",
+    "Bands that are left out of all cubes, counted from 0 in the order of this one.",
+    "which samples are used",
+);
 const BLACKBODY_KEYS: &[Key] = &[
     Key::row(
         "temperature",
@@ -149,8 +158,10 @@ const BLACKBODY_KEYS: &[Key] = &[
     ),
 ];
 /// `[[blackbody]]`.
-pub(crate) static BLACKBODY: Table =
-    Table::of("A blackbody that was read; two or more.", &[BLACKBODY_KEYS, &[DATA, VARIABLE, AXES]]);
+pub(crate) static BLACKBODY: Table = Table::of(
+    "A blackbody that was read; two or more.",
+    &[BLACKBODY_KEYS, &[DATA, VARIABLE, AXES, BAD_BANDS_OF_ALL]],
+);
 
 /// `[noise]` beside blackbodies.
 pub(crate) static SAMPLE: Table = Table::of(
@@ -194,7 +205,7 @@ const REFERENCE_KEYS: &[Key] = &[
 /// `[scene]` before filters.
 pub(crate) static SCENE: Table = Table::of(
     "The cube to be calibrated, and its reference.",
-    &[&[SCENE_DATA, VARIABLE, AXES], REFERENCE_KEYS],
+    &[&[SCENE_DATA, VARIABLE, AXES, BAD_BANDS_OF_ALL], REFERENCE_KEYS],
 );
 
 const EACH: Key = Key::row(
@@ -207,7 +218,7 @@ const EACH: Key = Key::row(
 );
 /// `[scene]` before a spectrometer.
 pub(crate) static SPECTRAL_SCENE: Table =
-    Table::of("The cube to be calibrated.", &[&[SCENE_DATA, VARIABLE, AXES, EACH]]);
+    Table::of("The cube to be calibrated.", &[&[SCENE_DATA, VARIABLE, AXES, BAD_BANDS_OF_ALL, EACH]]);
 
 const FRAMES_KEYS: &[Key] = &[
     Key::row(

@@ -1,13 +1,15 @@
 //! Response and offset of a spectrometer by blackbodies, and the radiance of a scene.
 
+use super::left_out::LeftOut;
 use super::scene_radiance::{DEAD, SceneFound, Spectrometer, beyond};
 use super::stated::{taken_as_black, uncertainty_not_stated};
 use super::whole::{at, means};
+use crate::cube_bad::BadBand;
 use crate::cube_bands::InOrder;
 use crate::{Warning, bands};
 use hadar::calibration::blackbody::{Blackbodies, Parts};
 use hadar::calibration::sent::Deviations;
-use hadar::cube::Cube;
+use hadar::cube::{Cube, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::planck;
@@ -36,6 +38,9 @@ const BEYOND: f64 = 0.01;
 pub struct BlackbodyStudy {
     scenario: BlackbodyScenario,
     wavenumbers_cm1: Vec<f64>,
+    /// Of all bands, those left out among them.
+    centres_cm1: Vec<f64>,
+    left_out: LeftOut,
     cubes: Vec<Cube>,
     scene: Option<Cube>,
 }
@@ -79,8 +84,16 @@ pub struct Worst {
 pub struct BlackbodyFound {
     /// The question.
     pub scenario: BlackbodyScenario,
-    /// The channels.
+    /// The channels; bands that are left out are none.
     pub channels: Vec<ChannelRow>,
+    /// Where the channels stand among the bands, counted from 0 in rising wavenumber.
+    #[serde(skip)]
+    pub places: Vec<usize>,
+    /// Centres of all bands, cm⁻¹, those left out among them.
+    #[serde(skip)]
+    pub centres_cm1: Vec<f64>,
+    /// Bands that are left out of all cubes, with why.
+    pub left_out: Vec<BadBand>,
     /// The temperature in the middle of the blackbodies, K.
     pub middle_k: f64,
     /// Where between the blackbodies the error common to all pixels is the largest.
@@ -110,19 +123,34 @@ impl BlackbodyStudy {
             let instead = "write start, stop and step, or rows; filters are for hadar calibrate response";
             return Err(at(source, "bands")(Error::malformed(found, instead)));
         }
-        let opened = |file: &CubeFile, key: &str| -> Result<Cube> {
-            let opened =
-                InOrder::open(&file.path, file.variable.as_deref(), file.axes).map_err(at(source, key))?;
-            opened.check(&bands).map_err(at(source, key))?;
+        let (mut named, mut absent) = (Vec::new(), Vec::new());
+        let mut opened = |file: &CubeFile, key: &str| -> Result<Cube> {
+            let opened = InOrder::open(&file.path, file.variable.as_deref(), file.axes)
+                .and_then(|opened| opened.among(&bands))
+                .map_err(at(source, &format!("{key}.data")))?;
+            absent.extend(opened.absent());
+            named.extend(opened.bad_bands(&file.bad_bands).map_err(at(source, &format!("{key}.bad_bands")))?);
             Ok(opened.cube)
         };
         let cubes = scenario.blackbodies.iter().enumerate();
+        let cubes = cubes
+            .map(|(k, spec)| opened(&spec.data, &format!("blackbody[{k}]")))
+            .collect::<Result<Vec<_>>>()?;
+        let scene = scenario.scene.as_ref().map(|scene| opened(&scene.data, "scene")).transpose()?;
+        let left_out = LeftOut::of(bands.len(), &named, &absent, &cubes, scenario.noise)
+            .map_err(at(source, "blackbody"))?;
+        let without = |cube: Cube| left_out.without(cube);
         Ok(Self {
-            cubes: cubes
-                .map(|(k, spec)| opened(&spec.data, &format!("blackbody[{k}].data")))
-                .collect::<Result<_>>()?,
-            scene: scenario.scene.as_ref().map(|scene| opened(&scene.data, "scene.data")).transpose()?,
-            wavenumbers_cm1: bands.nodes_cm1().to_vec(),
+            cubes: cubes.into_iter().map(without).collect::<Result<_>>()?,
+            scene: scene.map(without).transpose()?,
+            wavenumbers_cm1: left_out
+                .good
+                .iter()
+                .filter_map(|band| bands.nodes_cm1().get(*band))
+                .copied()
+                .collect(),
+            centres_cm1: bands.nodes_cm1().to_vec(),
+            left_out,
             scenario: scenario.clone(),
         })
     }
@@ -136,6 +164,7 @@ impl BlackbodyStudy {
         let nu = &self.wavenumbers_cm1;
         let (mut counts, mut sigma, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
         let mut samples = 0;
+        warnings.extend(self.left_out.warnings());
         for (k, cube) in self.cubes.iter().enumerate() {
             let (mean, scatter) = means(cube).map_err(at(source, &format!("blackbody[{k}].data")))?;
             let shape = cube.shape();
@@ -212,12 +241,16 @@ impl BlackbodyStudy {
                 warnings.push(Warning::BeyondBlackbodies { share: beyond, low_k: low, high_k: high });
             }
         }
+        let scene = scene.map(|scene| self.among_all(scene)).transpose()?;
         let shifts = found.shifts.iter().take(specs.len()).enumerate();
         let mut stats = Work::default();
         stats.compute(Thing::Samples, samples as u64);
         Ok(BlackbodyFound {
             scenario: scenario.clone(),
             channels,
+            places: self.left_out.good.clone(),
+            centres_cm1: self.centres_cm1.clone(),
+            left_out: self.left_out.bands.clone(),
             middle_k,
             worst: self.worst(&found, [low, high]),
             temperature_shifts_k: shifts
@@ -227,6 +260,18 @@ impl BlackbodyStudy {
             scene,
             stats,
             warnings,
+        })
+    }
+
+    /// A scene of all bands, those that are left out missing.
+    fn among_all(&self, scene: SceneFound) -> Result<SceneFound> {
+        let (shape, left_out) = (scene.shape, &self.left_out);
+        Ok(SceneFound {
+            shape: Shape::new(shape.rows(), shape.columns(), self.centres_cm1.len())?,
+            radiance: left_out.among(scene.radiance),
+            sigma_common: left_out.among(scene.sigma_common),
+            sigma_pixel: scene.sigma_pixel.map(|sigma| left_out.among(sigma)),
+            ..scene
         })
     }
 

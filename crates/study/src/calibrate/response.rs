@@ -1,11 +1,14 @@
 //! The response of a camera behind a filter wheel by blackbodies, the wheel's relative transmittance, and radiances behind the filters.
 
+use super::left_out::LeftOut;
 use super::stated::{taken_as_black, uncertainty_not_stated};
 use super::whole::{at, open, samples, shown};
+use crate::cube_bad::BadBand;
 use crate::heat_cube::columns;
 use crate::{Warning, WorstBlackbody};
 use hadar::calibration::determined::{CurvePrior, Determined};
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
+use hadar::calibration::finer::Finer;
 use hadar::calibration::sent::{Deviations, Unknown};
 use hadar::cube::{Cube, Shape};
 use hadar::demand::{Thing, Work};
@@ -20,7 +23,7 @@ use hadar_scenario::calibrate::blackbodies::{BlackbodySpec, CubeFile};
 use serde::Serialize;
 use std::path::Path;
 
-/// Points over the width of a response value at which a filter is looked at.
+/// Points over the width of a part of a response value at which a filter is looked at.
 const POINTS: usize = 11;
 /// A column of this ending is the reflectance of the filter before it.
 const REFLECTANCE: &str = ":reflectance";
@@ -36,8 +39,13 @@ const MISFIT: f64 = 1.3;
 pub struct ResponseStudy {
     scenario: ResponseScenario,
     centres_cm1: Vec<f64>,
+    /// The parts of each value, over which readings are summed.
+    finer: Finer,
     names: Vec<String>,
+    left_out: Vec<LeftOutFilter>,
+    /// Of every filter, over the parts.
     transmittances: Vec<Vec<f64>>,
+    /// At the parts.
     typical: Vec<f64>,
     cubes: Vec<Cube>,
     scene: Option<[Cube; 2]>,
@@ -60,6 +68,17 @@ pub struct ResponseRow {
     pub sigma_readings_alone: Option<f64>,
 }
 
+/// A filter that is left out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LeftOutFilter {
+    /// Its name.
+    pub filter: String,
+    /// Its band of the cubes, from 0.
+    pub band: usize,
+    /// `named`, `missing`, `stuck` or `saturated`.
+    pub why: &'static str,
+}
+
 /// Radiances of a scene behind the filters, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Serialize)]
 pub struct FilterRadiances {
@@ -80,8 +99,10 @@ pub struct FilterRadiances {
 pub struct ResponseFound {
     /// The question.
     pub scenario: ResponseScenario,
-    /// Names of the filters.
+    /// Names of the filters; those left out are not among them.
     pub filters: Vec<String>,
+    /// Filters that are left out of all cubes, with why.
+    pub left_out: Vec<LeftOutFilter>,
     /// The response.
     pub response: Vec<ResponseRow>,
     /// Covariance of its values, row after row.
@@ -135,15 +156,23 @@ impl ResponseStudy {
         let [low, high] = spec.range_cm1;
         let step = (high - low) / (spec.values - 1) as f64;
         let centres_cm1: Vec<f64> = (0..spec.values).map(|j| low + step * j as f64).collect();
+        let finer = Finer::of(&centres_cm1, spec.known.correlation_cm1).map_err(at(source, "response"))?;
+        let parts_cm1 = finer.centres_cm1();
         let (names, transmittances) =
-            filters(&spec.filters, &centres_cm1, step).map_err(at(source, "response.filters"))?;
-        let typical = spec.typical.as_ref().map(|path| typical(path, &centres_cm1)).transpose();
+            filters(&spec.filters, parts_cm1, finer.step_cm1()).map_err(at(source, "response.filters"))?;
+        let typical = spec.typical.as_ref().map(|path| typical(path, parts_cm1)).transpose();
         let typical =
-            typical.map_err(at(source, "response.typical"))?.unwrap_or_else(|| vec![1.0; spec.values]);
+            typical.map_err(at(source, "response.typical"))?.unwrap_or_else(|| vec![1.0; parts_cm1.len()]);
+        let mut named = Vec::new();
+        let mut opened = |file: &CubeFile, key: &str| -> Result<Cube> {
+            let (cube, bad) = open(file, source, key)?;
+            named.extend(bad);
+            Ok(cube)
+        };
         let mut cubes = Vec::new();
         for (k, blackbody) in scenario.blackbodies.iter().enumerate() {
             let key = format!("blackbody[{k}].data");
-            let cube = open(&blackbody.data, source, &key)?;
+            let cube = opened(&blackbody.data, &key)?;
             check_filters(&cube, names.len()).map_err(at(source, &key))?;
             if let Some(first) = cubes.first() {
                 same_size(&cube, first, "blackbody[0]").map_err(at(source, &key))?;
@@ -151,23 +180,27 @@ impl ResponseStudy {
             cubes.push(cube);
         }
         let scene = scenario.scene.as_ref().map(|spec| {
-            let scene = open(&spec.data, source, "scene.data")?;
+            let scene = opened(&spec.data, "scene.data")?;
             same_size(&scene, &cubes[0], "blackbody[0]").map_err(at(source, "scene.data"))?;
             let file = CubeFile { path: spec.reference.clone(), ..spec.data.clone() };
-            let reference = open(&file, source, "scene.reference")?;
+            let reference = opened(&file, "scene.reference")?;
             same_size(&reference, &scene, "the scene").map_err(at(source, "scene.reference"))?;
             Ok([scene, reference])
         });
-        let study = Self {
+        let scene = scene.transpose()?;
+        let mut study = Self {
             scenario: scenario.clone(),
-            scene: scene.transpose()?,
+            scene,
+            left_out: Vec::new(),
             centres_cm1,
+            finer,
             names,
             transmittances,
             typical,
             cubes,
         };
-        let wheel = study.wheel(1.0)?;
+        study.leave_out(&named).map_err(at(source, "blackbody"))?;
+        let wheel = study.wheel_of_values(1.0)?;
         if let Some([like, dependent]) = wheel.dependent() {
             let [like, dependent] = [like, dependent].map(|q| &study.names[q]);
             let found = format!(
@@ -180,8 +213,46 @@ impl ResponseStudy {
         Ok(study)
     }
 
+    fn warnings_of_left_out(&self) -> impl Iterator<Item = Warning> + '_ {
+        ["missing", "stuck", "saturated"].into_iter().filter_map(|why| {
+            let of = self.left_out.iter().filter(|one| one.why == why);
+            let filters: Vec<String> = of.map(|one| one.filter.clone()).collect();
+            (!filters.is_empty()).then_some(Warning::FiltersLeftOut { filters, why })
+        })
+    }
+
+    /// Leaves the filters out whose bands are bad in some cube.
+    fn leave_out(&mut self, named: &[usize]) -> Result<()> {
+        let left_out = LeftOut::of(self.names.len(), named, &[], &self.cubes, self.scenario.noise)?;
+        if left_out.bands.is_empty() {
+            return Ok(());
+        }
+        let name = |band: usize| self.names.get(band).cloned().unwrap_or_default();
+        let of = |bad: &BadBand| LeftOutFilter { filter: name(bad.band), band: bad.band, why: bad.why };
+        self.left_out = left_out.bands.iter().map(of).collect();
+        let is_good = |band: usize| left_out.good.contains(&band);
+        let mut places = (0..).map(is_good);
+        self.names.retain(|_| places.next().unwrap_or(false));
+        let mut places = (0..).map(is_good);
+        self.transmittances.retain(|_| places.next().unwrap_or(false));
+        let cubes = std::mem::take(&mut self.cubes);
+        self.cubes = cubes.into_iter().map(|cube| left_out.without(cube)).collect::<Result<_>>()?;
+        if let Some([scene, reference]) = self.scene.take() {
+            self.scene = Some([left_out.without(scene)?, left_out.without(reference)?]);
+        }
+        Ok(())
+    }
+
+    /// The sum that a reading is.
     fn wheel(&self, counts_per_radiance: f64) -> Result<FilterWheel> {
-        FilterWheel::new(self.centres_cm1.clone(), self.transmittances.clone(), counts_per_radiance)
+        let parts_cm1 = self.finer.centres_cm1().to_vec();
+        FilterWheel::new(parts_cm1, self.transmittances.clone(), counts_per_radiance)
+    }
+
+    /// The same by the values alone: of how many values it is asked what readings determine.
+    fn wheel_of_values(&self, counts_per_radiance: f64) -> Result<FilterWheel> {
+        let means = self.transmittances.iter().map(|filter| self.finer.means(filter)).collect();
+        FilterWheel::new(self.centres_cm1.clone(), means, counts_per_radiance)
     }
 
     /// Calibrates.
@@ -201,18 +272,27 @@ impl ResponseStudy {
         let (readings, counts) = self.readings(&cubes, &middle);
         let scale = self.scale(&readings, &counts).map_err(at(source, "blackbody"))?;
         let wheel = self.wheel(scale)?;
-        let prior = CurvePrior::smooth(&self.centres_cm1, &self.typical, scenario.response.known)
-            .map_err(at(source, "response"))?;
+        let prior = |centres: &[f64], typical: &[f64]| {
+            CurvePrior::smooth(centres, typical, scenario.response.known).map_err(at(source, "response"))
+        };
+        let finer = &self.finer;
+        let typical = finer.at_values(&self.typical);
+        let (prior, prior_of_values) =
+            (prior(finer.centres_cm1(), &self.typical)?, prior(&self.centres_cm1, &typical)?);
         let deviations: Vec<Deviations> = specs.iter().map(BlackbodySpec::deviations).collect();
         let errors = Unknown::all(&deviations).map_err(at(source, "blackbody"))?;
         let errors = if errors.iter().any(|one| one.deviation > 0.0) { &errors[..] } else { &[] };
         let found =
             Response::found(&wheel, &prior, &readings, &counts, errors).map_err(at(source, "blackbody"))?;
+        let at_values = found.at_values(finer);
         let about = (!errors.is_empty()).then_some((errors, &found.values[..]));
-        let known = Determined::of(&wheel.scores(&readings, about)?, &prior)?;
+        let seen = Determined::of(&wheel.scores(&readings, about)?, &prior)?;
+        let about = (!errors.is_empty()).then_some((errors, &at_values.values[..]));
+        let of_values = self.wheel_of_values(scale)?;
+        let known = Determined::of(&of_values.scores(&readings, about)?, &prior_of_values)?;
         // Of readings that are all fitted nothing is left to be tested.
         let chi_square_reduced = (found.freedom > TESTED).then(|| found.chi_square_readings / found.freedom);
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<Warning> = self.warnings_of_left_out().collect();
         let misfit = chi_square_reduced.filter(|chi| *chi > most_by_chance(found.freedom.max(TESTED)));
         warnings.extend(misfit.map(|chi_square| self.does_not_fit(&found, chi_square)));
         warnings.extend(uncertainty_not_stated(specs));
@@ -220,13 +300,13 @@ impl ResponseStudy {
         let values = self.centres_cm1.len();
         let row = |j: usize| ResponseRow {
             wavenumber_cm1: self.centres_cm1[j],
-            response: scale * found.values[j],
-            sigma: scale * found.sigma(j),
+            response: scale * at_values.values[j],
+            sigma: scale * at_values.sigma(j),
             sigma_beforehand: scale * known.sigma_prior[j],
-            typical: scale * self.typical[j],
+            typical: scale * typical[j],
             sigma_readings_alone: Some(scale * known.sigma_free[j]).filter(|sigma| sigma.is_finite()),
         };
-        let covariance = &found.factor * found.factor.transpose() * (scale * scale);
+        let covariance = &at_values.factor * at_values.factor.transpose() * (scale * scale);
         // Also where all pixels are about the centre: then it is of each to their mean.
         let eta = (shape.rows() * shape.columns() > 1)
             .then(|| Vignette::found(&cubes, filters, &middle, scenario.noise))
@@ -253,12 +333,19 @@ impl ResponseStudy {
         Ok(ResponseFound {
             scenario: scenario.clone(),
             filters: self.names.clone(),
+            left_out: self.left_out.clone(),
             response: (0..values).map(row).collect(),
             covariance: covariance.transpose().iter().copied().collect(),
-            kernels: known.kernels.transpose().iter().copied().collect(),
+            // What a value sees of a curve that is level over the width of each value.
+            kernels: (0..values)
+                .flat_map(|j| {
+                    let row: Vec<f64> = seen.kernels.row(finer.place(j)).iter().copied().collect();
+                    finer.means(&row).into_iter().map(|mean| mean * finer.parts() as f64)
+                })
+                .collect(),
             determined: known.number,
             rank: known.rank,
-            effective: known.effective,
+            effective: seen.effective,
             sigma_directions: known
                 .singular
                 .iter()
@@ -309,11 +396,12 @@ impl ResponseStudy {
     /// g by which the typical curve is the nearest to the readings, an offset for each filter.
     fn scale(&self, readings: &[Reading], counts: &[f64]) -> Result<f64> {
         let (wheel, filters) = (self.wheel(1.0)?, self.names.len());
-        let mut radiance = vec![0.0; self.centres_cm1.len()];
+        let centres = wheel.centres_cm1();
+        let mut radiance = vec![0.0; centres.len()];
         let models: Vec<f64> = readings
             .iter()
             .map(|reading| {
-                reading.sent.radiance_into(&self.centres_cm1, &mut radiance);
+                reading.sent.radiance_into(centres, &mut radiance);
                 wheel.counts(reading.filter, &self.typical, &radiance)
             })
             .collect();
@@ -373,9 +461,10 @@ impl ResponseStudy {
             .enumerate()
             .map(|(i, count)| (lines[i % filters].radiance + lines[i % filters].per_count * count) as f32);
         let noise = std::f64::consts::SQRT_2 * self.scenario.noise;
-        let mut slope = vec![0.0; self.centres_cm1.len()];
+        let centres = wheel.centres_cm1();
+        let mut slope = vec![0.0; centres.len()];
         let mut base = slope.clone();
-        planck::photon_radiance_and_slope_into(&self.centres_cm1, reference_k, &mut base, &mut slope);
+        planck::photon_radiance_and_slope_into(centres, reference_k, &mut base, &mut slope);
         let error_k = self.scenario.scene.as_ref().map_or(0.0, |spec| spec.reference_error_k);
         let common = |q: usize| {
             let at = |count: f64| found.radiance(wheel, q, count, reference_k).sigma_common;
@@ -416,7 +505,7 @@ fn same_size(cube: &Cube, other: &Cube, name: &str) -> Result<()> {
     Err(Error::malformed(found, "give cubes of one size, as the camera makes them"))
 }
 
-/// Names and mean transmittances over each response value.
+/// Names and mean transmittances over each width `step` about some centres.
 fn filters(path: &Path, centres_cm1: &[f64], step: f64) -> Result<(Vec<String>, Vec<Vec<f64>>)> {
     let (mut names, mut all) = (Vec::new(), Vec::new());
     for (name, rows) in columns(path)? {

@@ -17,10 +17,18 @@ pub(super) fn at<'a>(source: &'a Source, key: &str) -> impl Fn(Error) -> Error +
     }
 }
 
-/// Opens a cube that is named under a key.
-pub(super) fn open(file: &CubeFile, source: &Source, key: &str) -> Result<Cube> {
-    let opened = hadar_formats::cube::open_as(&file.path, file.variable.as_deref(), file.axes);
-    opened.map(|opened| opened.cube).map_err(at(source, key))
+/// Opens a cube that is named under a key; with its bands that are bad as the scenario and the file say.
+pub(super) fn open(file: &CubeFile, source: &Source, key: &str) -> Result<(Cube, Vec<usize>)> {
+    let opened = hadar_formats::cube::open_as(&file.path, file.variable.as_deref(), file.axes)
+        .map_err(at(source, key))?;
+    let bands = opened.cube.shape().bands();
+    if let Some(bad) = file.bad_bands.iter().find(|band| **band >= bands) {
+        let error =
+            Error::malformed(format!("band {bad} of {bands}"), format!("count from 0 up to {}", bands - 1));
+        return Err(at(source, &key.replace("data", "bad_bands"))(error));
+    }
+    let bad = file.bad_bands.iter().chain(&opened.found.bad_bands).copied().collect();
+    Ok((opened.cube, bad))
 }
 
 /// Rows, columns and bands in words.

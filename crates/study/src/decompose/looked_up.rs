@@ -11,7 +11,7 @@ use crate::shared_unknown::{path, spectra};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar_estimate::decompose::{Light, SpatialPrior, Spectra, Told};
+use hadar_estimate::decompose::{Alike, Light, SpatialPrior, Spectra, Told};
 use hadar_estimate::segmentation::Categories;
 use hadar_formats::cube::Found;
 use hadar_formats::spectra::measured;
@@ -40,6 +40,8 @@ pub struct DecomposeStudy {
     pub(super) names: Vec<String>,
     /// What all bands and pixels are off by together, counts.
     pub(super) together: Option<Vec<f64>>,
+    /// What all pixels are off by alike, each band for itself as well, counts.
+    pub(super) alike: Alike,
     pub(super) truth: Option<Truth>,
     /// Prior probabilities of the materials in any scale; empty if they are equal.
     pub(super) prior: Vec<f64>,
@@ -78,7 +80,7 @@ impl DecomposeStudy {
         let at = |key: &str| said.at(key);
         let measured = said.measured(library)?;
         let Measured { cube, read, bad_bands, bad, mut warnings, bands, lights, .. } = measured;
-        let Measured { counts_per_radiance, var_added, together, units_per_count, .. } = measured;
+        let Measured { counts_per_radiance, var_added, together, common, units_per_count, .. } = measured;
         let materials =
             materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
         let nodes = bands.nodes_cm1();
@@ -156,6 +158,7 @@ impl DecomposeStudy {
             spectra: Arc::new(spectra),
             air,
             names,
+            alike: Alike { of_bands: common, together: together.clone().unwrap_or_default() },
             together,
             truth,
             prior,

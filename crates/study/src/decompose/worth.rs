@@ -19,6 +19,8 @@ use hadar_scenario::decompose::SharedUnknown;
 
 /// Pixels whose limit is computed.
 const LIMITS: usize = 240;
+/// Variance of a reading beside which no difference of two states is seen, counts².
+const TELLS_NOTHING: f64 = 1e40;
 /// Deviations that hold 95 %.
 const NINETY_FIVE: f64 = 1.959_963_984_540_054;
 
@@ -207,7 +209,14 @@ fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<V
         lighting_sum: total.unwrap_or(1.0),
         ..StateRange::default()
     };
-    let counting = Counting { counts_per_radiance: scale, var_added: study.told.var_added.clone() };
+    // A band that is left out tells nothing.
+    let mut var_added = study.told.var_added.clone();
+    for band in &study.told.bad_bands {
+        if let Some(var) = var_added.get_mut(*band) {
+            *var = TELLS_NOTHING;
+        }
+    }
+    let counting = Counting { counts_per_radiance: scale, var_added };
     let limit = |solver: &mut NearestSolver<'_>, (own, temperature_k, lighting): &(usize, f64, Vec<f64>)| {
         let state = State {
             temperature_k: *temperature_k,

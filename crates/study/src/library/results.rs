@@ -1,6 +1,7 @@
 //! What is said of a library that was made out of a cube.
 
 use crate::Warning;
+use crate::cube_bad::BadFound;
 use crate::decompose::{FlagCount, There, flags};
 use crate::heat_cube::Measured;
 use crate::shared_unknown::Stated;
@@ -49,6 +50,8 @@ pub struct LibraryFound {
     /// What unknowns that the whole cube shares do to the emissivities; their deviations hold it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub shared: Vec<SharedOfLibrary>,
+    /// What was named or found to be bad.
+    pub bad: BadFound,
     /// How good it is, where that is known.
     pub truth: Option<TruthOfClusters>,
     /// What was done and what was spared.
@@ -212,6 +215,7 @@ pub(super) fn summary(
         flags: skipped,
         emissivity_error: if weight > 0.0 { f64::sqrt(square / weight) } else { 0.0 },
         shared,
+        bad: measured.bad.clone(),
         truth,
         stats: maps.spared.work(),
         warnings,

@@ -96,6 +96,8 @@ warnings! {
     RowsUneven { environment: usize, pixels: usize, of: usize } = "rows-uneven";
     /// Bands that are left out as they were found to be bad.
     BandsFoundBad { bands: Vec<usize>, why: &'static str } = "bands-found-bad";
+    /// Filters that are left out of a calibration as their bands were found to be bad.
+    FiltersLeftOut { filters: Vec<String>, why: &'static str } = "filters-left-out";
     /// Pixels that are left out as they were found to be bad.
     PixelsFoundBad { pixels: usize, of: usize, why: &'static str } = "pixels-found-bad";
     /// Pixels of a view that are missing as they were found to be bad.

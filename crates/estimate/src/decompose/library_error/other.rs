@@ -1,8 +1,8 @@
 //! A surface of none of the library's materials: an emissivity that is smooth, and otherwise unknown.
 //!
 //! Its emissivity is drawn from a Gaussian process of constant mean μ, deviation s and the law of [`super`] along wavenumbers, with a
-//! quarter of the correlation left at ℓ = [`CORRELATION_CM1`]. Of the laws (μ, s) of [`LAWS`] the one counts that costs a pixel least:
-//! nearly black as paints, fabrics and plants are, or anything between a mirror and a blackbody. Such a surface costs
+//! quarter of the correlation left at ℓ. Of the laws of [`SMOOTH`] and [`GREY`] the one counts that costs a pixel least: nearly black as
+//! paints, fabrics and plants are, anything between a mirror and a blackbody, or hardly changing along wavenumber at all. Such a surface costs
 //! rᵀC⁻¹r + ln det C + ln det(I + P) at its best temperature and lighting, and a material that is known the same with its own
 //! C and information I, P the inverse variances of temperature and lighting within their ranges: −2 ln of the mean likelihood over
 //! these (Laplace). The freedom of the emissivity is paid for by the determinant, so that a material of the library that fits
@@ -20,11 +20,14 @@ use crate::decompose::kernel::{Asked as Looked, mean_counts, sums as look};
 use crate::decompose::pixel::{Spared, scan};
 use crate::decompose::possible::MISSED;
 use crate::decompose::setting::Setting;
+use std::ops::Range;
 
-/// Mean and deviation of an emissivity.
-const LAWS: [[f64; 2]; 4] = [[0.95, 0.03], [0.9, 0.06], [0.75, 0.15], [0.4, 0.25]];
-/// Difference of wavenumbers at which a quarter of the correlation is left, cm⁻¹.
-const CORRELATION_CM1: f64 = 100.0;
+/// Mean and deviation of an emissivity: a quarter of the correlation left over so many cm⁻¹, and those of grey surfaces.
+const LAWS: [[f64; 2]; 6] = [[0.95, 0.03], [0.9, 0.06], [0.75, 0.15], [0.4, 0.25], [0.93, 0.05], [0.2, 0.1]];
+const SMOOTH: Range<usize> = 0..4;
+const SMOOTH_CM1: f64 = 100.0;
+const GREY: Range<usize> = 4..6;
+const GREY_CM1: f64 = 5000.0;
 /// Shares of the range of temperatures at which a fit starts besides.
 const ACROSS: [f64; 3] = [0.1, 0.4, 0.7];
 /// The law whose flat emissivity a start is looked for with.
@@ -34,7 +37,8 @@ const START: usize = 1;
 #[derive(Debug)]
 pub(in crate::decompose) struct Other {
     model: Model,
-    errors: Errors,
+    /// Of smooth surfaces, and of grey ones.
+    errors: [(Range<usize>, Errors); 2],
     /// −2 ln of its prior, to that of the most probable material of the library.
     handicap: f64,
     /// (1 − π)/π.
@@ -52,7 +56,8 @@ impl Other {
         let flat: Vec<Vec<f64>> =
             LAWS.iter().map(|[mean, _]| vec![*mean; setting.bands.nodes_cm1().len()]).collect();
         let model = Model::new(&Setting { library: &flat, ..*setting })?;
-        let errors = Errors::new(&model, LibraryError { relative: 1.0, correlation_cm1: CORRELATION_CM1 })?;
+        let of = |correlation_cm1: f64| Errors::new(&model, LibraryError { relative: 1.0, correlation_cm1 });
+        let errors = [(SMOOTH, of(SMOOTH_CM1)?), (GREY, of(GREY_CM1)?)];
         let (all, most) = prior.iter().fold((0.0, 0.0_f64), |(all, most), p| (all + p, most.max(*p)));
         let odds_against = (1.0 - probability) / probability;
         Ok(Self { model, errors, handicap: 2.0 * libm::log(odds_against * most / all), odds_against })
@@ -72,14 +77,18 @@ impl Other {
         for (start, share) in starts[2..].iter_mut().zip(ACROSS) {
             start.temperature_k = share.mul_add(high - low, low);
         }
-        for start in starts {
-            for (m, [mean, deviation]) in LAWS.into_iter().enumerate() {
-                let (share, none) = (deviation / mean, f64::INFINITY);
-                let asked = Asked { kind: 0, m, share, start, short: COMPARED, beside: none, worse: none };
-                workplace.queue.push(asked);
+        for (laws, errors) in &self.errors {
+            for start in starts {
+                for m in laws.clone() {
+                    let ([mean, deviation], none) = (LAWS[m], f64::INFINITY);
+                    let share = deviation / mean;
+                    let asked =
+                        Asked { kind: 0, m, share, start, short: COMPARED, beside: none, worse: none };
+                    workplace.queue.push(asked);
+                }
             }
+            spared.looks += workplace.run(&self.model, errors, shifted, sums) as u64;
         }
-        spared.looks += workplace.run(&self.model, &self.errors, shifted, sums) as u64;
         let least = |a: &(Asked, Fit, f64), b: &(Asked, Fit, f64)| a.1.deviance.total_cmp(&b.1.deviance);
         let (asked, fit, _) = workplace.done.drain(..).min_by(least)?;
         let (_, fit) = self.told((asked.m, fit), (shifted, workplace, sums));
@@ -118,7 +127,9 @@ impl Other {
         let none = f64::INFINITY;
         let (m, share, start) = (law, deviation / mean, fit.state);
         workplace.queue.push(Asked { kind: 0, m, share, start, short: TOLD, beside: none, worse: none });
-        workplace.run(&self.model, &self.errors, shifted, sums);
+        let [smooth, grey] = &self.errors;
+        let (_, errors) = if smooth.0.contains(&law) { smooth } else { grey };
+        workplace.run(&self.model, errors, shifted, sums);
         (&self.model, workplace.done.pop().map_or(fit, |(_, fit, _)| fit))
     }
 }

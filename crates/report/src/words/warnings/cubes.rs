@@ -70,13 +70,23 @@ words! {
         ),
     }
     BandsFoundBad {
-        meaning: "Bands of a cube have no readings: missing in most pixels, or one and the same value in all of them.",
-        remedy: "Nothing, or name them in cube.bad_bands; write cube.bad = \"keep\" to take them like all others.",
+        meaning: "Bands have no readings: absent from the cube's file, missing in most pixels, one and the same value in all of them, or, of a \
+            blackbody, cut off.",
+        remedy: "Nothing, or name them in bad_bands; write cube.bad = \"keep\" in a decomposition to take them like all others.",
         BandsFoundBad { bands, why } => {
             let named: Vec<String> = bands.iter().take(12).map(usize::to_string).collect();
             let more = if bands.len() > 12 { format!(" and {} more", bands.len() - 12) } else { String::new() };
-            format!("bands {}{more} (from 0, in rising wavenumber) are {why}: they were left out", named.join(", "))
+            let named = named.join(", ");
+            match *why {
+                "absent" => format!("bands {named}{more} of [bands] (from 0, in rising wavenumber) are not in the cube's file: they were left out"),
+                _ => format!("bands {named}{more} (from 0, in rising wavenumber) are {why}: they were left out"),
+            }
         },
+    }
+    FiltersLeftOut {
+        meaning: "Filters of a calibration have no readings in the cube of some blackbody: missing in most pixels, one value in all of them, or cut off.",
+        remedy: "Nothing, or name their bands in bad_bands of [[blackbody]]; expose for a shorter time where they are saturated.",
+        FiltersLeftOut { filters, why } => format!("filters {} are {why} before a blackbody: they were left out", filters.join(", ")),
     }
     PixelsFoundBad {
         meaning: "Pixels of a cube are dead, stuck at one value, cut off, brighter than anything in the range can be, or far beyond all around them.",
