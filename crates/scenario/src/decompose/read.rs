@@ -181,12 +181,8 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
         prior: section.read("prior", |entry| {
             entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0")).collect()
         })?,
-<<<<<<< HEAD
         none_of_these: section.number("none_of_these")?,
-        emissivity_error: section.number("emissivity_error")?,
-=======
         emissivity_error: emissivity_error::read(&section, emissivity_error::Of::Share)?,
->>>>>>> h2
         emissivity_correlation_cm1: section.quantity("emissivity_correlation")?,
     };
     if spec.path.is_none() && spec.materials.is_none() {
