@@ -84,6 +84,50 @@ pub(crate) fn with(scenario: &str) -> Folder {
     folder
 }
 
+/// A material that the library lacks is none of its materials where that may be; where it is silent the answer says so.
+#[test]
+fn none_of_these_is_told_where_it_is_asked() {
+    let asked = |library: &str| with(&SCENARIO.replace("[library]\n", &format!("[library]\n{library}")));
+    let whole = asked("none_of_these = 0.1\n");
+    let found = whole.json(&["decompose", "a.toml", "--out", "out"]);
+    assert_eq!(
+        (found["decided"].as_u64(), &found["none_of_these"]["likeliest"]),
+        (Some(6), &serde_json::json!(0))
+    );
+    let map = fs::read(whole.path().join("out/none_of_these.npy")).unwrap();
+    assert_eq!(map.len(), 128 + ROWS * COLUMNS * 4);
+    let short = |more: &str| {
+        let folder = asked(more);
+        let table = fs::read_to_string(folder.path().join("library.csv")).unwrap();
+        let one = table.lines().map(|line| line.rsplit_once(',').unwrap().0).collect::<Vec<_>>().join("\n");
+        folder.file("library.csv", &one);
+        let scenario = fs::read_to_string(folder.path().join("a.toml")).unwrap();
+        folder.file("a.toml", scenario.split("[truth]").next().unwrap());
+        folder
+    };
+    let folder = short("none_of_these = 0.1\n");
+    let found = folder.json(&["decompose", "a.toml"]);
+    assert_eq!(
+        (found["decided"].as_u64(), &found["none_of_these"]["alone"]),
+        (Some(3), &serde_json::json!(3))
+    );
+    let text = folder.run(&["decompose", "a.toml"]).stdout;
+    assert!(text.contains("likeliest in 3 pixels, the only candidate in 3"), "{text}");
+    let text = short("").run(&["decompose", "a.toml"]).stdout;
+    assert!(text.contains("every surface is taken for one of these materials"), "{text}");
+    for (library, more, what) in [
+        ("none_of_these = 0\n", "", "a probability above 0 and below 1"),
+        ("none_of_these = 1.0\n", "", "a probability above 0 and below 1"),
+        ("none_of_these = 0.1\n", "[spatial]\nprior = \"potts\"\n", "library.none_of_these out"),
+    ] {
+        let folder = asked(library);
+        let scenario = fs::read_to_string(folder.path().join("a.toml")).unwrap();
+        folder.file("a.toml", &scenario.replace("[truth]", &format!("{more}[truth]")));
+        let ran = folder.run(&["decompose", "a.toml"]);
+        assert!(ran.code == 2 && ran.stderr.contains(what), "{}", ran.stderr);
+    }
+}
+
 #[test]
 fn maps_and_numbers_are_those_of_the_scene() {
     let folder = with(SCENARIO);

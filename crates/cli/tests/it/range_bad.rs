@@ -8,6 +8,9 @@ use hadar_formats::cube::write_npy;
 use rand::RngExt;
 use serde_json::Value;
 
+/// A name, and what is done to the samples of a pixel.
+type Kind<'a> = (&'a str, &'a dyn Fn(&mut [f64]));
+
 const ROWS: usize = 40;
 const COLUMNS: usize = 60;
 const BANDS: usize = 6;
@@ -53,7 +56,7 @@ fn bad_pixels_are_no_texture() {
     let good = wall(1e-4);
     let folder = asked(&good);
     assert_eq!(folder.json(&["range", "a.toml"])["verdict"]["met"], false);
-    let kinds: [(&str, &dyn Fn(&mut [f64])); 4] = [
+    let kinds: [Kind<'_>; 4] = [
         ("dead", &|pixel| pixel.fill(0.0)),
         ("stuck", &|pixel| pixel.fill(16_383.0)),
         ("outlier", &|pixel| pixel[2] *= 1.5),

@@ -20,6 +20,7 @@ use crate::decompose::kernel::{Asked as Looked, mean_counts, sums as look};
 use crate::decompose::pixel::{Spared, scan};
 use crate::decompose::possible::MISSED;
 use crate::decompose::setting::Setting;
+use nalgebra::DMatrix;
 use std::ops::Range;
 
 /// Mean and deviation of an emissivity: a quarter of the correlation left over so many cm⁻¹, and those of grey surfaces.
@@ -138,19 +139,19 @@ impl Other {
 fn volume(model: &Model, seen: &Sums) -> f64 {
     let count = model.unknowns();
     let width_k = model.range_k[1] - model.range_k[0];
-    let mut rest = seen.information;
-    let mut sum = 0.0;
+    let mut rest = DMatrix::from_fn(count, count, |i, j| seen.information[i][j]);
     for i in 0..count {
-        rest[i][i] += 12.0 / if i == 0 { width_k * width_k } else { 1.0 };
+        rest[(i, i)] += 12.0 / if i == 0 { width_k * width_k } else { 1.0 };
     }
     // Gauss's elimination of a symmetric matrix, whose pivots P keeps above 0.
+    let mut sum = 0.0;
     for i in 0..count {
-        let pivot = rest[i][i].max(f64::MIN_POSITIVE);
+        let pivot = rest[(i, i)].max(f64::MIN_POSITIVE);
         sum += libm::log(pivot);
         for j in i + 1..count {
-            let factor = rest[j][i] / pivot;
+            let factor = rest[(j, i)] / pivot;
             for k in i + 1..count {
-                rest[j][k] -= factor * rest[i][k];
+                rest[(j, k)] -= factor * rest[(i, k)];
             }
         }
     }

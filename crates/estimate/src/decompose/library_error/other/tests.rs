@@ -5,7 +5,7 @@ use crate::decompose::{NO_MATERIAL, Options, decompose, flag};
 use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::planck::photon_radiance;
 use hadar::random::generator;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use rand_distr::{Distribution, Poisson, StandardNormal};
 
 const PRIOR: f64 = 0.1;
