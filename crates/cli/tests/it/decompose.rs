@@ -90,10 +90,9 @@ fn none_of_these_is_told_where_it_is_asked() {
     let asked = |library: &str| with(&SCENARIO.replace("[library]\n", &format!("[library]\n{library}")));
     let whole = asked("none_of_these = 0.1\n");
     let found = whole.json(&["decompose", "a.toml", "--out", "out"]);
-    assert_eq!(
-        (found["decided"].as_u64(), &found["none_of_these"]["likeliest"]),
-        (Some(6), &serde_json::json!(0))
-    );
+    // A pixel nearly as warm as the ground tells little.
+    let likeliest = &found["none_of_these"]["likeliest"];
+    assert_eq!((found["decided"].as_u64(), likeliest), (Some(5), &serde_json::json!(0)));
     let map = fs::read(whole.path().join("out/none_of_these.npy")).unwrap();
     assert_eq!(map.len(), 128 + ROWS * COLUMNS * 4);
     let short = |more: &str| {
@@ -109,7 +108,7 @@ fn none_of_these_is_told_where_it_is_asked() {
     let found = folder.json(&["decompose", "a.toml"]);
     assert_eq!(
         (found["decided"].as_u64(), &found["none_of_these"]["alone"]),
-        (Some(3), &serde_json::json!(3))
+        (Some(2), &serde_json::json!(3))
     );
     let text = folder.run(&["decompose", "a.toml"]).stdout;
     assert!(text.contains("likeliest in 3 pixels, the only candidate in 3"), "{text}");

@@ -42,6 +42,30 @@ impl State {
     }
 }
 
+/// A start where no space of few dimensions holds material `m`: the best of some temperatures, each with its best mixture.
+pub(super) fn scan(model: &Model, m: usize, shifted: &[f64], at: &mut Sums, looks: &mut u64) -> State {
+    hadar::stop::check();
+    let [low, high] = model.range_k;
+    let mut best = (f64::INFINITY, State::at(low));
+    let count = 8;
+    for i in 0..=count {
+        let mut state = State::at(low + (high - low) * f64::from(i) / f64::from(count));
+        state.mixture[..model.vertices].fill(1.0 / model.vertices as f64);
+        for _ in 0..2 {
+            let (temperature_k, mixture) = (state.temperature_k, &state.mixture[..model.vertices]);
+            sums(model, Asked { m, shifted, temperature_k, mixture }, at);
+            *looks += 1;
+            if at.deviance < best.0 {
+                best = (at.deviance, state);
+            }
+            if !state.step(at, &model.limits()).square.is_finite() {
+                break;
+            }
+        }
+    }
+    best.1
+}
+
 /// The best state of material `m` from a start, and how many looks that took.
 pub(super) fn fit(
     model: &Model,

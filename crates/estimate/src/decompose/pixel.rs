@@ -6,8 +6,8 @@
 //!
 //! The residual is Pearson's χ² of the best, with one degree of freedom for each band less the unknowns that no limit holds.
 
-use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
-use super::kernel::{Asked, Sums, contrast, sums};
+use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit, scan};
+use super::kernel::{Asked, Sums, contrast};
 use super::library_error::{Errors, Other, Workplace};
 use super::model::Model;
 use super::possible::{self, CANDIDATE_SHARE, Members, Possible, TIE};
@@ -345,7 +345,7 @@ impl Task {
 
     /// [`scan`] of a kind.
     pub(super) fn scan(&self, kind: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
-        scan(&self.model, self.kinds[kind], shifted, at, spared)
+        scan(&self.model, self.kinds[kind], shifted, at, &mut spared.looks)
     }
 
     /// Degrees of freedom that a state leaves to its residual.
@@ -367,7 +367,7 @@ impl Task {
         let best = Fit { deviance: fit.deviance - self.handicap[kind], ..fit };
         let at = (&self.model, self.kinds[kind], &best);
         let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
-        other.fit(at, self.errors.as_ref(), room, spared)
+        other.fit(at, self.errors.as_ref(), room, &mut spared.looks)
     }
 
     fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
@@ -471,30 +471,6 @@ impl Task {
             possible: possible.filter(|_| is_told).unwrap_or(Possible::ANYTHING),
         }
     }
-}
-
-/// A start where no space of few dimensions holds material `m`: the best of some temperatures, each with its best mixture.
-pub(super) fn scan(model: &Model, m: usize, shifted: &[f64], at: &mut Sums, spared: &mut Spared) -> State {
-    hadar::stop::check();
-    let [low, high] = model.range_k;
-    let mut best = (f64::INFINITY, State::at(low));
-    let count = 8;
-    for i in 0..=count {
-        let mut state = State::at(low + (high - low) * f64::from(i) / f64::from(count));
-        state.mixture[..model.vertices].fill(1.0 / model.vertices as f64);
-        for _ in 0..2 {
-            let (temperature_k, mixture) = (state.temperature_k, &state.mixture[..model.vertices]);
-            sums(model, Asked { m, shifted, temperature_k, mixture }, at);
-            spared.looks += 1;
-            if at.deviance < best.0 {
-                best = (at.deviance, state);
-            }
-            if !state.step(at, &model.limits()).square.is_finite() {
-                break;
-            }
-        }
-    }
-    best.1
 }
 
 #[cfg(test)]

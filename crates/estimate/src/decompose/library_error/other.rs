@@ -16,8 +16,8 @@
 //! a surface that is none of these is excluded more seldom than its prior says, never more often.
 
 use super::*;
+use crate::decompose::fit::scan;
 use crate::decompose::kernel::{Asked as Looked, mean_counts, sums as look};
-use crate::decompose::pixel::{Spared, scan};
 use crate::decompose::possible::MISSED;
 use crate::decompose::setting::Setting;
 use nalgebra::DMatrix;
@@ -70,9 +70,9 @@ impl Other {
         (library, m, best): (&Model, usize, &Fit),
         errors: Option<&Errors>,
         (shifted, workplace, sums): (&[f64], &mut Workplace, &mut Sums),
-        spared: &mut Spared,
+        looks: &mut u64,
     ) -> Option<(usize, Fit)> {
-        let from = scan(&self.model, START, shifted, sums, spared);
+        let from = scan(&self.model, START, shifted, sums, looks);
         let [low, high] = self.model.range_k;
         let mut starts = [best.state, from, from, from, from];
         for (start, share) in starts[2..].iter_mut().zip(ACROSS) {
@@ -88,7 +88,7 @@ impl Other {
                     workplace.queue.push(asked);
                 }
             }
-            spared.looks += workplace.run(&self.model, errors, shifted, sums) as u64;
+            *looks += workplace.run(&self.model, errors, shifted, sums) as u64;
         }
         let least = |a: &(Asked, Fit, f64), b: &(Asked, Fit, f64)| a.1.deviance.total_cmp(&b.1.deviance);
         let (asked, fit, _) = workplace.done.drain(..).min_by(least)?;
