@@ -85,6 +85,8 @@ baseline = "0.2 m"
 
 /// A pair of cubes with all that is true of them.
 pub(super) struct Textured {
+    /// ΣVₖ as it is told.
+    pub(super) lighting_total: Option<f64>,
     pub(super) scenario: RenderScenario,
     pub(super) shape: Shape,
     /// Expected counts with all of the truth, and as drawn.
@@ -111,6 +113,7 @@ impl Textured {
         let expected = render(&scenario, None)?;
         let drawn = render(&scenario, Some(seed))?;
         Ok(Self {
+            lighting_total: Some(1.0),
             shape: expected.shape,
             lights: expected.radiances.iter().cloned().map(Light::Radiance).collect(),
             kappa: vec![expected.counts_per_radiance; expected.shape.bands()],
@@ -145,7 +148,7 @@ impl Textured {
             var_added: &self.expected.var_added,
             units_per_count: 1.0,
             temperature_k: RANGE_K,
-            lighting_total: Some(1.0),
+            lighting_total: self.lighting_total,
             gain: false,
             bad_bands: &[],
             path: None,
