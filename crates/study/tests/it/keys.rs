@@ -14,7 +14,7 @@ const TASK: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n\
 const RULE: &str = "[[camera]]\npreset = \"flir-a325sc\"\nname = \"ours\"\n[[clause]]\nname = \"a\"\n\
     [[clause.environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n\
     [[test]]\ncamera = \"ours\"\nverdict = \"fails\"\n\
-    [[source]]\nkeys = [\"target\", \"environment\", \"class\", \"clause\"]\nchoice = \"why\"\n";
+    [[source]]\nkeys = [\"target\", \"environment\", \"class\", \"clause\", \"category\"]\nchoice = \"why\"\n";
 const CAMERA: &str = "[camera]\npreset = \"flir-a325sc\"\n";
 const STREET: &str = "[scene]\nsky = { material = \"skin\", temperature = \"288 K\" }\n\
     ground = { material = \"skin\", temperature = \"12 degC\" }\n\
@@ -29,11 +29,13 @@ const LIBRARY: &str = "[library]\nmaterials = [\"skin\"]\n[class.x]\nmaterials =
 const BLACKBODIES: &str = "[[blackbody]]\ntemperature = \"10 degC\"\ndata = \"a.npy\"\n\
     [[blackbody]]\ntemperature = \"60 degC\"\ndata = \"b.npy\"\n[noise]\nsample = 1.5\n";
 
+const CATEGORY: &str = "[[category]]\nname = \"person\"\nmaterials = [\"skin\"]\n";
+
 /// A file of a kind in which any key may be set.
 fn base(kind: &str) -> String {
     match kind {
-        "task" => TASK.to_owned(),
-        "rule" => format!("{TASK}{RULE}"),
+        "task" => format!("{TASK}{CATEGORY}"),
+        "rule" => format!("{TASK}{RULE}{CATEGORY}"),
         "stereo" => format!("{VIEWS}{CAMERA}"),
         "scene" => format!("{STREET}{CAMERA}"),
         "air" => {
@@ -165,7 +167,10 @@ fn every_key_is_read_as_its_row_says() {
             {
                 amiss.push(format!("{} {path} = {example}: {error}", kind.name));
             }
-            let wrong = if matches!(value, Value::Flag) { "\"yes\"" } else { "true" };
+            let is_flag = |value: &Value| matches!(value, Value::Flag);
+            let may_be_flag =
+                is_flag(&value) || matches!(value, Value::Either(all) if all.iter().any(is_flag));
+            let wrong = if may_be_flag { "\"yes\"" } else { "true" };
             let name = path.rsplit('.').next().unwrap_or(&path);
             let own = format!("{} {path}", kind.name);
             match read(wrong) {
