@@ -196,6 +196,10 @@ impl DecomposeStudy {
             let instead = "leave [spatial] out, or take --method ml or te";
             return refused("spatial", "knows no prior over the image", instead);
         }
+        if !likely && scenario.library.none_of_these.is_some() {
+            let instead = "leave library.none_of_these out, or take --method ml or te";
+            return refused("library.none_of_these", "has no likelihood to compare that with", instead);
+        }
         if !likely && scenario.vision.sky.is_some() {
             let instead = "leave vision.sky out, or take --method ml";
             return refused("vision.sky", "has no residue to distil a texture of", instead);

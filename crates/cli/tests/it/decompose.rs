@@ -114,6 +114,8 @@ fn none_of_these_is_told_where_it_is_asked() {
     assert!(text.contains("likeliest in 3 pixels, the only candidate in 3"), "{text}");
     let text = short("").run(&["decompose", "a.toml"]).stdout;
     assert!(text.contains("every surface is taken for one of these materials"), "{text}");
+    let refused = whole.run(&["decompose", "a.toml", "--method", "grey-body"]);
+    assert!(refused.code == 1 && refused.stderr.contains("library.none_of_these"), "{}", refused.stderr);
     for (library, more, what) in [
         ("none_of_these = 0\n", "", "a probability above 0 and below 1"),
         ("none_of_these = 1.0\n", "", "a probability above 0 and below 1"),

@@ -188,7 +188,12 @@ fn flags(result: &Decomposed) -> String {
     }
     let mut out = String::from("Said of pixels\n");
     for row in &result.flags {
-        let meaning = flag_said(row.bit);
+        let meaning = match result.none_of_these {
+            Some(_) if row.bit == flag::NO_FIT => {
+                "no material of the library fits, or none of them is likelier"
+            }
+            _ => flag_said(row.bit),
+        };
         let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
     }
     out.push('\n');

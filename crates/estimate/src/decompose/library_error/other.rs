@@ -135,18 +135,16 @@ impl Other {
     }
 }
 
-/// ln det(I + P) of what was seen at a state.
+/// ln det(I + P) of what was seen at a state, by Gauss's elimination: no pivot of I + P is below that of P.
 fn volume(model: &Model, seen: &Sums) -> f64 {
     let count = model.unknowns();
     let width_k = model.range_k[1] - model.range_k[0];
-    let mut rest = DMatrix::from_fn(count, count, |i, j| seen.information[i][j]);
-    for i in 0..count {
-        rest[(i, i)] += 12.0 / if i == 0 { width_k * width_k } else { 1.0 };
-    }
-    // Gauss's elimination of a symmetric matrix, whose pivots P keeps above 0.
+    let prior = |i: usize| 12.0 / if i == 0 { width_k * width_k } else { 1.0 };
+    let mut rest =
+        DMatrix::from_fn(count, count, |i, j| seen.information[i][j] + if i == j { prior(i) } else { 0.0 });
     let mut sum = 0.0;
     for i in 0..count {
-        let pivot = rest[(i, i)].max(f64::MIN_POSITIVE);
+        let pivot = rest[(i, i)].max(prior(i));
         sum += libm::log(pivot);
         for j in i + 1..count {
             let factor = rest[(j, i)] / pivot;

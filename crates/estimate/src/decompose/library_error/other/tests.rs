@@ -177,3 +177,22 @@ fn a_probability_is_between_none_and_all() {
         assert!(scene.with(|setting| Other::new(setting, wrong, &[1.0, 1.0])).is_err());
     }
 }
+
+/// Against the determinant by another decomposition; where nothing is told, P alone is left, and rounding makes no pivot smaller.
+#[test]
+fn the_volume_is_that_of_the_determinant() {
+    let scene = Scene::new(2, 21, 1e4);
+    let model = scene.with(|setting| Model::new(setting).unwrap());
+    let mut seen = Sums::default();
+    let prior = [12.0_f64 / (65.0 * 65.0), 12.0];
+    assert!((volume(&model, &seen) - (prior[0] * prior[1]).ln()).abs() < 1e-12);
+    let rows = [[40.0, -130.0], [-130.0, 900.0]];
+    (seen.information[0][..2].copy_from_slice(&rows[0]), seen.information[1][..2].copy_from_slice(&rows[1]));
+    let whole = DMatrix::from_fn(2, 2, |i, j| rows[i][j] + if i == j { prior[i] } else { 0.0 });
+    assert!((volume(&model, &seen) - whole.lu().determinant().ln()).abs() < 1e-10);
+    // Temperature and lighting that do the same but for rounding.
+    for (i, row) in [[1e18, 1e19], [1e19, 1e20 * (1.0 - 1e-15)]].iter().enumerate() {
+        seen.information[i][..2].copy_from_slice(row);
+    }
+    assert!(volume(&model, &seen) >= (1e18_f64 * prior[1]).ln() - 1e-12);
+}
