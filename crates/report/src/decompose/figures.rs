@@ -72,7 +72,7 @@ pub(super) fn flags(result: &Decomposed, pixels: &Block, shown: Shown) -> Plot {
     }
     let painted = Painted { pixels: all.iter().map(colour).collect(), ramp: None };
     let mut keys: Vec<(Rgb, String)> =
-        occurs.iter().map(|(bit, rgb)| (*rgb, flag_said(*bit).to_owned())).collect();
+        occurs.iter().map(|(bit, rgb)| (*rgb, flag_said(*bit, result).to_owned())).collect();
     keys.push((NO_FLAG, "nothing is said".to_owned()));
     let picture = Picture::painted("Flags", Axis::linear(""), shown.wide(), painted);
     let figure = Pictures::new("What is said of each pixel", vec![picture])

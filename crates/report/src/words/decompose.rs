@@ -165,9 +165,12 @@ fn found(result: &Decomposed) -> String {
     out
 }
 
-/// What a flag says.
-pub(crate) fn flag_said(bit: u8) -> &'static str {
+/// What a flag says in an answer.
+pub(crate) fn flag_said(bit: u8, result: &Decomposed) -> &'static str {
     match bit {
+        flag::NO_FIT if result.none_of_these.is_some() => {
+            "no material of the library fits, or none of them is likelier"
+        }
         flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
         flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
         flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
@@ -188,12 +191,7 @@ fn flags(result: &Decomposed) -> String {
     }
     let mut out = String::from("Said of pixels\n");
     for row in &result.flags {
-        let meaning = match result.none_of_these {
-            Some(_) if row.bit == flag::NO_FIT => {
-                "no material of the library fits, or none of them is likelier"
-            }
-            _ => flag_said(row.bit),
-        };
+        let meaning = flag_said(row.bit, result);
         let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
     }
     out.push('\n');

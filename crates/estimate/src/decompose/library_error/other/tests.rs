@@ -187,7 +187,9 @@ fn the_volume_is_that_of_the_determinant() {
     let prior = [12.0_f64 / (65.0 * 65.0), 12.0];
     assert!((volume(&model, &seen) - (prior[0] * prior[1]).ln()).abs() < 1e-12);
     let rows = [[40.0, -130.0], [-130.0, 900.0]];
-    (seen.information[0][..2].copy_from_slice(&rows[0]), seen.information[1][..2].copy_from_slice(&rows[1]));
+    for (i, row) in rows.iter().enumerate() {
+        seen.information[i][..2].copy_from_slice(row);
+    }
     let whole = DMatrix::from_fn(2, 2, |i, j| rows[i][j] + if i == j { prior[i] } else { 0.0 });
     assert!((volume(&model, &seen) - whole.lu().determinant().ln()).abs() < 1e-10);
     // Temperature and lighting that do the same but for rounding.
