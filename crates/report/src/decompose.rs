@@ -15,7 +15,9 @@ use crate::shown::Shown;
 use crate::table::{Table, number, optional};
 use hadar::error::{Error, Result};
 use hadar_formats::cube::npy_map;
-use hadar_study::decompose::{Block, Decomposed, Kept, MaterialRow, TruthFound};
+use hadar_study::decompose::{
+    Block, Decomposed, Kept, MIXED, MIXED_MATERIALS, MaterialRow, TruthFound, mixed_layers,
+};
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -112,6 +114,14 @@ fn add_maps(bundle: &mut Bundle, block: &Block, size: [usize; 2]) -> Result<()> 
     bundle.add("posterior.npy", npy_map(&size, &maps.posterior)?);
     if !maps.other.is_empty() {
         bundle.add("none_of_these.npy", npy_map(&size, &maps.other)?);
+    }
+    if !maps.mixed.is_empty() {
+        bundle.add(MIXED_MATERIALS, npy_map(&deep(2), &maps.mixed_material)?);
+        for (name, values) in MIXED.into_iter().zip(mixed_layers(maps)) {
+            let layers = values.len() / maps.mixed.len();
+            let shape = if layers == 1 { size.to_vec() } else { deep(layers).to_vec() };
+            bundle.add(name, npy_map(&shape, values)?);
+        }
     }
     bundle.add("candidates.npy", npy_map(&size, &maps.candidates)?);
     let ranks = maps.ranked.len() / maps.material.len().max(1);

@@ -156,6 +156,8 @@ pub struct LibrarySpec {
     pub prior: Option<Vec<f64>>,
     /// Prior probability that a surface is none of them; taken for impossible if silent.
     pub none_of_these: Option<f64>,
+    /// Prior probability that a pixel holds two surfaces of them; taken for impossible if silent.
+    pub mixed: Option<f64>,
     /// Root mean square error of the emissivities.
     pub emissivity_error: Option<f64>,
     /// Length over which these errors are correlated, cm⁻¹.

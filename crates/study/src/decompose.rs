@@ -15,11 +15,11 @@ mod worth;
 
 pub use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
 pub use estimated::{SharedFound, SharedRow};
-pub use kept::{Block, Keep, Kept, MapFiles};
+pub use kept::{Block, Keep, Kept, MIXED, MIXED_MATERIALS, MapFiles, mixed_layers};
 pub use looked_up::{CANDIDATES, DecomposeStudy};
 pub use ranks::{Count, ranked};
 pub(super) use results::flags;
-pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, NoneOfThese, TruthFound};
+pub use results::{Besides, ClassRow, Decomposed, FlagCount, MaterialRow, MixedFound, PairRow, TruthFound};
 pub use safety::{NotExcluded, SafetyRow};
 pub use segmented::{CategoryRow, ObjectRow, PossibleRow, Segmented};
 pub(super) use truth::{There, Truth};
@@ -52,6 +52,8 @@ const KEPT_BESIDE_OTHERS: u64 = 400;
 /// The same for sets of categories, and for each category.
 const KEPT_SETS: u64 = 100;
 const KEPT_CATEGORY: u64 = 4;
+/// The same for what a pixel is as two surfaces.
+const KEPT_MIXED: u64 = 32;
 
 impl DecomposeStudy {
     /// The same with the posteriors of so many of the most probable materials of each pixel, from 1 to [`MOST_RANKED`].
@@ -95,7 +97,9 @@ impl DecomposeStudy {
         let lights = self.told.surroundings.len();
         let (files, height) = match keep {
             Keep::InFiles { folder, rows } if !self.needs_all() => {
-                let layers = (lights, self.candidates, self.scenario.library.none_of_these.is_some());
+                let library = &self.scenario.library;
+                let besides = [library.none_of_these.is_some(), library.mixed.is_some()];
+                let layers = (lights, self.candidates, besides);
                 (Some(MapFiles::create(folder, rows, shape, layers)?), rows)
             }
             _ => (None, shape.rows()),
@@ -123,17 +127,22 @@ impl DecomposeStudy {
         let mut asked: Option<Asked> = None;
         let mut take = |first: usize, mut maps: Maps| {
             // The model is judged with the materials that are told.
-            let all = (height >= shape.rows() && options.other.is_none()).then_some(&maps);
+            let is_plain = options.other.is_none() && options.mixed.is_none();
+            let all = (height >= shape.rows() && is_plain).then_some(&maps);
             let asked = match &mut asked {
                 Some(asked) => &*asked,
                 none => none.insert(Asked::of(self, method, &setting, &options, (all, estimated.as_ref()))?),
             };
             let (together, to_hold) = (self.together.as_deref().unwrap_or_default(), asked.to_hold());
             if let Some(Wider { noise, .. }) = &to_hold {
-                for all in [&mut maps.temperature_sigma_k, &mut maps.lighting_sigma, &mut maps.texture_sigma]
-                {
-                    all.iter_mut().for_each(|sigma| *sigma *= *noise as f32);
-                }
+                let of_shares = maps.mixed_share.iter_mut().skip(1).step_by(2);
+                let all = [
+                    &mut maps.temperature_sigma_k,
+                    &mut maps.lighting_sigma,
+                    &mut maps.texture_sigma,
+                    &mut maps.mixed_temperature_sigma_k,
+                ];
+                all.into_iter().flatten().chain(of_shares).for_each(|sigma| *sigma *= *noise as f32);
             }
             let causes = to_hold.map_or_else(Vec::new, |to_hold| to_hold.causes);
             if method.has_likelihood() && !(together.is_empty() && causes.is_empty() && estimated.is_none()) {
@@ -200,6 +209,10 @@ impl DecomposeStudy {
             let instead = "leave library.none_of_these out, or take --method ml or te";
             return refused("library.none_of_these", "has no likelihood to compare that with", instead);
         }
+        if !likely && scenario.library.mixed.is_some() {
+            let instead = "leave library.mixed out, or take --method ml or te";
+            return refused("library.mixed", "has no likelihood to compare that with", instead);
+        }
         if !likely && scenario.vision.sky.is_some() {
             let instead = "leave vision.sky out, or take --method ml";
             return refused("vision.sky", "has no residue to distil a texture of", instead);
@@ -221,7 +234,8 @@ impl DecomposeStudy {
             + match self.categories.len() as u64 {
                 0 => 0,
                 count => KEPT_SETS + KEPT_CATEGORY * count,
-            };
+            }
+            + self.scenario.library.mixed.map_or(0, |_| KEPT_MIXED);
         let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
         let instead = "cut the cube into parts of fewer rows";
         memory::promise(bytes, "the maps of all pixels", instead)
@@ -236,7 +250,8 @@ impl DecomposeStudy {
         });
         let categories = if self.categories.is_empty() { Vec::new() } else { self.categories.sets() };
         let ranked = self.candidates;
-        let (prior, other, alike) = (self.prior.clone(), spec.none_of_these, self.alike.clone());
-        Options { prior, library_error, other, alike, skipping, spatial, categories, ranked }
+        let (prior, alike) = (self.prior.clone(), self.alike.clone());
+        let (other, mixed) = (spec.none_of_these, spec.mixed);
+        Options { prior, library_error, other, mixed, alike, skipping, spatial, categories, ranked }
     }
 }

@@ -113,7 +113,7 @@ fn none_of_these_is_told_where_it_is_asked() {
     let text = folder.run(&["decompose", "a.toml"]).stdout;
     assert!(text.contains("likeliest in 3 pixels, the only candidate in 3"), "{text}");
     let text = short("").run(&["decompose", "a.toml"]).stdout;
-    assert!(text.contains("every surface is taken for one of these materials"), "{text}");
+    assert!(text.contains("every pixel is taken for one surface of these materials"), "{text}");
     let refused = whole.run(&["decompose", "a.toml", "--method", "grey-body"]);
     assert!(refused.code == 1 && refused.stderr.contains("library.none_of_these"), "{}", refused.stderr);
     for (library, more, what) in [
@@ -126,6 +126,66 @@ fn none_of_these_is_told_where_it_is_asked() {
         folder.file("a.toml", &scenario.replace("[truth]", &format!("{more}[truth]")));
         let ran = folder.run(&["decompose", "a.toml"]);
         assert!(ran.code == 1 && ran.stderr.contains(what), "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn two_surfaces_are_told_where_they_are_asked() {
+    let asked = |library: &str| with(&SCENARIO.replace("[library]\n", &format!("[library]\n{library}")));
+    let whole = asked("mixed = 0.05\n");
+    let found = whole.json(&["decompose", "a.toml", "--out", "out"]);
+    assert_eq!(
+        (found["mixed"]["prior"].as_f64(), &found["mixed"]["likeliest"]),
+        (Some(0.05), &serde_json::json!(0))
+    );
+    let pixels = ROWS * COLUMNS;
+    let files = [
+        ("mixed.npy", 4),
+        ("mixed_materials.npy", 4),
+        ("mixed_share.npy", 8),
+        ("mixed_temperature_k.npy", 8),
+        ("mixed_temperature_sigma_k.npy", 8),
+    ];
+    for (name, bytes) in files {
+        assert_eq!(
+            fs::read(whole.path().join("out").join(name)).unwrap().len(),
+            128 + pixels * bytes,
+            "{name}"
+        );
+    }
+    // Half of each of two pixels in the place of one of them.
+    let cube = whole.path().join("counts.npy");
+    let mut bytes = fs::read(&cube).unwrap();
+    let values: Vec<f32> =
+        bytes[128..].as_chunks::<4>().0.iter().map(|value| f32::from_le_bytes(*value)).collect();
+    let bands = values.len() / pixels;
+    let last = pixels - 1;
+    for band in 0..bands {
+        let both = 0.5 * (values[band] + values[last * bands + band]);
+        bytes[128 + 4 * band..][..4].copy_from_slice(&both.round().to_le_bytes());
+    }
+    fs::write(&cube, bytes).unwrap();
+    let scenario = fs::read_to_string(whole.path().join("a.toml")).unwrap();
+    whole.file("a.toml", scenario.split("[truth]").next().unwrap());
+    let found = whole.json(&["decompose", "a.toml"]);
+    assert_eq!(found["mixed"]["likeliest"], serde_json::json!(1), "{}", found["mixed"]);
+    let pair = &found["mixed"]["pairs"][0];
+    assert!((pair["share_mean"].as_f64().unwrap() - 0.5).abs() < 0.2, "{pair}");
+    let text = whole.run(&["decompose", "a.toml"]).stdout;
+    assert!(text.contains("likeliest in 1 pixels"), "{text}");
+    let refused = whole.run(&["decompose", "a.toml", "--method", "grey-body"]);
+    assert!(refused.code == 1 && refused.stderr.contains("library.mixed"), "{}", refused.stderr);
+    for (library, more, what) in [
+        ("mixed = 0\n", "", "a probability above 0 and below 1"),
+        ("mixed = 0.5\nnone_of_these = 0.5\n", "", "below 1"),
+        ("mixed = 0.1\nemissivity_error = 0.01\n", "", "library.mixed out"),
+        ("mixed = 0.1\n", "[spatial]\nprior = \"potts\"\n", "library.mixed out"),
+    ] {
+        let folder = asked(library);
+        let scenario = fs::read_to_string(folder.path().join("a.toml")).unwrap();
+        folder.file("a.toml", &scenario.replace("[truth]", &format!("{more}[truth]")));
+        let ran = folder.run(&["decompose", "a.toml"]);
+        assert!(ran.code == 1 && ran.stderr.contains(what), "{library}: {}", ran.stderr);
     }
 }
 

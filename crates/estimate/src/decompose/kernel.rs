@@ -43,9 +43,14 @@ pub(super) struct Asked<'a> {
 
 /// The sums at a state.
 pub(super) fn sums(model: &Model, asked: Asked<'_>, sums: &mut Sums) {
-    if accumulate(model, asked, sums) > SMALL {
-        sums.deviance = far_deviance(model, asked);
+    if is_far(accumulate(model, asked, sums)) {
+        sums.deviance = far_deviance(asked.shifted, &mean_counts(model, asked));
     }
+}
+
+/// Whether the series does not hold for the largest |x|.
+pub(super) fn is_far(largest: f64) -> bool {
+    largest > SMALL
 }
 
 /// N′ of every band at a state.
@@ -82,10 +87,9 @@ dispatched! {
     }
 }
 
-/// D where some band is off by more than half.
-fn far_deviance(model: &Model, asked: Asked<'_>) -> f64 {
-    let mean = mean_counts(model, asked);
-    let each = asked.shifted.iter().zip(&mean).map(|(n, mean)| {
+/// D of counts n′ and their means where some band is off by more than half.
+pub(super) fn far_deviance(shifted: &[f64], mean: &[f64]) -> f64 {
+    let each = shifted.iter().zip(mean).map(|(n, mean)| {
         let logarithm = if *n > 0.0 { n * libm::log(n / mean) } else { 0.0 };
         2.0 * (logarithm - (n - mean))
     });
@@ -158,7 +162,7 @@ dispatched! {
 
 /// Values or slopes of the table, mixed in these shares, times the factors.
 #[inline(always)]
-fn emit(shares: [f64; 4], [a, b, c, d, factor]: [&[f64]; 5], to: &mut [f64]) {
+pub(super) fn emit(shares: [f64; 4], [a, b, c, d, factor]: [&[f64]; 5], to: &mut [f64]) {
     let [p, q, r, s] = shares;
     let ends = a.iter().zip(b).zip(c.iter().zip(d));
     for ((to, factor), ((a, b), (c, d))) in to.iter_mut().zip(factor).zip(ends) {
@@ -168,7 +172,13 @@ fn emit(shares: [f64; 4], [a, b, c, d, factor]: [&[f64]; 5], to: &mut [f64]) {
 
 /// 1/N′, r/N′ and s(x) of every band; N′ at least [`FEWEST`].
 #[inline(always)]
-fn compare(counts: &[f64], mean: &mut [f64], weight: &mut [f64], relative: &mut [f64], series: &mut [f64]) {
+pub(super) fn compare(
+    counts: &[f64],
+    mean: &mut [f64],
+    weight: &mut [f64],
+    relative: &mut [f64],
+    series: &mut [f64],
+) {
     let out = weight.iter_mut().zip(relative).zip(series);
     for ((n, mean), ((weight, relative), series)) in counts.iter().zip(mean).zip(out) {
         *mean = if *mean > FEWEST { *mean } else { FEWEST };
@@ -191,7 +201,7 @@ fn compare(counts: &[f64], mean: &mut [f64], weight: &mut [f64], relative: &mut 
 
 /// Σ a b.
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sum = [0.0; LANES];
     for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
         sum = added(*a, *b, sum);

@@ -315,4 +315,4 @@ impl Lane {
 }
 
 #[cfg(test)]
-mod tests;
+pub(in crate::decompose) mod tests;

@@ -5,6 +5,7 @@
 
 use super::alike::Alike;
 use super::library_error::{Errors, LibraryError, Other};
+use super::mixed::{Mixed, Mixture};
 use super::model::Model;
 use super::pixel::{ANY_LIGHTING, NO_MATERIAL, Pixel, Room, Spared, Task, flag};
 use super::possible::{ANYTHING, Members, Possible};
@@ -27,6 +28,8 @@ pub struct Options {
     pub library_error: Option<LibraryError>,
     /// Prior probability that a surface is none of the library, with an emissivity that is smooth; taken for impossible if silent.
     pub other: Option<f64>,
+    /// Prior probability that a pixel holds two surfaces of the library, a tenth of it each at least; taken for impossible if silent.
+    pub mixed: Option<f64>,
     /// What all pixels are off by alike: deviations of what the whole cube shares hold it.
     pub alike: Alike,
     /// Whether materials that a bound excludes are left out; the answer is the same.
@@ -60,6 +63,16 @@ pub struct Maps {
     pub posterior: Vec<f32>,
     /// [`Pixel::other`]; empty where that is not asked.
     pub other: Vec<f32>,
+    /// [`Mixture::probability`](super::Mixture); empty where that is not asked, as all of it.
+    pub mixed: Vec<f32>,
+    /// Its materials, `[row][column][part]`.
+    pub mixed_material: Vec<u16>,
+    /// The share of the first, and its deviation.
+    pub mixed_share: Vec<f32>,
+    /// Temperature of each part, K, `[row][column][part]`.
+    pub mixed_temperature_k: Vec<f32>,
+    /// Their deviations, K.
+    pub mixed_temperature_sigma_k: Vec<f32>,
     /// [`Pixel::ranked`], `[row][column][rank]`.
     pub ranked: Vec<u16>,
     /// Their posteriors, likewise.
@@ -116,9 +129,12 @@ fn whole<S: Sample>(
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<()> {
     options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
-    if options.spatial.is_some() && options.other.is_some() {
-        let found =
-            "surfaces of none of the materials beside a prior over the image, which knows only materials";
+    if options.spatial.is_some() && (options.other.is_some() || options.mixed.is_some()) {
+        let found = "surfaces of none of the materials, or of two, beside a prior over the image, which knows only one of them a pixel";
+        return Err(Error::malformed(found, "leave one of them out"));
+    }
+    if options.mixed.is_some() && (options.library_error.is_some() || setting.gain) {
+        let found = "two surfaces in a pixel, with errors of the library or a gain of each pixel";
         return Err(Error::malformed(found, "leave one of them out"));
     }
     let model = Model::new(setting)?;
@@ -146,6 +162,7 @@ fn whole<S: Sample>(
         categories: task.members.is_some(),
         ranked: options.ranked,
         other: options.other.is_some(),
+        mixed: options.mixed.is_some(),
     };
     let Some(prior) = &options.spatial else {
         return by_rows.in_blocks(blocks, || task.room(), pixel, layers);
@@ -171,6 +188,8 @@ pub(super) struct Layers {
     pub(super) ranked: usize,
     /// Whether a surface of none of the materials is asked for.
     pub(super) other: bool,
+    /// Whether two surfaces in a pixel are asked for.
+    pub(super) mixed: bool,
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -287,10 +306,27 @@ impl Task {
         let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
         let largest = errors.as_ref().map_or(0.0, |errors| errors.largest);
         let screen = (!model.gain).then(|| Screen::new(&model, &kinds, largest));
-        let other = options.other.map(|p| Other::new(setting, p, &prior)).transpose()?;
+        let single = 1.0 - options.other.unwrap_or(0.0) - options.mixed.unwrap_or(0.0);
+        let other = options.other.map(|p| Other::new(setting, [p, single], &prior)).transpose()?;
+        let library = (&*kinds, &*prior, &*alike);
+        let mixed =
+            options.mixed.map(|p| Mixed::new(&model, screen.as_ref(), library, [p, single])).transpose()?;
         let members = Members::new(&options.categories, &kind_of, &alike, &handicap)?;
         let (textures, skip) = (setting.textures(), options.skipping.skips());
-        Ok(Self { errors, other, model, screen, members, kinds, alike, kind_of, textures, handicap, skip })
+        Ok(Self {
+            errors,
+            other,
+            mixed,
+            model,
+            screen,
+            members,
+            kinds,
+            alike,
+            kind_of,
+            textures,
+            handicap,
+            skip,
+        })
     }
 
     /// Keeps the shares of the categories of a pixel, or those of the pixel before once more.
@@ -364,6 +400,11 @@ impl Maps {
             all.p_value.extend(row.p_value);
             all.posterior.extend(row.posterior);
             all.other.extend(row.other);
+            all.mixed.extend(row.mixed);
+            all.mixed_material.extend(row.mixed_material);
+            all.mixed_share.extend(row.mixed_share);
+            all.mixed_temperature_k.extend(row.mixed_temperature_k);
+            all.mixed_temperature_sigma_k.extend(row.mixed_temperature_sigma_k);
             all.ranked.extend(row.ranked);
             all.ranked_posterior.extend(row.ranked_posterior);
             all.candidates.extend(row.candidates);
@@ -377,7 +418,8 @@ impl Maps {
         all
     }
 
-    fn of(pixels: &[Pixel], Layers { surroundings, categories, ranked, other }: Layers) -> Self {
+    fn of(pixels: &[Pixel], layers: Layers) -> Self {
+        let Layers { surroundings, categories, ranked, other, mixed } = layers;
         let all = || pixels.iter();
         let possible = |of: fn(&Possible) -> u64| -> Vec<u64> {
             if categories { all().map(|p| of(&p.possible)).collect() } else { Vec::new() }
@@ -387,6 +429,10 @@ impl Maps {
             all().flat_map(|p| of(p)[..lights].iter().map(|v| *v as f32)).collect()
         };
         let ranks = ranked.min(MOST_RANKED);
+        let of_two = |of: fn(&Mixture) -> [f64; 2]| -> Vec<f32> {
+            let each = || all().flat_map(|p| of(&p.mixed)).map(|x| x as f32);
+            if mixed { each().collect() } else { Vec::new() }
+        };
         Self {
             material: all().map(|p| p.material).collect(),
             temperature_k: all().map(|p| p.temperature_k as f32).collect(),
@@ -397,6 +443,11 @@ impl Maps {
             p_value: all().map(|p| p.p_value as f32).collect(),
             posterior: all().map(|p| p.posterior as f32).collect(),
             other: if other { all().map(|p| p.other as f32).collect() } else { Vec::new() },
+            mixed: if mixed { all().map(|p| p.mixed.probability as f32).collect() } else { Vec::new() },
+            mixed_material: if mixed { all().flat_map(|p| p.mixed.materials).collect() } else { Vec::new() },
+            mixed_share: of_two(|two| two.share),
+            mixed_temperature_k: of_two(|two| two.temperature_k),
+            mixed_temperature_sigma_k: of_two(|two| two.sigma_k),
             ranked: all().flat_map(|p| p.ranked.materials[..ranks].iter().copied()).collect(),
             ranked_posterior: all().flat_map(|p| p.ranked.posteriors[..ranks].iter().copied()).collect(),
             candidates: all().map(|p| p.candidates).collect(),

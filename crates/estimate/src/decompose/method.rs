@@ -151,6 +151,7 @@ fn compared<S: Sample>(
         categories: false,
         ranked: options.ranked,
         other: false,
+        mixed: false,
     };
     let mut all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| {
         let own = |room: &mut Vec<f64>, sample: &[S], _, _: &mut _, _: &mut _| match counts(room, sample) {

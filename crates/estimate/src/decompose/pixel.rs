@@ -9,6 +9,7 @@
 use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit, scan};
 use super::kernel::{Asked, Sums, contrast};
 use super::library_error::{Errors, Other, Workplace};
+use super::mixed::{self, Mixed, Mixture};
 use super::model::Model;
 use super::possible::{self, CANDIDATE_SHARE, Members, Possible, TIE};
 use super::ranked::Ranked;
@@ -37,7 +38,7 @@ pub mod flag {
     pub const NO_INFORMATION: u8 = 4;
     /// The lighting could be nearly anything: a factor has half the deviation of a blind guess or more.
     pub const LIGHTING_UNKNOWN: u8 = 8;
-    /// No material of the library fits (p below 1e-4), or one that is none of the library is more probable.
+    /// No material of the library fits (p below 1e-4), or one that is none of the library, or two in one pixel, are more probable.
     pub const NO_FIT: u8 = 16;
     /// Several materials are left.
     pub const UNDECIDED: u8 = 32;
@@ -61,9 +62,9 @@ pub mod flag {
 /// What is found of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pixel {
-    /// The most probable material of the library, [`NO_MATERIAL`] where nothing tells, or where it is none of the library.
+    /// The most probable material of the library, [`NO_MATERIAL`] where nothing tells, where it is none of the library or where there are two.
     pub material: u16,
-    /// Its temperature, K; NaN where the pixel was left out or emits nothing.
+    /// Its temperature, K, of two that of the larger; NaN where the pixel was left out or emits nothing.
     pub temperature_k: f64,
     /// Deviation of the temperature, K, were the material certain and right: where none fits ([`flag::NO_FIT`]) it says nothing.
     pub sigma_k: f64,
@@ -79,6 +80,8 @@ pub struct Pixel {
     pub posterior: f64,
     /// Posterior probability that it is none of the library; 0 where that is not asked.
     pub other: f64,
+    /// What it is as two surfaces.
+    pub mixed: Mixture,
     /// It and those that come next to it.
     pub ranked: Ranked,
     /// Materials that 95 % of the posterior leave.
@@ -101,6 +104,7 @@ impl Pixel {
         p_value: f64::NAN,
         posterior: 0.0,
         other: f64::NAN,
+        mixed: Mixture { probability: f64::NAN, ..Mixture::NOTHING },
         ranked: Ranked::NOTHING,
         candidates: 0,
         flags: flag::SKIPPED,
@@ -169,6 +173,8 @@ pub(super) struct Task {
     pub(super) errors: Option<Errors>,
     /// A surface of none of its materials, where that is asked.
     pub(super) other: Option<Other>,
+    /// Two surfaces in a pixel, where that is asked.
+    pub(super) mixed: Option<Mixed>,
     /// What its materials are parts of, where categories are given.
     pub(super) members: Option<Members>,
     /// Whether bounds exclude materials.
@@ -180,6 +186,7 @@ pub(super) struct Task {
 pub(super) struct Room {
     pub(super) sums: Sums,
     pub(super) workplace: Workplace,
+    mixed: mixed::Workplace,
     pub(super) screened: Option<Screened>,
     pub(super) counts: Aligned,
     pub(super) shifted: Aligned,
@@ -189,6 +196,12 @@ pub(super) struct Room {
     pub(super) fits: Vec<(usize, Fit)>,
     /// Shares of the categories in the posterior of the pixel at hand.
     pub(super) shares: Vec<f32>,
+}
+
+/// Whether what has this share of the posterior is among what 99 % leave, by the rules of [`possible`].
+fn is_not_excluded(share: f64, odds_against: f64) -> bool {
+    let odds = share / (1.0 - share).max(f64::MIN_POSITIVE);
+    share > possible::MISSED || odds * odds_against > possible::MISSED / (1.0 - possible::MISSED)
 }
 
 impl Task {
@@ -206,6 +219,7 @@ impl Task {
         Room {
             sums: Sums::default(),
             workplace: Workplace::default(),
+            mixed: mixed::Workplace::default(),
             screened: self.screen.as_ref().map(|screen| screen.room(width)),
             counts: Aligned::zeros(width),
             shifted: Aligned::zeros(width),
@@ -370,26 +384,48 @@ impl Task {
         other.fit(at, self.errors.as_ref(), room, &mut spared.looks)
     }
 
+    /// −2 ln of what two surfaces are worth, beside the best of the library; nothing where that is not asked.
+    fn mixed(&self, room: &mut Room, spared: &mut Spared) -> Option<f64> {
+        let (mixed, &(kind, fit)) = (self.mixed.as_ref()?, room.fits.first()?);
+        let handicap = self.handicap[kind];
+        let best = Fit { deviance: fit.deviance - handicap, ..fit };
+        let single = (self.kinds[kind], &best, fit.deviance);
+        let screened = self.screen.as_ref().filter(|_| self.skip).zip(room.screened.as_ref());
+        let known = (&self.model, &*self.kinds);
+        let cost = mixed.fit(known, single, screened, &room.shifted, &mut room.mixed);
+        spared.looks += room.mixed.looks();
+        Some(cost)
+    }
+
     fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
         let other = self.other(room, spared);
         let fit_deviance = fit.deviance;
         let mut model = &self.model;
-        let of_other = other.map_or(f64::INFINITY, |(_, other)| other.deviance);
-        let least = fit.deviance.min(of_other);
+        // What is not asked for has no weight.
+        let besides = [other.map(|(_, other)| other.deviance), self.mixed(room, spared)];
+        let [of_other, of_mixed] = besides.map(|cost| cost.unwrap_or(f64::INFINITY));
+        let least = fit.deviance.min(of_other).min(of_mixed);
         let weight = |one: &Fit| libm::exp(-0.5 * (one.deviance - least));
-        let other_weight = libm::exp(-0.5 * (of_other - least));
+        let weights = [of_other, of_mixed].map(|cost| libm::exp(-0.5 * (cost - least)));
         let known: f64 = room.fits.iter().map(|(kind, one)| self.alike[*kind] as f64 * weight(one)).sum();
-        let total = known + other_weight;
-        let other_share = other_weight / total;
+        let total = known + weights[0] + weights[1];
+        let shares = weights.map(|weight| weight / total);
+        let [other_share, mixed_share] = shares;
         // The fewest that hold the share, and all that are as probable as the last of them.
         let (mut held, mut candidates, mut last, mut fits) = (0.0, 0, 0.0, 0);
-        let mut other_is_left = false;
+        let mut is_left = [false; 2];
+        let in_order = if other_share >= mixed_share { [0, 1] } else { [1, 0] };
+        let mut take_besides = |held: &mut f64, last: &mut f64, least: f64| {
+            for i in in_order {
+                if !is_left[i] && shares[i] >= least && *held < CANDIDATE_SHARE {
+                    is_left[i] = besides[i].is_some();
+                    (*held, *last) = (*held + shares[i], shares[i]);
+                }
+            }
+        };
         for (kind, one) in &room.fits {
             let each = weight(one) / total;
-            if !other_is_left && other_share >= each && held < CANDIDATE_SHARE {
-                other_is_left = other.is_some();
-                (held, last) = (held + other_share, other_share);
-            }
+            take_besides(&mut held, &mut last, each);
             if held >= CANDIDATE_SHARE && each < last * (1.0 - TIE) {
                 break;
             }
@@ -398,13 +434,20 @@ impl Task {
             fits += 1;
             last = each;
         }
-        other_is_left |= other.is_some() && held < CANDIDATE_SHARE;
-        candidates += usize::from(other_is_left);
+        take_besides(&mut held, &mut last, 0.0);
+        let [other_is_left, mixed_is_left] = is_left;
+        candidates += is_left.into_iter().filter(|left| *left).count();
         let possible = self.members.as_ref().map(|members| {
             let mut possible =
                 members.possible(&room.fits, |one| weight(one) / total, fits, &mut room.shares);
-            if self.other.as_ref().is_some_and(|other| other.is_not_excluded(other_share)) {
+            if self.other.as_ref().is_some_and(|other| is_not_excluded(other_share, other.odds_against)) {
                 possible.at_99 = possible::ANYTHING;
+            }
+            if let Some(mixed) = &self.mixed {
+                let not_excluded = is_not_excluded(mixed_share, mixed.odds_against);
+                for kinds in mixed.kinds_left(&room.mixed) {
+                    members.add_pair(&mut possible, kinds, [mixed_is_left, not_excluded]);
+                }
             }
             possible
         });
@@ -421,7 +464,16 @@ impl Task {
         let mixture = &fit.state.mixture[..model.vertices];
         let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
         let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
-        let is_other = other.is_some() && of_other < fit_deviance;
+        let is_other = other.is_some() && of_other < fit_deviance.min(of_mixed);
+        let is_mixed = of_mixed < fit_deviance.min(of_other);
+        let (mixed, two) = match &self.mixed {
+            Some(mixed) => mixed.told(model, &room.mixed, mixed_share),
+            None => (Mixture::NOTHING, None),
+        };
+        let freedom = |unknowns: usize| model.used.len().saturating_sub(unknowns) as f64;
+        // Where two surfaces do not fit either, anything may be there.
+        let two_fit =
+            is_mixed && two.is_some_and(|(d, unknowns)| chi_square_survival(d, freedom(unknowns)) >= NO_FIT);
         if let (Some(hypothesis), Some(other)) = (&self.other, other.filter(|_| is_other)) {
             let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
             (model, fit) = hypothesis.told(other, room);
@@ -451,20 +503,37 @@ impl Task {
         raise(lit_at_limit && !lighting_sigma.contains(&f64::INFINITY), flag::LIGHTING_AT_LIMIT);
         raise(no_information, flag::NO_INFORMATION);
         raise(no_lighting, flag::LIGHTING_UNKNOWN);
-        raise(p_value < NO_FIT || is_other, flag::NO_FIT);
+        raise(p_value < NO_FIT || is_other || is_mixed, flag::NO_FIT);
         raise(candidates > 1, flag::UNDECIDED);
         raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
-        let is_told = flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0 && !other_is_left;
+        let is_told = (flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0 || two_fit) && !other_is_left;
+        let mut temperature = [fit.state.temperature_k, sigma_k];
+        let mut lighting = model.lighting(mixture);
+        if is_mixed {
+            // Each surface has a lighting of its own.
+            temperature = [mixed.temperature_k[0], mixed.sigma_k[0]];
+            lighting[..model.surroundings].fill(f64::NAN);
+            lighting_sigma[..model.surroundings].fill(f64::INFINITY);
+        }
         Pixel {
-            material: if no_information || is_other { NO_MATERIAL } else { m as u16 },
-            temperature_k: if no_temperature { f64::NAN } else { fit.state.temperature_k },
-            sigma_k,
-            lighting: model.lighting(mixture),
+            material: if no_information || is_other || is_mixed { NO_MATERIAL } else { m as u16 },
+            temperature_k: if no_temperature { f64::NAN } else { temperature[0] },
+            sigma_k: temperature[1],
+            lighting,
             lighting_sigma,
-            texture_sigma: if self.textures.is_empty() { f64::NAN } else { sigma_of(&self.textures) },
+            texture_sigma: if self.textures.is_empty() || is_mixed {
+                f64::NAN
+            } else {
+                sigma_of(&self.textures)
+            },
             p_value,
-            posterior: if is_other { other_share } else { weight_of_fit / total },
+            posterior: if is_other || is_mixed {
+                shares[usize::from(is_mixed)]
+            } else {
+                weight_of_fit / total
+            },
             other: other_share,
+            mixed,
             ranked: if no_information { Ranked::NOTHING } else { ranked },
             candidates: candidates as u16,
             flags,

@@ -127,6 +127,23 @@ impl Members {
         possible
     }
 
+    /// A pair of kinds besides: among the candidates, and among what 99 % leave.
+    pub(super) fn add_pair(
+        &self,
+        possible: &mut Possible,
+        kinds: [usize; 2],
+        [is_candidate, is_left]: [bool; 2],
+    ) {
+        for kind in kinds {
+            if is_candidate {
+                *possible = self.with(*possible, Some(kind));
+            }
+            if is_left || is_candidate {
+                possible.at_99 |= self.all[kind];
+            }
+        }
+    }
+
     fn part(&self, kind: Option<usize>, category: usize) -> f64 {
         kind.and_then(|kind| self.parts.get(kind * self.count + category).copied()).unwrap_or(0.0)
     }

@@ -83,6 +83,13 @@ pub(super) struct Screened {
     nearest: Vec<f64>,
 }
 
+impl Screened {
+    /// The counts, divided by their deviations.
+    pub(super) fn white(&self) -> &[f64] {
+        &self.white
+    }
+}
+
 /// Share of a square that rounding may take off what is left of it: a hundred operations.
 const ROUNDING: f64 = 2e-14;
 
@@ -160,6 +167,11 @@ impl Screen {
             }
         }
         screen
+    }
+
+    /// The space of a material, in counts divided by their deviations as here.
+    pub(super) fn space(&self, model: &Model, m: usize) -> Space {
+        Space::new(model, m, &self.reference, &self.whitening, model.rows())
     }
 
     pub(super) fn room(&self, width: usize) -> Screened {

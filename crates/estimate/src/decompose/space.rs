@@ -72,6 +72,11 @@ impl Space {
         Self { lights, columns, curve, points, left_out: 1.1 * left_out + 1e-3 }
     }
 
+    /// All its directions.
+    pub(super) fn directions(&self) -> impl Iterator<Item = &Vec<f64>> + Clone {
+        self.lights.iter().flatten().chain(&self.curve)
+    }
+
     /// The farthest that the curve is from its chords between these rows.
     pub(super) fn sag(&self, starts: &[usize]) -> f64 {
         let mut most: f64 = 0.0;
@@ -93,16 +98,16 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     hadar::sum::dot(a, b)
 }
 
-fn norm(x: &[f64]) -> f64 {
+pub(super) fn norm(x: &[f64]) -> f64 {
     dot(x, x).sqrt()
 }
 
-fn remove(from: &mut [f64], direction: &[f64]) {
+pub(super) fn remove(from: &mut [f64], direction: &[f64]) {
     let along = dot(from, direction);
     from.iter_mut().zip(direction).for_each(|(x, q)| *x -= along * q);
 }
 
-fn unit(mut x: Vec<f64>, least: f64) -> Option<Vec<f64>> {
+pub(super) fn unit(mut x: Vec<f64>, least: f64) -> Option<Vec<f64>> {
     let length = norm(&x);
     (length > least && length > 0.0).then(|| {
         x.iter_mut().for_each(|x| *x /= length);

@@ -12,11 +12,13 @@ use crate::text::numbers::degrees;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar_scenario::decompose::{CubeUnit, PixelUnknown};
-use hadar_study::decompose::{CORRELATION_CM1, Decomposed, ModelVerdict, NoneOfThese, TruthFound};
+use hadar_study::decompose::{Besides, CORRELATION_CM1, Decomposed, MixedFound, ModelVerdict, TruthFound};
 use std::fmt::Write as _;
 
 /// Materials that are listed.
 const LISTED: usize = 12;
+/// Pairs of them.
+const LISTED_PAIRS: usize = 5;
 
 /// The whole answer.
 #[must_use]
@@ -28,6 +30,7 @@ pub fn text(result: &Decomposed) -> String {
     out.push_str(&judged::text(&result.model));
     out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
     out.push_str(&result.none_of_these.as_ref().map_or_else(String::new, none_of_these));
+    out.push_str(&result.mixed.as_ref().map_or_else(String::new, mixed));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
         out.push_str(&segmented::text(segmentation, is_rejected));
@@ -114,15 +117,45 @@ fn sentence(result: &Decomposed) -> String {
 }
 
 /// Surfaces that are none of the library.
-fn none_of_these(found: &NoneOfThese) -> String {
+fn none_of_these(found: &Besides) -> String {
     format!(
-        "None of these materials (smooth emissivities, prior {})\n  likeliest in {} pixels, the only candidate in {}; more probable than 1 % in {}\n  \
+        "None of these materials (smooth emissivities, prior {})\n  {}\n  \
          such a pixel is of no category, may be of any, and has a temperature of its own with its deviation\n\n",
         share(found.prior),
+        besides(found),
+    )
+}
+
+fn besides(found: &Besides) -> String {
+    format!(
+        "likeliest in {} pixels, the only candidate in {}; more probable than 1 % in {}",
         whole(found.likeliest as u64),
         whole(found.alone as u64),
         whole(found.above_one_percent as u64),
     )
+}
+
+/// Pixels of two surfaces.
+fn mixed(found: &MixedFound) -> String {
+    let mut out = format!(
+        "Two surfaces in a pixel (each a tenth of it at least, prior {})\n  {}\n  \
+         such a pixel has no one material and may be of the categories of both; its temperature is that of the larger\n",
+        share(found.besides.prior),
+        besides(&found.besides)
+    );
+    for row in found.pairs.iter().take(LISTED_PAIRS) {
+        let ([first, second], pixels) = (&row.materials, whole(row.pixels as u64));
+        let _ = writeln!(
+            out,
+            "  {pixels:>9}  {first} and {second}, of the first {} in the mean",
+            share(row.share_mean)
+        );
+    }
+    if let Some(more) = found.pairs.len().checked_sub(LISTED_PAIRS).filter(|more| *more > 0) {
+        let _ = writeln!(out, "  and {more} more pairs: hadar.json");
+    }
+    out.push('\n');
+    out
 }
 
 fn found(result: &Decomposed) -> String {
@@ -168,16 +201,18 @@ fn found(result: &Decomposed) -> String {
 /// What a flag says in an answer.
 pub(crate) fn flag_said(bit: u8, result: &Decomposed) -> &'static str {
     match bit {
-        flag::NO_FIT if result.none_of_these.is_some() => {
-            "no material of the library fits, or none of them is likelier"
-        }
+        flag::NO_FIT => match (&result.none_of_these, &result.mixed) {
+            (None, None) => "no material of the library fits (p below 1e-4)",
+            (Some(_), None) => "no material of the library fits, or none of them is likelier",
+            (None, Some(_)) => "no material of the library fits, or two in one pixel are likelier",
+            (Some(_), Some(_)) => "no material of the library fits, or none of them or two are likelier",
+        },
         flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
         flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
         flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
         flag::LIGHTING_UNKNOWN => {
             "the lighting is hardly told: little is scattered, or surroundings look alike"
         }
-        flag::NO_FIT => "no material of the library fits (p below 1e-4)",
         flag::UNDECIDED => "several materials are left by 95 %",
         flag::SKIPPED => "left out: a sample is missing, or the pixel is bad",
         flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
@@ -309,9 +344,16 @@ fn neighbours(result: &Decomposed) -> String {
 
 /// That nothing else can be there, where nothing is said of it.
 fn in_library(result: &Decomposed) -> &'static str {
-    match result.scenario.library.none_of_these {
-        None => "  every surface is taken for one of these materials; library.none_of_these states a doubt\n",
-        Some(_) => "",
+    let library = &result.scenario.library;
+    match (library.none_of_these, library.mixed) {
+        (None, None) => {
+            "  every pixel is taken for one surface of these materials; library.none_of_these and library.mixed state doubts\n"
+        }
+        (None, Some(_)) => {
+            "  every surface is taken for one of these materials; library.none_of_these states a doubt\n"
+        }
+        (Some(_), None) => "  every pixel is taken for one surface; library.mixed states a doubt\n",
+        (Some(_), Some(_)) => "",
     }
 }
 

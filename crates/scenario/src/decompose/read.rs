@@ -182,6 +182,7 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
             entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0")).collect()
         })?,
         none_of_these: section.number("none_of_these")?,
+        mixed: section.number("mixed")?,
         emissivity_error: emissivity_error::read(&section, emissivity_error::Of::Share)?,
         emissivity_correlation_cm1: section.quantity("emissivity_correlation")?,
     };

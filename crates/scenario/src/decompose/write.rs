@@ -22,6 +22,7 @@ impl DecomposeScenario {
             .put_if("materials", library.materials.as_ref().map(names))
             .put_if("prior", library.prior.clone())
             .put_if("none_of_these", library.none_of_these)
+            .put_if("mixed", library.mixed)
             .put_if("emissivity_error", library.emissivity_error)
             .put_quantity(
                 "emissivity_correlation",

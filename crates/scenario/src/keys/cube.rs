@@ -173,6 +173,14 @@ const LIBRARY_KEYS: &[Key] = &[
         "posterior of the materials: one more, whose emissivity is drawn",
     ),
     Key::row(
+        "mixed",
+        PROBABILITY,
+        Means("impossible"),
+        "0.05",
+        "Prior probability that a pixel holds two surfaces of them, each a tenth of it at least; of at most 64 materials.",
+        "posterior of the materials: pairs, S = f S1 + (1 - f) S2",
+    ),
+    Key::row(
         "emissivity_error",
         Value::Either(&[A_SHARE, Value::Text]),
         Means("exact"),

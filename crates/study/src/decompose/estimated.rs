@@ -97,7 +97,8 @@ impl Estimated {
         let shape = study.cube.shape();
         let few = shape.rows() * shape.columns() <= FIRST;
         let samples = if few { vec![of(LOOKED)?] } else { vec![of(FIRST)?, of(LOOKED)?] };
-        let options = Options { spatial: None, other: None, categories: Vec::new(), ..options.clone() };
+        let options =
+            Options { spatial: None, other: None, mixed: None, categories: Vec::new(), ..options.clone() };
         let found = estimate(&study.told, &unknowns, stated.noise_scale, &options, &samples)
             .and_then(|shared| Ok(Self { told: shared.put_into(&study.told)?, shared }));
         found.map(Some).map_err(|error| study.at_cube(error))

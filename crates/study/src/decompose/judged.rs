@@ -92,7 +92,7 @@ impl Asked {
                     Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref(), LOOKED)?)),
                     Cube::F64(rows) => Cube::F64(Box::new(some(rows.as_ref(), LOOKED)?)),
                 };
-                let options = Options { spatial: None, other: None, ..options.clone() };
+                let options = Options { spatial: None, other: None, mixed: None, ..options.clone() };
                 let maps = decompose_by(method, setting, &options, &some, &|_| ())?;
                 (judge(setting, &asked.causes, error, &maps, &some)?, pixels(&maps))
             }

@@ -128,6 +128,8 @@ pub struct MapFiles {
     posterior: NpyRows<f32>,
     /// Where that is asked.
     none_of_these: Option<NpyRows<f32>>,
+    /// Likewise: probability, share, temperatures and their deviations of two surfaces, and their materials.
+    mixed: Option<([NpyRows<f32>; 4], NpyRows<u16>)>,
     candidates_k: NpyRows<u16>,
     candidates_k_posterior: NpyRows<f32>,
     texture: NpyRows<f32>,
@@ -136,13 +138,13 @@ pub struct MapFiles {
 }
 
 impl MapFiles {
-    /// Files in `folder` for so many surroundings and most probable materials, and for what is none of them if that is asked; `height`
-    /// rows in a block.
+    /// Files in `folder` for so many surroundings and most probable materials, and for what is none of them or two of them if that is
+    /// asked; `height` rows in a block.
     pub(super) fn create(
         folder: &Path,
         height: usize,
         shape: Shape,
-        (surroundings, ranked, none_of_these): (usize, usize, bool),
+        (surroundings, ranked, [none_of_these, mixed]): (usize, usize, [bool; 2]),
     ) -> Result<Self> {
         let size = [shape.rows(), shape.columns()];
         let map = |name: &str| NpyRows::create(&folder.join(name), &size);
@@ -161,6 +163,14 @@ impl MapFiles {
             p_value: map("p_value.npy")?,
             posterior: map("posterior.npy")?,
             none_of_these: none_of_these.then(|| map("none_of_these.npy")).transpose()?,
+            mixed: mixed
+                .then(|| {
+                    let two = |name: &str| NpyRows::create(&folder.join(name), &deep(2));
+                    let [_, share, temperature, sigma] = MIXED;
+                    let reals = [map(MIXED[0])?, two(share)?, two(temperature)?, two(sigma)?];
+                    Ok((reals, NpyRows::create(&folder.join(MIXED_MATERIALS), &deep(2))?))
+                })
+                .transpose()?,
             candidates_k: NpyRows::create(&folder.join("candidates_k.npy"), &deep(ranked))?,
             candidates_k_posterior: NpyRows::create(
                 &folder.join("candidates_k_posterior.npy"),
@@ -179,6 +189,10 @@ impl MapFiles {
         self.candidates_k.write(*first, &maps.ranked)?;
         self.flags.write(*first, &maps.flags)?;
         self.none_of_these.as_ref().map_or(Ok(()), |file| file.write(*first, &maps.other))?;
+        if let Some((reals, materials)) = &self.mixed {
+            materials.write(*first, &maps.mixed_material)?;
+            reals.iter().zip(mixed_layers(maps)).try_for_each(|(file, values)| file.write(*first, values))?;
+        }
         for (file, values) in [
             (&self.temperature_k, &maps.temperature_k),
             (&self.temperature_sigma_k, &maps.temperature_sigma_k),
@@ -233,6 +247,22 @@ impl MapFiles {
             self.texture_sigma.path(),
             self.thermal.path(),
         ];
-        all.into_iter().chain(self.none_of_these.as_ref().map(NpyRows::path)).collect()
+        let mixed = self.mixed.iter().flat_map(|(reals, materials)| {
+            reals.iter().map(NpyRows::path).chain(std::iter::once(materials.path()))
+        });
+        all.into_iter().chain(self.none_of_these.as_ref().map(NpyRows::path)).chain(mixed).collect()
     }
+}
+
+/// Files of what a pixel is as two surfaces: the probability of that, then of each pixel the share of the first and its deviation,
+/// both temperatures, K, and their deviations.
+pub const MIXED: [&str; 4] =
+    ["mixed.npy", "mixed_share.npy", "mixed_temperature_k.npy", "mixed_temperature_sigma_k.npy"];
+/// The two materials.
+pub const MIXED_MATERIALS: &str = "mixed_materials.npy";
+
+/// What is in the files of [`MIXED`].
+#[must_use]
+pub fn mixed_layers(maps: &Maps) -> [&[f32]; 4] {
+    [&maps.mixed, &maps.mixed_share, &maps.mixed_temperature_k, &maps.mixed_temperature_sigma_k]
 }

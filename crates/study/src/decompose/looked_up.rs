@@ -211,6 +211,29 @@ fn check(
         let instead = "leave [spatial] or library.none_of_these out";
         return Err(("spatial".into(), Error::malformed(found, instead)));
     }
+    let library = &scenario.library;
+    if let Some(probability) = library.mixed {
+        let key = "library.mixed";
+        let refused = |found: &str, instead: &str| Err((key.to_owned(), Error::malformed(found, instead)));
+        if scenario.spatial.is_some() {
+            return refused("it knows no prior over the image", "leave [spatial] or library.mixed out");
+        }
+        if library.emissivity_error.is_some_and(|error| error > 0.0) {
+            let instead = "leave library.emissivity_error or library.mixed out";
+            return refused("it knows no errors of the library", instead);
+        }
+        if scenario.unknown.gain {
+            return refused(
+                "it knows no gain of each pixel",
+                "write unknown.gain = false, or leave library.mixed out",
+            );
+        }
+        let both = probability + library.none_of_these.unwrap_or(0.0);
+        if both >= 1.0 {
+            let quantity = "probability of two surfaces and of none of these together";
+            return Err((key.to_owned(), Error::out_of_range(quantity, both, "", "below 1")));
+        }
+    }
     if matches!(scenario.spatial, Some(SpatialPrior::TexSgd { .. }))
         && scenario.library.emissivity_error.is_some_and(|error| error > 0.0)
     {

@@ -47,7 +47,10 @@ pub struct Decomposed {
     pub shared: Option<SharedFound>,
     /// Surfaces that are none of the library; nothing where that is not asked.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub none_of_these: Option<NoneOfThese>,
+    pub none_of_these: Option<Besides>,
+    /// Pixels of two surfaces; nothing where that is not asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mixed: Option<MixedFound>,
     /// Pixels that were left out: a sample of them is missing, or they were named or found to be bad.
     pub skipped: usize,
     /// What was named or found to be bad.
@@ -77,9 +80,9 @@ pub struct Decomposed {
     pub kept: Kept,
 }
 
-/// Pixels whose surface may be none of the library.
+/// Pixels that may be something else than one surface of the library.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct NoneOfThese {
+pub struct Besides {
     /// Prior probability of that.
     pub prior: f64,
     /// Pixels of which it is more probable than every material.
@@ -88,6 +91,27 @@ pub struct NoneOfThese {
     pub alone: usize,
     /// Pixels of which its posterior probability is above 1 %.
     pub above_one_percent: usize,
+}
+
+/// Pixels that may hold two surfaces.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MixedFound {
+    /// How many.
+    #[serde(flatten)]
+    pub besides: Besides,
+    /// The pairs of pixels of which two surfaces are likeliest, that of the most pixels first.
+    pub pairs: Vec<PairRow>,
+}
+
+/// Pixels of the same two materials.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PairRow {
+    /// Their names, that of the larger share in each pixel first.
+    pub materials: [String; 2],
+    /// Pixels of which they are the likeliest pair.
+    pub pixels: usize,
+    /// Mean share of the first.
+    pub share_mean: f64,
 }
 
 /// What was found of one material.
@@ -144,6 +168,9 @@ pub(super) struct Counted {
     p_values: (usize, f64, usize),
     /// Pixels of which none of the library is likeliest, those without another candidate, and those that it has more than 1 % of.
     none_of_these: [usize; 3],
+    /// The same of two surfaces, and of each pair its pixels and the sum of the larger shares.
+    mixed: [usize; 3],
+    pairs: BTreeMap<[u16; 2], (usize, f64)>,
     spared: Spared,
     spatial: Option<Spatial>,
 }
@@ -168,11 +195,25 @@ impl Counted {
                 None => {}
             }
         }
-        for (i, other) in maps.other.iter().enumerate() {
-            let is_likeliest = maps.material[i] == NO_MATERIAL && maps.posterior[i] == *other;
-            let is_alone = is_likeliest && maps.candidates[i] == 1;
-            let counts = [is_likeliest, is_alone, *other > 0.01];
-            self.none_of_these.iter_mut().zip(counts).for_each(|(sum, one)| *sum += usize::from(one));
+        let is_likeliest = |i: usize, probability: f32| {
+            maps.material[i] == NO_MATERIAL
+                && maps.flags[i] & flag::NO_FIT != 0
+                && maps.posterior[i] == probability
+        };
+        for (sums, all) in [(&mut self.none_of_these, &maps.other), (&mut self.mixed, &maps.mixed)] {
+            for (i, probability) in all.iter().enumerate() {
+                let is_likeliest = is_likeliest(i, *probability);
+                let counts = [is_likeliest, is_likeliest && maps.candidates[i] == 1, *probability > 0.01];
+                sums.iter_mut().zip(counts).for_each(|(sum, one)| *sum += usize::from(one));
+            }
+        }
+        let pairs = maps.mixed_material.as_chunks::<2>().0.iter().zip(maps.mixed_share.chunks_exact(2));
+        for (i, (materials, share)) in pairs.enumerate() {
+            if is_likeliest(i, maps.mixed[i]) {
+                let (pixels, sum) = self.pairs.entry(*materials).or_default();
+                *pixels += 1;
+                *sum += f64::from(share[0]);
+            }
         }
         self.pixels += maps.material.len();
         self.spared = self.spared + maps.spared;
@@ -311,9 +352,18 @@ pub(super) fn summary(
         spectra: members.len(),
         pixels: members.iter().map(|member| counted.of(*member)[0]).sum(),
     });
-    let [likeliest, alone, above_one_percent] = counted.none_of_these;
-    let none_of_these = study.scenario.library.none_of_these;
-    let none_of_these = none_of_these.map(|prior| NoneOfThese { prior, likeliest, alone, above_one_percent });
+    let besides = |prior: f64, [likeliest, alone, above_one_percent]: [usize; 3]| Besides {
+        prior,
+        likeliest,
+        alone,
+        above_one_percent,
+    };
+    let library = &study.scenario.library;
+    let none_of_these = library.none_of_these.map(|prior| besides(prior, counted.none_of_these));
+    let mixed = library.mixed.map(|prior| MixedFound {
+        besides: besides(prior, counted.mixed),
+        pairs: pair_rows(&counted.pairs, &study.names),
+    });
     let flags = counted.flags(&mut warnings, &study.bad);
     if let Some(found) = &segmentation {
         let guessed = found.objects.iter().filter(|object| 2 * object.decided < object.pixels).count();
@@ -333,6 +383,7 @@ pub(super) fn summary(
         model,
         shared,
         none_of_these,
+        mixed,
         undecided: pixels - decided - skipped,
         skipped,
         bad: study.bad.clone(),
@@ -347,4 +398,16 @@ pub(super) fn summary(
         warnings,
         kept,
     }
+}
+
+fn pair_rows(pairs: &BTreeMap<[u16; 2], (usize, f64)>, names: &[String]) -> Vec<PairRow> {
+    let name = |m: u16| names.get(usize::from(m)).cloned().unwrap_or_default();
+    let row = |(materials, (pixels, sum)): (&[u16; 2], &(usize, f64))| PairRow {
+        materials: materials.map(name),
+        pixels: *pixels,
+        share_mean: sum / *pixels as f64,
+    };
+    let mut rows: Vec<PairRow> = pairs.iter().map(row).collect();
+    rows.sort_by(|a, b| b.pixels.cmp(&a.pixels));
+    rows
 }

@@ -18,7 +18,6 @@
 use super::*;
 use crate::decompose::fit::scan;
 use crate::decompose::kernel::{Asked as Looked, mean_counts, sums as look};
-use crate::decompose::possible::MISSED;
 use crate::decompose::setting::Setting;
 use nalgebra::DMatrix;
 use std::ops::Range;
@@ -43,16 +42,25 @@ pub(in crate::decompose) struct Other {
     /// −2 ln of its prior, to that of the most probable material of the library.
     handicap: f64,
     /// (1 − π)/π.
-    odds_against: f64,
+    pub(in crate::decompose) odds_against: f64,
 }
 
 impl Other {
-    /// Of prior probability `probability`, beside materials of prior probabilities in any scale.
-    pub(in crate::decompose) fn new(setting: &Setting<'_>, probability: f64, prior: &[f64]) -> Result<Self> {
-        let is_share = probability > 0.0 && probability < 1.0;
+    /// Of prior probability `probability`, beside `single` of one surface of the library, whose materials have priors in any scale.
+    pub(in crate::decompose) fn new(
+        setting: &Setting<'_>,
+        [probability, single]: [f64; 2],
+        prior: &[f64],
+    ) -> Result<Self> {
+        let is_share = probability > 0.0 && probability < 1.0 && single > 0.0;
         if !is_share {
             let quantity = "probability that a surface is none of the library";
-            return Err(Error::out_of_range(quantity, probability, "", "above 0 and below 1"));
+            return Err(Error::out_of_range(
+                quantity,
+                probability,
+                "",
+                "above 0 and, with all others, below 1",
+            ));
         }
         let flat: Vec<Vec<f64>> =
             LAWS.iter().map(|[mean, _]| vec![*mean; setting.bands.nodes_cm1().len()]).collect();
@@ -60,8 +68,8 @@ impl Other {
         let of = |correlation_cm1: f64| Errors::new(&model, LibraryError { relative: 1.0, correlation_cm1 });
         let errors = [(SMOOTH, of(SMOOTH_CM1)?), (GREY, of(GREY_CM1)?)];
         let (all, most) = prior.iter().fold((0.0, 0.0_f64), |(all, most), p| (all + p, most.max(*p)));
-        let odds_against = (1.0 - probability) / probability;
-        Ok(Self { model, errors, handicap: 2.0 * libm::log(odds_against * most / all), odds_against })
+        let handicap = 2.0 * libm::log(single * most / (probability * all));
+        Ok(Self { model, errors, handicap, odds_against: (1.0 - probability) / probability })
     }
 
     /// Its best fit, with the cost of its prior, on the scale of the deviance of `best`, material `m` of `library`, and its law.
@@ -110,12 +118,6 @@ impl Other {
         };
         let deviance = fit.deviance - offset + narrower - volume(library, sums) + self.handicap;
         Some((asked.m, Fit { deviance, ..fit }))
-    }
-
-    /// Whether it is among what 99 % leave, by the rules of [`crate::decompose::possible`], of this share of the posterior.
-    pub(in crate::decompose) fn is_not_excluded(&self, share: f64) -> bool {
-        let odds = share / (1.0 - share).max(f64::MIN_POSITIVE);
-        share > MISSED || odds * self.odds_against > MISSED / (1.0 - MISSED)
     }
 
     /// The same to its end; the sums are those of the last look.

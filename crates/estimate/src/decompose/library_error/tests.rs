@@ -14,8 +14,8 @@ use rand_distr::{Distribution, Poisson, StandardNormal};
 const STATED: LibraryError = LibraryError { relative: 0.01, correlation_cm1: 50.0 };
 
 /// Materials before a sky and a ground.
-pub(super) struct Scene {
-    pub(super) bands: Bands,
+pub(in crate::decompose) struct Scene {
+    pub(in crate::decompose) bands: Bands,
     library: Vec<Vec<f64>>,
     pub(super) lights: Vec<Vec<f64>>,
     pub(super) per_radiance: Vec<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Scene {
 
 impl Scene {
     /// With about so many counts in each band.
-    pub(super) fn new(materials: usize, bands: usize, counts: f64) -> Self {
+    pub(in crate::decompose) fn new(materials: usize, bands: usize, counts: f64) -> Self {
         let step = 400.0 / (bands - 1) as f64;
         let of = Bands::uniform(800.0, 1200.0 + 0.25 * step, step).unwrap();
         let nu = of.nodes_cm1().to_vec();
@@ -56,7 +56,7 @@ impl Scene {
         }
     }
 
-    pub(super) fn with<T>(&self, then: impl FnOnce(&Setting<'_>) -> T) -> T {
+    pub(in crate::decompose) fn with<T>(&self, then: impl FnOnce(&Setting<'_>) -> T) -> T {
         let lights: Vec<Light> = self.lights.iter().cloned().map(Light::Radiance).collect();
         then(&Setting {
             bands: &self.bands,
@@ -75,7 +75,7 @@ impl Scene {
     }
 
     /// Mean counts, and what they change with the temperature, the share of the ground, and the relative error of each emissivity.
-    pub(super) fn mean(&self, m: usize, t: f64, v: f64) -> [DVector<f64>; 4] {
+    pub(in crate::decompose) fn mean(&self, m: usize, t: f64, v: f64) -> [DVector<f64>; 4] {
         let widths = self.bands.widths_cm1();
         let (nu, e) = (self.bands.nodes_cm1(), &self.library[m]);
         let of = |f: &dyn Fn(usize) -> f64| {
@@ -99,7 +99,12 @@ impl Scene {
     }
 
     /// Counts of pixels, each with errors of its own of this share of what is stated; temperatures and shares of the ground.
-    pub(super) fn draw(&self, pixels: usize, share: f64, seed: u64) -> (Vec<f64>, Vec<(usize, f64, f64)>) {
+    pub(in crate::decompose) fn draw(
+        &self,
+        pixels: usize,
+        share: f64,
+        seed: u64,
+    ) -> (Vec<f64>, Vec<(usize, f64, f64)>) {
         let mut random = generator(seed, 0);
         let mut counts = Vec::new();
         let truth = |i: usize| {

@@ -174,7 +174,7 @@ fn one_more_hypothesis_never_decides_a_pixel() {
 fn a_probability_is_between_none_and_all() {
     let scene = Scene::new(2, 9, 1e3);
     for wrong in [0.0, 1.0, -0.1, f64::NAN] {
-        assert!(scene.with(|setting| Other::new(setting, wrong, &[1.0, 1.0])).is_err());
+        assert!(scene.with(|setting| Other::new(setting, [wrong, 1.0 - wrong], &[1.0, 1.0])).is_err());
     }
 }
 
