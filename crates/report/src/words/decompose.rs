@@ -8,7 +8,7 @@ use crate::table::number;
 use crate::text::columns::{Columns, left, right};
 use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
-use crate::text::numbers::degrees;
+use crate::text::numbers::{degrees, listed};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar_scenario::decompose::{CubeUnit, PixelUnknown};
@@ -26,7 +26,7 @@ pub fn text(result: &Decomposed) -> String {
     let is_rejected = result.model.verdict.takes_back();
     let safety =
         result.segmentation.as_ref().map_or_else(String::new, |found| segmented::safety(found, is_rejected));
-    let mut out = format!("{}\n{safety}\n{}", sentence(result), read_as(&result.read));
+    let mut out = format!("{}{}\n{safety}\n{}", sentence(result), constants(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
     out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
     out.push_str(&result.none_of_these.as_ref().map_or_else(String::new, none_of_these));
@@ -69,6 +69,19 @@ fn distilled(result: &Decomposed) -> String {
 
 fn of(part: usize, all: usize) -> String {
     format!("{} of {}", whole(part as u64), whole(all as u64))
+}
+
+/// What no surface was measured to be, and is decided for or against all the same.
+fn constants(result: &Decomposed) -> String {
+    let all = &result.constants;
+    let each = if all.len() == 1 { "is entered as one number" } else { "are entered as one number each" };
+    if all.is_empty() || !result.method.has_likelihood() {
+        return String::new();
+    }
+    format!(
+        " {} {each}, which no surface was measured to be: decisions for and against rest on it.",
+        listed(all)
+    )
 }
 
 fn sentence(result: &Decomposed) -> String {

@@ -55,6 +55,13 @@ pub struct DecomposeStudy {
 }
 
 impl DecomposeStudy {
+    /// Materials that are entered as one number for all wavenumbers, in the order of the library: no surface was measured to be so.
+    pub(super) fn constants(&self) -> impl Iterator<Item = usize> {
+        let is_one =
+            |emissivity: &Vec<f64>| emissivity.len() > 1 && emissivity.iter().all(|e| *e == emissivity[0]);
+        self.told.library.iter().enumerate().filter(move |(_, e)| is_one(e)).map(|(m, _)| m)
+    }
+
     /// What it takes at least.
     #[must_use]
     pub fn takes(&self) -> Takes {

@@ -38,6 +38,9 @@ pub struct Decomposed {
     pub decided: usize,
     /// Pixels that are decided if the model holds.
     pub decided_if_model_holds: usize,
+    /// Materials of the library that are entered as one number: what is decided for or against them rests on it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constants: Vec<String>,
     /// Pixels with several candidates, or of which nothing is known.
     pub undecided: usize,
     /// Whether the cube follows its model, and what may be otherwise than told.
@@ -384,6 +387,7 @@ pub(super) fn summary(
         shared,
         none_of_these,
         mixed,
+        constants: study.constants().map(|m| study.names[m].clone()).collect(),
         undecided: pixels - decided - skipped,
         skipped,
         bad: study.bad.clone(),

@@ -23,6 +23,9 @@ pub struct SafetyRow {
     pub share: f64,
     /// The share of the pixels in which it cannot be excluded if the model holds.
     pub share_if_model_holds: f64,
+    /// Its materials that are entered as one number: that it is excluded rests on them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constants: Vec<String>,
     /// Connected parts of them (by a side or a corner), of any size, the largest first.
     pub objects: Vec<NotExcluded>,
     /// Share of the pixels filled by the category in which it is excluded all the same, at most, if the model and the library hold; a bound
@@ -58,6 +61,7 @@ impl SafetyRow {
 /// Of every category with `safety = true`.
 pub(super) fn rows(study: &DecomposeStudy, maps: &Maps, claims: &Claims) -> Result<Vec<SafetyRow>> {
     let columns = study.cube.shape().columns();
+    let sets_of = study.categories.sets();
     let all = study.scenario.categories.iter().enumerate().filter(|(_, spec)| spec.safety);
     all.map(|(place, spec)| {
         let sets: Vec<u64> =
@@ -73,9 +77,11 @@ pub(super) fn rows(study: &DecomposeStudy, maps: &Maps, claims: &Claims) -> Resu
             rows: group.rows,
             columns: group.columns,
         };
+        let own = study.constants().filter(|m| sets_of.get(*m).is_some_and(|set| set >> place & 1 == 1));
         Ok(SafetyRow {
             category: spec.name.clone(),
             pixels,
+            constants: own.map(|m| study.names[m].clone()).collect(),
             share: pixels as f64 / sets.len().max(1) as f64,
             share_if_model_holds: pixels as f64 / sets.len().max(1) as f64,
             objects: found.all.into_iter().map(object).collect(),

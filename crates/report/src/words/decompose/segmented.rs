@@ -1,11 +1,11 @@
 //! A segmented cube in words: categories and objects.
 
 use crate::text::columns::{Columns, left, right};
-use crate::text::numbers::degrees;
+use crate::text::numbers::{degrees, listed};
 use crate::words::safety::article;
 use hadar::words::{share, significant, whole};
 use hadar_estimate::segmentation::{Agreement, Rule};
-use hadar_study::decompose::{ObjectRow, Segmented};
+use hadar_study::decompose::{ObjectRow, SafetyRow, Segmented};
 use std::fmt::Write as _;
 
 /// Objects that are listed.
@@ -25,7 +25,11 @@ pub(super) fn safety(found: &Segmented, is_rejected: bool) -> String {
                 "{article} {name} cannot be excluded anywhere while the cube does not follow its model; if it did, in {} of the pixels.",
                 share(row.share_if_model_holds)
             ),
-            (0, _) => writeln!(out, "{article} {name} is excluded in every pixel."),
+            (0, _) => writeln!(
+                out,
+                "{article} {name} is excluded in every pixel, if the library holds{}.",
+                if_constant(row)
+            ),
             (_, objects) => writeln!(
                 out,
                 "{article} {name} cannot be excluded in {} of the pixels ({objects} {}).",
@@ -35,12 +39,21 @@ pub(super) fn safety(found: &Segmented, is_rejected: bool) -> String {
         };
         let _ = writeln!(
             out,
-            "  If the model and the library hold, at most {} of the pixels that {} {name} fills are excluded: of pixels, not of objects.",
+            "  If the model and the library hold{}, at most {} of the pixels that {} {name} fills are excluded: of pixels, not of objects.",
+            if_constant(row),
             share(row.bound_missed),
             article.to_lowercase()
         );
     }
     out
+}
+
+/// What the exclusion of a category rests on besides.
+fn if_constant(row: &SafetyRow) -> String {
+    match row.constants.len() {
+        0 => String::new(),
+        _ => format!(", and real surfaces are as the one number of {}", listed(&row.constants)),
+    }
 }
 
 /// The names of what an object is or may be, not too many of them.
