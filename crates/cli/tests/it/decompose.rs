@@ -129,6 +129,33 @@ fn none_of_these_is_told_where_it_is_asked() {
     }
 }
 
+/// A material of one number is named before anything is decided for or against it, also where it is a person that is excluded.
+#[test]
+fn what_is_entered_as_one_number_is_said() {
+    let category = "[[category]]\nname = \"person\"\nmaterials = [\"flat\"]\nsafety = true\n[[category]]\nname = \"rest\"\nmaterials = [\"Wall Paint\", \"pane\"]\n";
+    let folder = with(&format!("{}{category}", SCENARIO.split("[truth]").next().unwrap()));
+    let silent = folder.run(&["decompose", "a.toml"]);
+    assert!(silent.code == 1 && silent.stderr.contains("flat"), "{}", silent.stderr);
+    let table = fs::read_to_string(folder.path().join("library.csv")).unwrap();
+    let column = |i: usize| if i == 0 { ",flat".to_owned() } else { ",0.6".to_owned() };
+    let with_flat: Vec<String> =
+        table.lines().enumerate().map(|(i, line)| line.to_owned() + &column(i)).collect();
+    folder.file("library.csv", &with_flat.join("\n"));
+    let ran = folder.run(&["decompose", "a.toml"]);
+    let first = ran.stdout.lines().next().unwrap_or_default();
+    assert!(
+        first.contains("flat is entered as one number, which no surface was measured to be"),
+        "{}",
+        ran.stdout
+    );
+    assert!(ran.stdout.contains("real surfaces are as the one number of flat"), "{}", ran.stdout);
+    let found = folder.json(&["decompose", "a.toml"]);
+    assert_eq!(found["constants"], serde_json::json!(["flat"]));
+    assert_eq!(found["segmentation"]["safety"][0]["constants"], serde_json::json!(["flat"]));
+    let measured = with(SCENARIO).json(&["decompose", "a.toml"]);
+    assert!(measured.get("constants").is_none());
+}
+
 #[test]
 fn two_surfaces_are_told_where_they_are_asked() {
     let asked = |library: &str| with(&SCENARIO.replace("[library]\n", &format!("[library]\n{library}")));

@@ -22,12 +22,12 @@ use mean_likelihood::{Found, most_probable, start};
 
 /// Materials of a library of which pairs are formed, at most: their number grows with the square.
 pub const MOST_MIXED: usize = 64;
-/// −2 ln of the odds, to the best of all hypotheses, at which a pair no longer counts: 1e-6, also of two thousand of them.
-const BESIDE: f64 = 28.0;
-/// The same at which a pair is looked at from one start alone.
-const NEAR: f64 = 12.0;
-/// Temperatures of two parts at the start of a fit, beside that of the best single material, K.
-const STARTS: [[f64; 2]; 3] = [[0.0, 0.0], [15.0, -15.0], [-15.0, 15.0]];
+/// −2 ln of the odds, to the best of all hypotheses, at which a pair no longer counts: 5e-5.
+const BESIDE: f64 = 20.0;
+/// The same at which a pair is looked at from one start alone, both parts as warm as the best single material.
+const NEAR: f64 = 8.0;
+/// How far two parts are from the temperature of the best single material at further starts, K.
+const APART_K: f64 = 15.0;
 /// Share of the probability of a mixed pixel of which the pairs are told.
 const TOLD: f64 = 0.99;
 
@@ -178,24 +178,23 @@ impl Mixed {
             if screened.is_some_and(|seen| pair.is_beyond(enough, seen)) {
                 continue;
             }
-            let ms = pair.kinds.map(|kind| kinds[kind]);
-            let mut most: Option<Found> = None;
-            for offsets in STARTS {
-                let from = start(model, ms, offsets.map(|by| t + by));
-                if let Some(one) = most_probable(model, &from, shifted, enough, room)
-                    && most.is_none_or(|most| one.cost < most.cost)
-                {
-                    most = Some(one);
-                }
-                // Where one start leads far off, the others do too.
-                if most.is_none_or(|most| most.cost > enough - BESIDE + NEAR) {
-                    break;
-                }
-            }
-            let Some(one) = most else { continue };
+            let from = start(model, pair.kinds.map(|kind| kinds[kind]), [t, t]);
+            let Some(one) = most_probable(model, &from, shifted, enough, room) else { continue };
             let cost = one.cost + pair.handicap + scale;
             least = least.min(cost);
             found.push((cost, i, one));
+        }
+        // Those that count once more, from parts of different temperatures.
+        for (cost, i, one) in found.iter_mut().filter(|(cost, ..)| *cost < least + NEAR) {
+            let besides = self.pairs[*i].handicap + scale;
+            for by in [APART_K, -APART_K] {
+                let from = start(model, one.parts.map(|part| part.m), [t + by, t - by]);
+                if let Some(other) = most_probable(model, &from, shifted, one.cost, room)
+                    && other.cost < one.cost
+                {
+                    (*one, *cost) = (other, other.cost + besides);
+                }
+            }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         let Some((least, ..)) = found.first() else { return f64::INFINITY };

@@ -35,6 +35,9 @@ pub(in crate::decompose) const LEAST_SHARE: f64 = 0.1;
 const MOST_COORDINATES: usize = 2 * MOST - 1;
 /// Squared length, in deviations, of the last step.
 const SHORT: f64 = 1e-2;
+/// The same of a fit that costs nearly too much: so much less than that.
+const ROUGH: f64 = 1.0;
+const LITTLE: f64 = 12.0;
 /// How far a step goes to a limit that is in its way.
 const NEARER: f64 = 0.9;
 /// A share of a step that is no way any more.
@@ -45,9 +48,9 @@ const MOST_LOOKS: usize = 40;
 /// A pivot of columns of length 1 is at least that.
 const LEAST_PIVOT: f64 = 1e-12;
 /// After so many looks a fit that promises too little is given up.
-const PATIENCE: usize = 3;
-/// How often over what a step promises Φ may still fall, and what ln det H may besides.
-const HOPE: f64 = 4.0;
+const PATIENCE: usize = 4;
+/// How often over what a step promises, or the last one brought, Φ may still fall, and what ln det H may besides.
+const HOPE: f64 = 20.0;
 const SLACK: f64 = 6.0;
 
 /// One of the surfaces in a pixel.
@@ -267,6 +270,18 @@ fn improbable(model: &Model, parts: &[Part]) -> f64 {
     -of_places - parts.iter().map(lights).sum::<f64>()
 }
 
+/// A symmetric matrix in other coordinates, that `turn` brings a slope into: one side, then the other.
+fn on_both_sides(whole: &mut Square, count: usize, turn: impl Fn(&mut Point)) {
+    whole[..count].iter_mut().for_each(&turn);
+    for i in 0..count {
+        for j in 0..i {
+            let both = (whole[i][j], whole[j][i]);
+            (whole[j][i], whole[i][j]) = both;
+        }
+    }
+    whole[..count].iter_mut().for_each(&turn);
+}
+
 /// H in the coordinates z, and ∂f/∂z, ∂T/∂z.
 fn bend(model: &Model, parts: &[Part], seen: &Room) -> (Factor, Point) {
     let (vertices, besides) = (model.vertices, parts.len() - 1);
@@ -282,7 +297,7 @@ fn bend(model: &Model, parts: &[Part], seen: &Room) -> (Factor, Point) {
     for (at, s, width) in temperatures.chain(of_share) {
         (rate[at], of_density[at]) = (width * s * (1.0 - s), 2.0 * s * (1.0 - s));
     }
-    // From f, T and u to z: one side, then the other.
+    // From f, T and u to z.
     let turn = |x: &mut Point| {
         for (at, rate) in rate.iter().enumerate().filter(|(_, rate)| **rate > 0.0) {
             x[at] *= rate;
@@ -293,14 +308,7 @@ fn bend(model: &Model, parts: &[Part], seen: &Room) -> (Factor, Point) {
             (1..vertices).for_each(|j| x[at + j] = part.mixture[j] * (x[at + j] - mean));
         }
     };
-    whole[..count].iter_mut().for_each(turn);
-    for i in 0..count {
-        for j in 0..i {
-            let both = (whole[i][j], whole[j][i]);
-            (whole[j][i], whole[i][j]) = both;
-        }
-    }
-    whole[..count].iter_mut().for_each(turn);
+    on_both_sides(&mut whole, count, turn);
     (0..count).for_each(|i| whole[i][i] += of_density[i]);
     for (p, part) in parts.iter().enumerate() {
         let at = temperature_at(model, parts, p);
@@ -326,61 +334,52 @@ impl Way {
     /// Newton's step.
     fn new(model: &Model, parts: &[Part], seen: &Room) -> Self {
         let vertices = model.vertices;
-        let old = parts.len() - 1 + parts.len() * vertices;
         let places = || (0..parts.len()).flat_map(|p| (0..vertices).map(move |j| (p, j)));
         let heaviest = places().max_by(|a, b| parts[a.0].weight(a.1).total_cmp(&parts[b.0].weight(b.1)));
         let base = heaviest.unwrap_or((0, 0));
-        // Of each direction, the change of f, T and u: temperatures first, then more of one weight and less of the base.
-        let mut directions = [[0.0; MOST_COORDINATES]; MOST_COORDINATES];
-        for p in 0..parts.len() {
-            directions[p][temperature_at(model, parts, p)] = 1.0;
-        }
+        // Temperatures first, then more of each other weight and less of the base: ∂f = 1 of the first part's, ∂uᵢ = (δᵢⱼ − uᵢ)/f.
         let others = || places().filter(|place| *place != base);
-        for (direction, place) in directions[parts.len()..].iter_mut().zip(others()) {
-            for ((p, j), sign) in [(place, 1.0), (base, -1.0)] {
-                if parts.len() > 1 && p == 0 {
-                    direction[0] += sign;
-                }
-                let at = temperature_at(model, parts, p);
-                for i in 1..vertices {
-                    let own = if i == j { 1.0 } else { 0.0 };
-                    direction[at + i] += sign * (own - parts[p].mixture[i]) / parts[p].share;
-                }
-            }
-        }
         let count = parts.len() * vertices + parts.len() - 1;
-        let dot = |a: &Point, b: &Point| a[..old].iter().zip(&b[..old]).map(|(a, b)| a * b).sum::<f64>();
-        let (mut slope, mut whole) = ([0.0; MOST_COORDINATES], [[0.0; MOST_COORDINATES]; MOST_COORDINATES]);
-        for i in 0..count {
-            slope[i] = dot(&directions[i], &seen.slope);
-            let mut image = [0.0; MOST_COORDINATES];
-            for (image, row) in image[..old].iter_mut().zip(&seen.information) {
-                *image = dot(row, &directions[i]);
-            }
-            for j in 0..=i {
-                let each = dot(&directions[j], &image);
-                (whole[i][j], whole[j][i]) = (each, each);
-            }
-        }
-        // The density: s(1 − s) of places, and Π w / f^J (1 − f)^J of weights, of which what bends upwards counts.
+        let turn = |x: &mut Point| {
+            let old = *x;
+            let own = |p: usize| &old[temperature_at(model, parts, p)..];
+            let means: [f64; 2] = std::array::from_fn(|p| {
+                let of = |part: &Part| (1..vertices).map(|i| part.mixture[i] * own(p)[i]).sum();
+                parts.get(p).map_or(0.0, of)
+            });
+            let along = |(p, j): (usize, usize)| {
+                let of_share = if parts.len() > 1 && p == 0 { old[0] } else { 0.0 };
+                of_share + (if j > 0 { own(p)[j] } else { 0.0 } - means[p]) / parts[p].share
+            };
+            let of_base = along(base);
+            (0..parts.len()).for_each(|p| x[p] = own(p)[0]);
+            x[parts.len()..].iter_mut().zip(others()).for_each(|(x, place)| *x = along(place) - of_base);
+        };
+        let (mut slope, mut whole) = (seen.slope, seen.information);
+        turn(&mut slope);
+        on_both_sides(&mut whole, count, turn);
+        // The density: s(1 − s) of places, and Π w / f^J (1 − f)^J of weights, of which what bends upwards counts. Toward a limit it
+        // bends as much as it will where it stops the slope of the counts: no step goes far beyond.
         let [low, high] = model.range_k;
-        let end = |s: f64| (1.0 / s - 1.0 / (1.0 - s), 1.0 / (s * s) + 1.0 / ((1.0 - s) * (1.0 - s)));
+        let end = |s: f64, width: f64, slope: f64| {
+            let bend = |to_limit: f64, slope: f64| to_limit.recip().max(-slope) / to_limit;
+            let (below, above) = (s * width, (1.0 - s) * width);
+            (below.recip() - above.recip(), bend(below, slope) + bend(above, -slope))
+        };
         for (p, part) in parts.iter().enumerate() {
-            let (first, second) = end(part.place(model));
-            slope[p] += first / (high - low);
-            whole[p][p] += second / ((high - low) * (high - low));
+            let (first, second) = end(part.place(model), high - low, slope[p]);
+            slope[p] += first;
+            whole[p][p] += second;
         }
-        let of_share = (parts.len() > 1).then(|| {
-            let ((first, second), width) = (end(place_of(parts[0].share)), 1.0 - 2.0 * LEAST_SHARE);
-            (first / width, second / (width * width))
-        });
+        let of_share =
+            (parts.len() > 1).then(|| end(place_of(parts[0].share), 1.0 - 2.0 * LEAST_SHARE, seen.slope[0]));
         let all = vertices as f64;
         let along = |(p, j): (usize, usize)| 1.0 / parts[p].weight(j) - all / parts[p].share;
         let weight = |(p, j): (usize, usize)| parts[p].weight(j);
         for (i, place) in others().enumerate() {
             let i = parts.len() + i;
+            whole[i][i] += weight(place).recip().max(-slope[i]) / weight(place);
             slope[i] += along(place) - along(base);
-            whole[i][i] += weight(place).powi(-2);
             let turned = |place: (usize, usize)| f64::from(place.0 == 0) - f64::from(base.0 == 0);
             for (k, other) in others().enumerate() {
                 let k = parts.len() + k;
@@ -470,13 +469,16 @@ pub(super) fn most_probable(
         if way.gain.is_nan() {
             return None;
         }
-        let ends = way.gain < SHORT || looks >= MOST_LOOKS;
+        let mut ends = way.gain < SHORT || looks >= MOST_LOOKS;
         if ends || looks >= PATIENCE {
             let (factor, rate) = bend(model, parts, room);
             let volume = factor.logarithm() - factor.count as f64 * libm::log(TAU);
-            if HOPE.mul_add(-way.gain, phi) + volume > enough + SLACK {
+            let last = before.as_ref().map_or(f64::INFINITY, |(_, _, _, from)| from - phi);
+            if HOPE.mul_add(-way.gain.max(last), phi) + volume > enough + SLACK {
                 return None;
             }
+            // What counts little need not be known well.
+            ends |= way.gain < ROUGH && phi + volume > enough - LITTLE;
             if ends {
                 let sigma = |at: usize| rate[at] * factor.sigma(at);
                 for p in 0..start.len() {
@@ -484,7 +486,7 @@ pub(super) fn most_probable(
                     own[p].sigma_share = if start.len() > 1 { sigma(0) } else { 0.0 };
                 }
                 // What the last step brings, if it is short.
-                let rest = if way.gain < SHORT { way.gain.max(0.0) } else { 0.0 };
+                let rest = if way.gain < ROUGH { way.gain.max(0.0) } else { 0.0 };
                 return Some(Found { parts: own, deviance, cost: phi - rest + volume });
             }
         }

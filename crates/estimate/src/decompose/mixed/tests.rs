@@ -202,6 +202,40 @@ fn two_surfaces_are_told_with_their_shares_and_temperatures() {
     }
 }
 
+/// A fit that is given up would have cost more than was asked, but for one in a hundred.
+#[test]
+fn nothing_is_given_up_that_would_count() {
+    let (mut asked, mut lost) = (0, 0);
+    for counts in [1e3, 1e4, 1e5, 1e6] {
+        let scene = Scene::new(5, 41, counts);
+        let (mut seen, _) = drawn(&scene, 5, 60, 13, RANGE_K);
+        seen.extend(scene.draw(20, 0.0, 7).0);
+        scene.with(|setting| {
+            let model = Model::new(setting).unwrap();
+            let mut room = mean_likelihood::Room::default();
+            for n in seen.chunks(41) {
+                let mut padded = vec![1.0; model.width];
+                padded[..41].copy_from_slice(n);
+                for ms in (0..5).flat_map(|a| (a + 1..5).map(move |b| [a, b])) {
+                    let from = start(&model, ms, [300.0, 300.0]);
+                    let whole = most_probable(&model, &from, &padded, f64::INFINITY, &mut room).unwrap();
+                    // What fits; what costs nearly too much is told roughly.
+                    if whole.deviance > 150.0 {
+                        continue;
+                    }
+                    for (more, rough) in [(8.0, 8.0), (30.0, 0.5)] {
+                        let found = most_probable(&model, &from, &padded, whole.cost + more, &mut room);
+                        asked += 1;
+                        lost +=
+                            usize::from(found.is_none_or(|found| (found.cost - whole.cost).abs() > rough));
+                    }
+                }
+            }
+        });
+    }
+    assert!(asked > 2000 && 100 * lost <= asked, "{lost} of {asked}");
+}
+
 /// Bounds and starts that are left out change nothing that is told.
 #[test]
 fn what_is_skipped_changes_nothing() {
