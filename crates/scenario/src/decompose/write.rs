@@ -5,7 +5,7 @@ use super::super::paths::Paths;
 use super::super::{BandsSpec, CameraSpec, camera, class};
 use super::category::{categories_written, segmentation_written};
 use super::image::{spatial_written, vision_written};
-use super::read::BAD;
+use super::read::{BAD, LIKE};
 use super::{
     Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec,
     TruthSpec, VisionSpec,
@@ -93,6 +93,9 @@ pub(crate) fn cube_written(
             .put_if("material", material.as_ref().map(|material| paths.material(material)))
             .put_quantity("temperature", Dimension::Temperature, Some(*temperature_k)),
         LightSource::Rows(rows) => Entries::default().put("rows", whole(rows)),
+        LightSource::Found { like, rows } => Entries::default()
+            .put_if("found", LIKE.iter().find(|(_, one)| one == like).map(|(name, _)| *name))
+            .put_if("rows", rows.map(|rows| whole(&rows))),
     });
     Document::default()
         .put("cube", written)
@@ -111,6 +114,7 @@ pub(crate) fn unknown_written(unknown: &PixelUnknown) -> Entries {
         .put_quantity("wavelength_shift", Dimension::Wavenumber, shared.wavelength_shift_cm1)
         .put_if("sky_scale", shared.sky_scale)
         .put_if("sky_shape", shared.sky_shape)
+        .put_if("sky_path", shared.sky_path)
         .put_quantity("light_temperature", Dimension::TemperatureDifference, shared.light_temperature_k)
         .put_if("missing_light", shared.missing_light)
         .put_quantity("air", Dimension::Length, shared.air_m)

@@ -7,6 +7,7 @@ use crate::air::Air;
 use crate::budget::Takes;
 use crate::cube_bad::BadFound;
 use crate::heat_cube::{Measured, Said, columns};
+use crate::light_found::LightFound;
 use crate::shared_unknown::{path, spectra};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
@@ -32,6 +33,8 @@ pub struct DecomposeStudy {
     pub(super) bad: BadFound,
     /// All that is told of the cube.
     pub(super) told: Told,
+    /// What is said of surroundings that it shows itself.
+    pub(super) found: Vec<LightFound>,
     /// Its spectra besides, for a shift of the bands.
     pub(super) spectra: Arc<Spectra>,
     /// The air before the camera, and the length of its path, m.
@@ -79,7 +82,7 @@ impl DecomposeStudy {
         };
         let at = |key: &str| said.at(key);
         let measured = said.measured(library)?;
-        let Measured { cube, read, bad_bands, bad, mut warnings, bands, lights, .. } = measured;
+        let Measured { cube, read, bad_bands, bad, mut warnings, bands, lights, found, .. } = measured;
         let Measured { counts_per_radiance, var_added, together, common, units_per_count, .. } = measured;
         let materials =
             materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
@@ -99,7 +102,7 @@ impl DecomposeStudy {
         if path.is_some()
             && let Some(rows) = lights.iter().position(|light| matches!(light, Light::Counts(_)))
         {
-            let found = "rows of the cube as a light, and air before the camera";
+            let found = "rows or pixels of the cube as a light, and air before the camera";
             let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
             return Err(at(&format!("environment[{rows}]"))(Error::malformed(found, instead)));
         }
@@ -155,6 +158,7 @@ impl DecomposeStudy {
                 path,
                 light_besides: Vec::new(),
             },
+            found,
             spectra: Arc::new(spectra),
             air,
             names,

@@ -28,7 +28,7 @@ impl LibraryStudy {
         again: &dyn Fn(&Setting<'_>) -> Result<Found>,
     ) -> Result<Vec<SharedOfLibrary>> {
         let (measured, scenario) = (&self.measured, &self.scenario);
-        if scenario.unknown.shared == SharedUnknown::default() {
+        if scenario.unknown.shared == SharedUnknown::default() && measured.found.is_empty() {
             return Ok(Vec::new());
         }
         let told = Told::of(&self.setting());
@@ -38,6 +38,7 @@ impl LibraryStudy {
             told: &told,
             environment,
             sky: None,
+            found: &measured.found,
             spectra: &Arc::new(spectra),
             air: None,
             source: &scenario.source,
