@@ -1,47 +1,50 @@
 //! Spectra of the surroundings that a cube itself shows: the median of pixels that are like the sky, or like the ground.
 //!
-//! Up to [`ASKED`] pixels with all samples are looked at, evenly over the cube; T_w is the brightness temperature of a pixel in band w, K, T̄
+//! Up to 16 384 pixels with all samples are looked at, evenly over the cube; T_w is the brightness temperature of a pixel in band w, K, T̄
 //! its mean over the bands that count, s the spread 1.4826 times the median distance from a median.
 //!
 //! | like | pixels | refused where | error |
 //! |---|---|---|---|
-//! | sky | as bright as the darkest five hundredth of them, all bands together and rms over the bands, to [`ALIKE`] and noise | T̄ of their median is less than [`DARKER_K`] below that of all others; rows are not named, and T_w of the median differ by less than [`CLEAR_K`], as those of a wall do | scale s and [`SCALE`]; shape s and [`SKY_SHAPE`], rms; path [`PATH`] |
-//! | ground | of the lower half of the rows, or the rows that are named; rms of T_w about T̄ below [`BLACK_K`] beside noise; T̄ within 3 s of the median | they are fewer than one in [`ONE_IN_GROUND`] | temperature s of T̄ of all such, and [`GROUND_K`]; shape s and [`GROUND_SHAPE`] |
+//! | sky | as bright as the darkest five hundredth of them, all bands together and rms over the bands, to 15 % and noise | T̄ of their median is less than [`DARKER_K`] below that of all others; rows are not named, and T_w of the median differ by less than [`CLEAR_K`], as those of a wall do | scale s and [`SCALE`]; shape s and [`SKY_SHAPE`], rms; path [`PATH`] |
+//! | ground | of the lower half of the rows, or the rows that are named; rms of T_w about T̄ below 3 K beside noise; T̄ within 3 s of the median | they are fewer than one in [`ONE_IN_GROUND`] | temperature s of T̄ of all such, and [`GROUND_K`]; shape s and [`GROUND_SHAPE`] |
+//!
+//! Of these pixels those count that have the shape of most of them. The median is that of their shapes, as strong as their median.
 //!
 //! The spread is that of the pixels, not of their median: which of them light a surface is not known. What a camera sees of the sky is some
 //! strip of it at the height θ, through 1/sin θ times the air above; what lights a surface is the mean of the hemisphere, nearly the sky seen
 //! through 1.66 times that air. From the zenith to 10° above the horizon that is 1.66 down to 0.29 of the path seen: 1 ± 0.5.
-//! What one such path leaves of the mean, up to a twentieth where the air is not of one temperature, is in scale and shape.
+//! What one such path leaves of the mean, up to a twentieth where the air is not of one temperature, is in scale and shape. What differs more
+//! finely along the wavenumbers than three polynomials is in no deviation: many counts show it as a model that is rejected.
 //!
 //! Assumptions: pictures are upright; the air between a pixel and the camera is none. Sources: W. M. Elsasser, Heat transfer by infrared
 //! radiation in the atmosphere (Harvard, 1942), for 1.66; F. R. Hampel, J. Am. Stat. Assoc. 69, 383 (1974), doi:10.2307/2285666.
 
-use hadar::cube::{Cube, Rows, Sample};
+mod looked;
+
+pub(super) use looked::{Looked, Readings};
+
 use hadar::error::{Error, Result};
-use hadar::planck::{brightness_temperature, photon_radiance_slope};
+use hadar::planck::{brightness_temperature, photon_radiance};
 use hadar::spectrum::{Bands, interpolated};
 use hadar_estimate::decompose::Light;
 use hadar_scenario::decompose::LightLike;
+use looked::{BLACK_K, NORMAL, mean, middle, range};
 use serde::Serialize;
 
-/// Pixels that are looked at.
-const ASKED: usize = 1 << 14;
 /// Of so many pixels looked at, the darkest one tells where the sky is.
 const DARKEST_ONE_IN: usize = 512;
+/// Times so many that are darker than the sky.
+const PASSED_OVER: usize = 4;
 /// Fewer pixels are no sky, and no ground.
 const LEAST: usize = 32;
 /// Of so many pixels looked at one is sky at least.
 const ONE_IN_SKY: usize = 1000;
 /// The same of the ground in its rows.
 const ONE_IN_GROUND: usize = 20;
-/// Share by which pixels of the sky differ at most.
-const ALIKE: f64 = 0.15;
 /// Kelvin by which the sky is darker than what is no sky.
 const DARKER_K: f64 = 10.0;
 /// Kelvin between the darkest and the brightest band of a clear sky.
 const CLEAR_K: f64 = 10.0;
-/// Kelvin by which what is nearly a blackbody differs from one.
-const BLACK_K: f64 = 3.0;
 /// Deviations from the median within which the ground is.
 const WITHIN: f64 = 3.0;
 /// Least of them, K.
@@ -53,12 +56,10 @@ const PATH: f64 = 0.5;
 /// By how much the ground that lights something may differ from the ground that is seen, beside its spread.
 const GROUND_K: f64 = 1.0;
 const GROUND_SHAPE: f64 = 0.01;
-/// The median distance of a normal distribution is its deviation over this.
-const NORMAL: f64 = 1.4826;
-/// Rounds in which pixels like the median are chosen again.
-const ROUNDS: usize = 4;
 /// Emissivities of air that has a path.
 const AIR: [f64; 2] = [1e-3, 0.995];
+/// Rounds in which pixels like the median are chosen again.
+const ROUNDS: usize = 4;
 
 /// Surroundings that were found in a cube.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -91,57 +92,7 @@ pub struct LightFound {
     pub air_k: Option<f64>,
 }
 
-/// What the samples of a cube are.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Readings<'a> {
-    pub(super) bands: &'a Bands,
-    pub(super) bad_bands: &'a [usize],
-    pub(super) counts_per_radiance: &'a [f64],
-    pub(super) var_added: &'a [f64],
-    pub(super) units_per_count: f64,
-}
-
-/// A pixel that was looked at: its row, counts in the bands that count.
-struct Seen {
-    row: usize,
-    counts: Vec<f64>,
-}
-
-/// Pixels of a cube that were looked at.
-pub(super) struct Looked<'a> {
-    readings: Readings<'a>,
-    rows: usize,
-    used: Vec<usize>,
-    /// Mean wavenumbers and κ Δν of the bands that count.
-    centres_cm1: Vec<f64>,
-    kappa: Vec<f64>,
-    seen: Vec<Seen>,
-    /// T̄ of each.
-    means_k: Vec<f64>,
-}
-
-impl<'a> Looked<'a> {
-    pub(super) fn at(cube: &Cube, readings: Readings<'a>) -> Result<Self> {
-        let Readings { bands, bad_bands, .. } = readings;
-        let used: Vec<usize> = (0..bands.len()).filter(|band| !bad_bands.contains(band)).collect();
-        let (wide, widths) = (bands.weigh(bands.nodes_cm1()), bands.widths_cm1());
-        let seen = match cube {
-            Cube::F32(rows) => seen(rows.as_ref(), &used, readings.units_per_count),
-            Cube::F64(rows) => seen(rows.as_ref(), &used, readings.units_per_count),
-        }?;
-        let mut looked = Self {
-            readings,
-            rows: cube.shape().rows(),
-            centres_cm1: used.iter().map(|band| wide[*band] / widths[*band]).collect(),
-            kappa: used.iter().map(|band| readings.counts_per_radiance[*band] * widths[*band]).collect(),
-            used,
-            seen,
-            means_k: Vec::new(),
-        };
-        looked.means_k = looked.seen.iter().map(|one| mean(&looked.temperatures_k(&one.counts))).collect();
-        Ok(looked)
-    }
-
+impl Looked<'_> {
     /// The light that pixels in some rows are like, and what is said of it.
     pub(super) fn find(
         &self,
@@ -161,35 +112,37 @@ impl<'a> Looked<'a> {
         Ok((Light::Counts(counts), found))
     }
 
-    fn within(&self, rows: [usize; 2]) -> Vec<usize> {
-        (0..self.seen.len()).filter(|i| (rows[0]..rows[1]).contains(&self.seen[*i].row)).collect()
-    }
-
     fn sky(&self, light: usize, rows: Option<[usize; 2]>) -> Result<(Vec<f64>, LightFound)> {
         let mut asked = self.within(rows.unwrap_or([0, self.rows]));
         let refused = |found: String| {
             let instead = "name rows that show the sky beside it, or give what lights the scene as a temperature or a spectrum";
-            Err(Error::malformed(found, instead).for_key("found"))
+            Err(Error::malformed(found, instead))
         };
         if asked.len() < LEAST {
             return refused(format!("no sky among {} pixels with all their samples", asked.len()));
         }
         let total = |i: usize| self.seen[i].counts.iter().zip(&self.kappa).map(|(n, k)| n / k).sum::<f64>();
         asked.sort_by(|a, b| total(*a).total_cmp(&total(*b)));
-        let darkest = (asked.len() / DARKEST_ONE_IN).max(LEAST / 2);
-        let mut chosen: Vec<usize> = asked[..darkest].to_vec();
-        let mut median = self.median(&chosen);
-        for _ in 0..ROUNDS {
-            chosen = asked.iter().copied().filter(|i| self.is_alike(*i, &median)).collect();
-            if chosen.is_empty() {
+        let of = asked.len();
+        let (darkest, least) = ((of / DARKEST_ONE_IN).max(LEAST / 2), LEAST.max(of / ONE_IN_SKY));
+        let (mut chosen, mut median) = (Vec::new(), Vec::new());
+        // Few that are darker than the sky are something else, and passed over.
+        for skipped in 0..PASSED_OVER {
+            let Some(first) = asked.get(skipped * darkest..(skipped + 1) * darkest) else { break };
+            median = self.median(first);
+            for _ in 0..ROUNDS {
+                chosen = asked.iter().copied().filter(|i| self.is_alike(*i, &median)).collect();
+                median = self.median(&chosen);
+            }
+            chosen = self.of_one_shape(&chosen);
+            if chosen.len() >= least {
                 break;
             }
-            median = self.median(&chosen);
         }
-        let of = asked.len();
-        if chosen.len() < LEAST.max(of / ONE_IN_SKY) {
+        median = if chosen.is_empty() { median } else { self.median(&chosen) };
+        if chosen.len() < least {
             return refused(format!(
-                "{} of {of} pixels are as dark as the darkest: that is no sky",
+                "{} of {of} pixels are as dark as the darkest: these are too few for a sky",
                 chosen.len()
             ));
         }
@@ -241,7 +194,7 @@ impl<'a> Looked<'a> {
         let refused = |count: usize| {
             let found = format!("{count} of {of} pixels send what a blackbody does, to {BLACK_K} K");
             let instead = "name rows that show the ground beside it, or give what lights the scene as a temperature or a spectrum";
-            Err(Error::malformed(found, instead).for_key("found"))
+            Err(Error::malformed(found, instead))
         };
         if black.len() < least {
             return refused(black.len());
@@ -253,6 +206,7 @@ impl<'a> Looked<'a> {
         let far_k = WITHIN_K.max(WITHIN * spread_k);
         let chosen: Vec<usize> =
             black.iter().copied().filter(|i| (self.means_k[*i] - middle_k).abs() <= far_k).collect();
+        let chosen = self.of_one_shape(&self.of_one_shape(&chosen));
         if chosen.len() < least {
             return refused(chosen.len());
         }
@@ -276,65 +230,6 @@ impl<'a> Looked<'a> {
             },
         ))
     }
-
-    /// Brightness temperatures in the bands that count, K; 0 where nothing is sent.
-    fn temperatures_k(&self, counts: &[f64]) -> Vec<f64> {
-        let each = counts.iter().zip(&self.kappa).zip(&self.centres_cm1);
-        each.map(|((n, k), nu)| if *n > 0.0 { brightness_temperature(*nu, n / k) } else { 0.0 }).collect()
-    }
-
-    /// Variance of the noise of counts in the `w`th band that counts.
-    fn var(&self, w: usize, counts: f64) -> f64 {
-        let added = self.used.get(w).and_then(|band| self.readings.var_added.get(*band));
-        counts.max(0.0) + added.copied().unwrap_or(0.0)
-    }
-
-    /// Whether a pixel is like a median in strength and shape.
-    fn is_alike(&self, i: usize, median: &[f64]) -> bool {
-        let [strength, shape, noise] = self.off(i, median);
-        let var = ALIKE * ALIKE;
-        strength * strength <= var + 9.0 * noise / median.len() as f64 && shape <= var + 4.0 * noise
-    }
-
-    /// By what share a pixel is stronger than a median, the mean square over the bands of what it differs by besides, and what noise does to that.
-    fn off(&self, i: usize, median: &[f64]) -> [f64; 3] {
-        let counts = &self.seen[i].counts;
-        let used = || counts.iter().zip(median).enumerate().filter(|(_, (_, m))| **m > 0.0);
-        let bands = used().count().max(1) as f64;
-        let share = |n: f64, m: f64| n / m;
-        let strength = used().map(|(_, (n, m))| share(*n, *m)).sum::<f64>() / bands;
-        let shape = used().map(|(_, (n, m))| (share(*n, *m) - strength).powi(2)).sum::<f64>() / bands;
-        let noise = used().map(|(w, (_, m))| self.var(w, *m) / m / m).sum::<f64>() / bands;
-        [strength - 1.0, shape, noise]
-    }
-
-    /// Spread of the strengths of pixels, and of their shapes beside noise, as shares.
-    fn spread(&self, chosen: &[usize], median: &[f64]) -> [f64; 2] {
-        let off: Vec<[f64; 3]> = chosen.iter().map(|i| self.off(*i, median)).collect();
-        let mut strengths: Vec<f64> = off.iter().map(|[strength, ..]| strength.abs()).collect();
-        let mut shapes: Vec<f64> = off.iter().map(|[_, shape, noise]| shape - noise).collect();
-        [NORMAL * middle(&mut strengths), middle(&mut shapes).max(0.0).sqrt()]
-    }
-
-    /// Whether a pixel sends nearly what a blackbody does.
-    fn is_black(&self, i: usize) -> bool {
-        let (counts, mean_k) = (&self.seen[i].counts, self.means_k[i]);
-        let bands_k = self.temperatures_k(counts);
-        let bands = bands_k.len().max(1) as f64;
-        let square = bands_k.iter().map(|t| (t - mean_k).powi(2)).sum::<f64>() / bands;
-        let of_noise = |w: usize| {
-            let slope = self.kappa[w] * photon_radiance_slope(self.centres_cm1[w], mean_k);
-            self.var(w, counts[w]) / slope / slope
-        };
-        let noise = (0..bands_k.len()).map(of_noise).sum::<f64>() / bands;
-        // What noise adds scatters itself.
-        square - noise <= BLACK_K * BLACK_K + 3.0 * noise * (2.0 / bands).sqrt()
-    }
-
-    fn median(&self, chosen: &[usize]) -> Vec<f64> {
-        let of = |w: usize| middle(&mut chosen.iter().map(|i| self.seen[*i].counts[w]).collect::<Vec<_>>());
-        (0..self.used.len()).map(of).collect()
-    }
 }
 
 /// What share of a blackbody's radiance at the temperature of its air a sky sends at the nodes: at `least_k`, or as warm as it looks in its brightest band.
@@ -353,7 +248,7 @@ pub(super) fn air_of_sky(
     let (xs, ys): (Vec<f64>, Vec<f64>) = rows
         .into_iter()
         .map(|(nu, radiance)| {
-            let black = hadar::planck::photon_radiance(nu, air_k);
+            let black = photon_radiance(nu, air_k);
             (nu, if black > 0.0 { (radiance / black).clamp(least, most) } else { most })
         })
         .unzip();
@@ -363,34 +258,5 @@ pub(super) fn air_of_sky(
     }
 }
 
-fn seen<S: Sample>(cube: &dyn Rows<S>, used: &[usize], unit: f64) -> Result<Vec<Seen>> {
-    let shape = cube.shape();
-    // By its place, not by how many are whole: a pixel that is missing moves no other.
-    let stride = (shape.rows() * shape.columns()).div_ceil(ASKED).max(1);
-    let (mut all, mut buffer) = (Vec::new(), Vec::new());
-    for row in 0..shape.rows() {
-        hadar::stop::check();
-        let own = cube.read(row..row + 1, &mut buffer)?.chunks(shape.bands()).enumerate();
-        for (_, pixel) in own.filter(|(x, _)| (row * shape.columns() + x).is_multiple_of(stride)) {
-            let counts: Vec<f64> = used.iter().map(|band| pixel[*band].into() / unit).collect();
-            if counts.iter().all(|n| n.is_finite()) {
-                all.push(Seen { row, counts });
-            }
-        }
-    }
-    Ok(all)
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
-
-fn range(values: &[f64]) -> [f64; 2] {
-    let ends = |f: fn(f64, f64) -> f64| values.iter().copied().reduce(f).unwrap_or(f64::NAN);
-    [ends(f64::min), ends(f64::max)]
-}
-
-fn middle(values: &mut [f64]) -> f64 {
-    let place = values.len() / 2;
-    if values.is_empty() { f64::NAN } else { *values.select_nth_unstable_by(place, f64::total_cmp).1 }
-}
+#[cfg(test)]
+mod tests;
