@@ -14,7 +14,7 @@ use hadar::order;
 use hadar::spectrum::{Bands, interpolated};
 use hadar_estimate::decompose::{Cause, Light, Path, Spectra, Told, Unknown};
 use hadar_scenario::Source;
-use hadar_scenario::decompose::{LightSource, SharedUnknown};
+use hadar_scenario::decompose::{AirOfCube, LightSource, SharedUnknown};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -178,6 +178,31 @@ pub(super) fn hottest_k(environment: &[LightSource]) -> f64 {
         _ => None,
     });
     warm.reduce(f64::max).unwrap_or(MISSING_K)
+}
+
+/// The air that is said of a cube, with the length of its path, m, and what it does at the nodes; refused beside lights that were counted behind it.
+pub(super) fn air_of_cube(
+    spec: Option<&AirOfCube>,
+    (nodes, lights): (&[f64], &[Light]),
+    source: &Source,
+) -> Result<(Option<(Air, f64)>, Option<Path>)> {
+    let at = |key: &str| {
+        let (place, key) = (source.place(key), key.to_owned());
+        move |error: Error| match &error {
+            Error::At { place, .. } if place.path.is_some() => error.for_key(key.clone()),
+            _ => error.at(place.clone()),
+        }
+    };
+    let air = spec.map(|one| Ok((Air::looked_up(&one.air, source)?, one.distance_m))).transpose()?;
+    let path = air.as_ref().map(|air| path(air, nodes)).transpose().map_err(at("atmosphere"))?;
+    if path.is_some()
+        && let Some(counted) = lights.iter().position(|light| matches!(light, Light::Counts(_)))
+    {
+        let found = "rows or pixels of the cube as a light, and air before the camera";
+        let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
+        return Err(at(&format!("environment[{counted}]"))(Error::malformed(found, instead)));
+    }
+    Ok((air, path))
 }
 
 /// The air at the nodes.

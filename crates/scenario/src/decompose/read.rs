@@ -54,10 +54,7 @@ impl DecomposeScenario {
             truth: root.read("truth", |entry| truth(entry, &data))?,
             source: Source::default(),
         };
-        if scenario.unknown.shared.air_m.is_some() && scenario.atmosphere.is_none() {
-            let found = Error::malformed("a length of no air", "write [atmosphere] too, or leave it out");
-            return Err(root.fail("unknown.air", found));
-        }
+        no_air_without(root, &scenario.unknown, scenario.atmosphere.is_some())?;
         if scenario.categories.is_empty()
             && let Some(key) = match &scenario.truth {
                 _ if root.get("segmentation").is_some() => Some("segmentation"),
@@ -215,8 +212,17 @@ enum Gain {
     Shared(f64),
 }
 
+/// Refuses a length of air that nothing says.
+pub(crate) fn no_air_without(root: &Section<'_>, unknown: &PixelUnknown, is_said: bool) -> Result<()> {
+    if unknown.shared.air_m.is_none() || is_said {
+        return Ok(());
+    }
+    let found = Error::malformed("a length of no air", "write [atmosphere] too, or leave it out");
+    Err(root.fail("unknown.air", found))
+}
+
 /// The air of a cube.
-fn air(entry: &Entry<'_>) -> Result<AirOfCube> {
+pub(crate) fn air(entry: &Entry<'_>) -> Result<AirOfCube> {
     let air = AtmosphereSpec::read(entry)?;
     let distance_m = entry.section()?.require("distance")?.quantity()?;
     Ok(AirOfCube { air, distance_m })

@@ -7,8 +7,8 @@ use super::category::{categories_written, segmentation_written};
 use super::image::{spatial_written, vision_written};
 use super::read::{BAD, LIKE};
 use super::{
-    Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec,
-    TruthSpec, VisionSpec,
+    AirOfCube, Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown,
+    SegmentationSpec, TruthSpec, VisionSpec,
 };
 use hadar::units::Dimension;
 use toml::Value;
@@ -35,12 +35,7 @@ impl DecomposeScenario {
             cube_written(&self.cube, self.bands.as_ref(), self.camera.as_ref(), &self.environment, paths);
         Document::titled(self.title.as_ref())
             .and(cube)
-            .put_if(
-                "atmosphere",
-                self.atmosphere.as_ref().map(|one| {
-                    one.air.written(paths).put_quantity("distance", Dimension::Length, Some(one.distance_m))
-                }),
-            )
+            .put_if("atmosphere", self.atmosphere.as_ref().map(|one| air_written(one, paths)))
             .put_if("class", class::all_written(&self.classes, paths))
             .put("library", written)
             .put("unknown", unknown_written(&self.unknown))
@@ -102,6 +97,11 @@ pub(crate) fn cube_written(
         .put_if("bands", bands.map(|spec| spec.written(paths)))
         .put_if("camera", camera.map(|spec| camera::written(spec, paths)))
         .put("environment", lights.collect::<Vec<_>>())
+}
+
+/// `[atmosphere]`.
+pub(crate) fn air_written(one: &AirOfCube, paths: Paths<'_>) -> Entries {
+    one.air.written(paths).put_quantity("distance", Dimension::Length, Some(one.distance_m))
 }
 
 /// `[unknown]`.

@@ -8,11 +8,11 @@ use crate::budget::Takes;
 use crate::cube_bad::BadFound;
 use crate::heat_cube::{Measured, Said, columns};
 use crate::light_found::LightFound;
-use crate::shared_unknown::{path, spectra};
+use crate::shared_unknown::{air_of_cube, spectra};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar_estimate::decompose::{Alike, Light, SpatialPrior, Spectra, Told};
+use hadar_estimate::decompose::{Alike, SpatialPrior, Spectra, Told};
 use hadar_estimate::segmentation::Categories;
 use hadar_formats::cube::Found;
 use hadar_formats::spectra::measured;
@@ -95,17 +95,7 @@ impl DecomposeStudy {
             material.emissivity(nodes).map_err(|error| error.at(scenario.place(&key)))
         });
         let emissivities = emissivities.collect::<Result<Vec<_>>>()?;
-        let atmosphere = scenario.atmosphere.as_ref();
-        let air = atmosphere.map(|one| Ok((Air::looked_up(&one.air, &scenario.source)?, one.distance_m)));
-        let air = air.transpose()?;
-        let path = air.as_ref().map(|air| path(air, nodes)).transpose().map_err(at("atmosphere"))?;
-        if path.is_some()
-            && let Some(rows) = lights.iter().position(|light| matches!(light, Light::Counts(_)))
-        {
-            let found = "rows or pixels of the cube as a light, and air before the camera";
-            let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
-            return Err(at(&format!("environment[{rows}]"))(Error::malformed(found, instead)));
-        }
+        let (air, path) = air_of_cube(scenario.atmosphere.as_ref(), (nodes, &lights), &scenario.source)?;
         let each: Vec<&Material> = materials.iter().map(|one| &one.material).collect();
         let of = (&each[..], &scenario.environment[..], library);
         let spectra = spectra((&bands, &emissivities, &lights), of, air.as_ref());

@@ -33,14 +33,15 @@ impl LibraryStudy {
         }
         let told = Told::of(&self.setting());
         let environment = &scenario.environment[..];
-        let spectra = spectra((&measured.bands, &[], &measured.lights), (&[], environment, library), None);
+        let spectra =
+            spectra((&measured.bands, &[], &measured.lights), (&[], environment, library), self.air.as_ref());
         let of = Of {
             told: &told,
             environment,
             sky: None,
             found: &measured.found,
             spectra: &Arc::new(spectra),
-            air: None,
+            air: self.air.as_ref(),
             source: &scenario.source,
         };
         let used: Vec<usize> =
