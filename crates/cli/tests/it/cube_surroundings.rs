@@ -121,7 +121,7 @@ fn what_is_decided_with_surroundings_that_were_found_is_right() {
         Otherwise { third: 0.1, ..RIGHT },
         Otherwise { path: 2.5, counts: 1e-15, ..RIGHT },
         Otherwise { third: 0.1, counts: 1e-14, ..RIGHT },
-        Otherwise { path: 12.0, ..RIGHT },
+        Otherwise { path: 5.0, ..RIGHT },
     ];
     for seed in 1..3 {
         for (place, case) in cases.into_iter().enumerate() {
