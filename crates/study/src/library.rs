@@ -68,7 +68,7 @@ impl LibraryStudy {
                 .map_err(|(key, error)| said.at(&key)(error))
         });
         let at_nodes = (measured.bands.nodes_cm1(), &measured.lights[..]);
-        let (air, path) = air_of_cube(scenario.atmosphere.as_ref(), at_nodes, &scenario.source)?;
+        let (air, path) = air_of_cube(scenario.atmosphere.as_ref(), at_nodes, &scenario.source)?.unzip();
         Ok(Self { scenario: scenario.clone(), truth: truth.transpose()?, measured, air, path })
     }
 

@@ -185,7 +185,7 @@ pub(super) fn air_of_cube(
     spec: Option<&AirOfCube>,
     (nodes, lights): (&[f64], &[Light]),
     source: &Source,
-) -> Result<(Option<(Air, f64)>, Option<Path>)> {
+) -> Result<Option<((Air, f64), Path)>> {
     let at = |key: &str| {
         let (place, key) = (source.place(key), key.to_owned());
         move |error: Error| match &error {
@@ -193,16 +193,15 @@ pub(super) fn air_of_cube(
             _ => error.at(place.clone()),
         }
     };
-    let air = spec.map(|one| Ok((Air::looked_up(&one.air, source)?, one.distance_m))).transpose()?;
-    let path = air.as_ref().map(|air| path(air, nodes)).transpose().map_err(at("atmosphere"))?;
-    if path.is_some()
-        && let Some(counted) = lights.iter().position(|light| matches!(light, Light::Counts(_)))
-    {
+    let Some(spec) = spec else { return Ok(None) };
+    let air = (Air::looked_up(&spec.air, source)?, spec.distance_m);
+    let path = path(&air, nodes).map_err(at("atmosphere"))?;
+    if let Some(counted) = lights.iter().position(|light| matches!(light, Light::Counts(_))) {
         let found = "rows or pixels of the cube as a light, and air before the camera";
         let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
         return Err(at(&format!("environment[{counted}]"))(Error::malformed(found, instead)));
     }
-    Ok((air, path))
+    Ok(Some((air, path)))
 }
 
 /// The air at the nodes.

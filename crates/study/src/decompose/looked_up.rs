@@ -95,7 +95,8 @@ impl DecomposeStudy {
             material.emissivity(nodes).map_err(|error| error.at(scenario.place(&key)))
         });
         let emissivities = emissivities.collect::<Result<Vec<_>>>()?;
-        let (air, path) = air_of_cube(scenario.atmosphere.as_ref(), (nodes, &lights), &scenario.source)?;
+        let (air, path) =
+            air_of_cube(scenario.atmosphere.as_ref(), (nodes, &lights), &scenario.source)?.unzip();
         let each: Vec<&Material> = materials.iter().map(|one| &one.material).collect();
         let of = (&each[..], &scenario.environment[..], library);
         let spectra = spectra((&bands, &emissivities, &lights), of, air.as_ref());
