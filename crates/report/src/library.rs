@@ -129,7 +129,7 @@ fn decomposition(result: &LibraryFound) -> DecomposeScenario {
         cube: scenario.cube.clone(),
         bands: scenario.bands.clone(),
         camera: scenario.camera.clone(),
-        atmosphere: None,
+        atmosphere: scenario.atmosphere.clone(),
         environment: scenario.environment.clone(),
         library: LibrarySpec {
             path: Some("library.csv".into()),

@@ -143,6 +143,22 @@ pub enum LightSource {
     },
     /// The mean of rows of the cube itself, from the first up to the second.
     Rows([usize; 2]),
+    /// Pixels of the cube that are like it.
+    Found {
+        /// What they are like.
+        like: LightLike,
+        /// Rows in which they are looked for, from the first up to the second; all if silent.
+        rows: Option<[usize; 2]>,
+    },
+}
+
+/// What pixels are like whose spectrum is taken for one of the surroundings (`environment.found`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LightLike {
+    /// The sky: the darkest ones.
+    Sky,
+    /// The ground: warm ones that send nearly what a blackbody does.
+    Ground,
 }
 
 /// The materials that a pixel may be (`[library]`).
@@ -184,6 +200,8 @@ pub struct SharedUnknown {
     pub sky_scale: Option<f64>,
     /// Of its spectrum, rms over the bands, as a share.
     pub sky_shape: Option<f64>,
+    /// Of the length of the path through the air that the sky's light comes by, as a share.
+    pub sky_path: Option<f64>,
     /// Of the temperature of each of the surroundings that is a surface, K.
     pub light_temperature_k: Option<f64>,
     /// Of the lighting factor of a light besides those that are told.

@@ -6,7 +6,7 @@
 mod read;
 mod write;
 
-use super::decompose::{HeatCube, LightSource, PixelUnknown, TruthSpec};
+use super::decompose::{AirOfCube, HeatCube, LightSource, PixelUnknown, TruthSpec};
 use super::{BandsSpec, CameraSpec, Source};
 use hadar::fisher::emissivity::Smoothness;
 
@@ -43,6 +43,8 @@ pub struct LibraryScenario {
     pub bands: Option<BandsSpec>,
     /// The camera, where it says what the counts are.
     pub camera: Option<CameraSpec>,
+    /// The air before the camera (`[atmosphere]`); none if silent.
+    pub atmosphere: Option<AirOfCube>,
     /// Spectra of the surroundings (`[[environment]]`).
     pub environment: Vec<LightSource>,
     /// How pixels are grouped (`[clusters]`).

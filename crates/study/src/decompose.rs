@@ -13,6 +13,7 @@ mod truth;
 mod vision;
 mod worth;
 
+pub use crate::light_found::LightFound;
 pub use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict};
 pub use estimated::{SharedFound, SharedRow};
 pub use kept::{Block, Keep, Kept, MIXED, MIXED_MATERIALS, MapFiles, mixed_layers};

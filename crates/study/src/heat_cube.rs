@@ -6,6 +6,7 @@ use super::cube_noise::{NoiseOfBands, of_bands};
 use super::cube_rows;
 use super::cube_unit::check_light;
 use super::cube_without::without;
+use super::light_found::{LightFound, Looked, Readings};
 use super::pixel_map::Map;
 use super::{Warning, bands, camera, camera_bands};
 use hadar::cube::Cube;
@@ -55,6 +56,8 @@ pub(super) struct Measured {
     pub(super) warnings: Vec<Warning>,
     pub(super) bands: Bands,
     pub(super) lights: Vec<Light>,
+    /// What is said of those that the cube itself shows.
+    pub(super) found: Vec<LightFound>,
     pub(super) counts_per_radiance: Vec<f64>,
     pub(super) var_added: Vec<f64>,
     /// What all bands and pixels are off by together, a deviation of each band in counts; none where nothing is said.
@@ -174,7 +177,14 @@ impl Said<'_> {
         };
         noise_of_left_out(&mut var_added, &bad_bands).map_err(in_table).map_err(at("cube.noise"))?;
         let cube = without(cube, &bad.map);
-        let lights = self.lights(lit, (&cube, &bad_bands, units_per_count), &mut warnings)?;
+        let readings = Readings {
+            bands: &bands,
+            bad_bands: &bad_bands,
+            counts_per_radiance: &counts_per_radiance,
+            var_added: &var_added,
+            units_per_count,
+        };
+        let (lights, found) = self.lights(lit, (&cube, readings), &mut warnings)?;
         // Of a band that the file lacks there is none.
         let in_counts = |sigma: Vec<f64>| -> Vec<f64> {
             let one = |sigma: f64| if sigma.is_nan() { 0.0 } else { sigma / units_per_count };
@@ -190,6 +200,7 @@ impl Said<'_> {
             warnings,
             bands,
             lights,
+            found,
             counts_per_radiance,
             var_added,
             together,
@@ -248,16 +259,27 @@ impl Said<'_> {
         })
     }
 
-    /// The surroundings: `lit` where they are told, else rows of the cube without what is not like the rest of them.
+    /// The surroundings: `lit` where they are told, else rows of the cube without what is not like the rest of them, or what is found in it.
     fn lights(
         &self,
         lit: Vec<Option<Vec<f64>>>,
-        (cube, bad_bands, units_per_count): (&Cube, &[usize], f64),
+        (cube, readings): (&Cube, Readings<'_>),
         warnings: &mut Vec<Warning>,
-    ) -> Result<Vec<Light>> {
+    ) -> Result<(Vec<Light>, Vec<LightFound>)> {
+        let Readings { bad_bands, units_per_count, .. } = readings;
+        let is_asked = self.environment.iter().any(|source| matches!(source, LightSource::Found { .. }));
+        let looked =
+            is_asked.then(|| Looked::at(cube, readings)).transpose().map_err(self.at("cube.data"))?;
+        let mut all_found = Vec::new();
         let each = self.environment.iter().zip(lit).enumerate();
-        each.map(|(environment, (source, lit))| match source {
-            LightSource::Rows(rows) => {
+        let lights = each.map(|(environment, (source, lit))| match (source, &looked) {
+            (LightSource::Found { like, rows }, Some(looked)) => {
+                let key = format!("environment[{environment}].found");
+                let (light, found) = looked.find(environment, (*like, *rows)).map_err(self.at(&key))?;
+                all_found.push(found);
+                Ok(light)
+            }
+            (LightSource::Rows(rows), _) => {
                 let (light, left_out) = counted(cube, *rows, bad_bands, units_per_count)
                     .map_err(self.at(&format!("environment[{environment}]")))?;
                 if left_out > 0 {
@@ -267,8 +289,9 @@ impl Said<'_> {
                 Ok(light)
             }
             _ => Ok(Light::Radiance(lit.unwrap_or_default())),
-        })
-        .collect()
+        });
+        let lights = lights.collect::<Result<Vec<_>>>()?;
+        Ok((lights, all_found))
     }
 }
 
@@ -317,7 +340,7 @@ pub(super) fn sent(light: &LightSource, nodes: &[f64], library: &Library) -> Res
             Ok(Some(radiance))
         }
         LightSource::Spectrum { path, column } => spectrum(path, column, nodes).map(Some),
-        LightSource::Rows(_) => Ok(None),
+        LightSource::Rows(_) | LightSource::Found { .. } => Ok(None),
     }
 }
 

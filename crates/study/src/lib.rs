@@ -42,6 +42,7 @@ mod heat_cube;
 mod identify;
 mod integration;
 pub mod library;
+mod light_found;
 mod looked_up;
 mod memory;
 mod model_judged;

@@ -8,10 +8,12 @@ pub use results::{ClusterRow, LibraryFound, SharedOfLibrary, TruthOfClusters};
 use super::Warning;
 use super::decompose::Truth;
 use super::heat_cube::{Measured, Said};
+use crate::air::Air;
 use crate::budget::Takes;
+use crate::shared_unknown::air_of_cube;
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar_estimate::decompose::{NO_MATERIAL, Setting};
+use hadar_estimate::decompose::{NO_MATERIAL, Path, Setting};
 use hadar_estimate::separation::{Asked, COUNT, library_from_cube};
 use hadar_scenario::LibraryScenario;
 
@@ -25,6 +27,9 @@ const HARDLY: f64 = 0.05;
 pub struct LibraryStudy {
     scenario: LibraryScenario,
     measured: Measured,
+    /// The air before the camera with the length of its path, m, and what it does at the nodes.
+    air: Option<(Air, f64)>,
+    path: Option<Path>,
     truth: Option<Truth>,
 }
 
@@ -62,7 +67,9 @@ impl LibraryStudy {
             Truth::open(spec, shape, measured.lights.len(), usize::from(NO_MATERIAL))
                 .map_err(|(key, error)| said.at(&key)(error))
         });
-        Ok(Self { scenario: scenario.clone(), truth: truth.transpose()?, measured })
+        let at_nodes = (measured.bands.nodes_cm1(), &measured.lights[..]);
+        let (air, path) = air_of_cube(scenario.atmosphere.as_ref(), at_nodes, &scenario.source)?.unzip();
+        Ok(Self { scenario: scenario.clone(), truth: truth.transpose()?, measured, air, path })
     }
 
     fn setting(&self) -> Setting<'_> {
@@ -78,7 +85,7 @@ impl LibraryStudy {
             lighting_total: scenario.unknown.lighting_total,
             gain: false,
             bad_bands: &measured.bad_bands,
-            path: None,
+            path: self.path.as_ref(),
             light_besides: &[],
         }
     }

@@ -64,7 +64,7 @@ pub struct BandResidual {
 /// Something that may be otherwise than told, and what it would explain.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CauseRow {
-    /// `gain`, `wavelength-shift`, `light-scale`, `light-tilt`, `light-temperature`, `lighting-total`, `light-missing`, `air`, `band` or
+    /// `gain`, `wavelength-shift`, `light-scale`, `light-tilt`, `light-path`, `light-temperature`, `lighting-total`, `light-missing`, `air`, `band` or
     /// `noise`.
     pub cause: &'static str,
     /// Which of the surroundings, from 0.
@@ -102,6 +102,7 @@ pub(crate) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>
         Cause::WavelengthShift(_) => ("wavelength-shift", None, None, "cm^-1"),
         Cause::LightScale(light) => ("light-scale", Some(*light), None, ""),
         Cause::LightShape { light, .. } => ("light-tilt", Some(*light), None, ""),
+        Cause::LightPath { light, .. } => ("light-path", Some(*light), None, ""),
         Cause::LightTemperature { light, .. } => ("light-temperature", Some(*light), None, "K"),
         Cause::LightingTotal => ("lighting-total", None, None, ""),
         Cause::LightMissing { .. } => ("light-missing", None, None, ""),

@@ -6,6 +6,7 @@
 
 use crate::air::Air;
 use crate::heat_cube::sent;
+use crate::light_found::{LightFound, air_of_sky};
 use crate::model_judged::said;
 use hadar::error::{Error, Result};
 use hadar::material::{Library, Material};
@@ -13,7 +14,7 @@ use hadar::order;
 use hadar::spectrum::{Bands, interpolated};
 use hadar_estimate::decompose::{Cause, Light, Path, Spectra, Told, Unknown};
 use hadar_scenario::Source;
-use hadar_scenario::decompose::{LightSource, SharedUnknown};
+use hadar_scenario::decompose::{AirOfCube, LightSource, SharedUnknown};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -25,7 +26,7 @@ const MISSING_K: f64 = 293.15;
 /// An unknown that is stated, by its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Stated {
-    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape`, `light-temperature`, `light-missing` or `air`.
+    /// `gain`, `wavelength-shift`, `light-scale`, `light-shape`, `light-path`, `light-temperature`, `light-missing` or `air`.
     pub unknown: &'static str,
     /// Which of the surroundings, from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -33,7 +34,7 @@ pub struct Stated {
     /// Order of the polynomial of a shape.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<usize>,
-    /// Deviation that was stated.
+    /// Deviation that was stated, or that a light was found with.
     pub sigma_stated: f64,
     /// `cm^-1`, `K`, `m`, or nothing for a share.
     pub unit: &'static str,
@@ -58,6 +59,8 @@ pub(super) struct Of<'a> {
     pub(super) environment: &'a [LightSource],
     /// Which of them is named the sky.
     pub(super) sky: Option<usize>,
+    /// Those that were found in the cube.
+    pub(super) found: &'a [LightFound],
     pub(super) spectra: &'a Arc<Spectra>,
     pub(super) air: Option<&'a (Air, f64)>,
     pub(super) source: &'a Source,
@@ -66,62 +69,38 @@ pub(super) struct Of<'a> {
 impl Of<'_> {
     /// What is unknown, as amounts of causes.
     pub(super) fn unknowns(&self, stated: &SharedUnknown) -> Result<Vec<Unknown>> {
-        let (told, lights) = (self.told, &self.told.surroundings);
+        let told = self.told;
         let mut all = Vec::new();
         let mut add = |cause: Cause, sigma: f64| all.push(Unknown { cause, sigma });
-        let lacks = |key: &str, found: &str| {
-            let error =
-                Error::malformed(found, "write an [[environment]] that it is said of, or leave it out");
-            Err(error.at(self.source.place(key)))
-        };
+        let lacks = |key: &str, found: &str| Err(self.lacks(key, found));
         if let Some(sigma) = stated.gain {
             add(Cause::Gain, sigma);
         }
         if let Some(sigma) = stated.wavelength_shift_cm1 {
             add(Cause::WavelengthShift(self.spectra.clone()), sigma);
         }
-        let of_sky = [("sky_scale", stated.sky_scale), ("sky_shape", stated.sky_shape)];
-        if let Some((key, _)) = of_sky.iter().find(|(_, sigma)| sigma.is_some()) {
-            let strength = |light: &Light| -> f64 {
-                match light {
-                    Light::Radiance(radiance) => told
-                        .bands
-                        .weigh(radiance)
-                        .iter()
-                        .zip(&told.counts_per_radiance)
-                        .map(|(s, k)| s * k)
-                        .sum(),
-                    Light::Counts(counts) => counts.iter().sum(),
-                }
-            };
-            let darkest = lights.iter().enumerate().min_by(|a, b| strength(a.1).total_cmp(&strength(b.1)));
-            let Some(sky) = self.sky.or(darkest.map(|(sky, _)| sky)) else {
-                return lacks(&format!("unknown.{key}"), "sky without surroundings");
-            };
-            if let Some(sigma) = stated.sky_scale {
-                add(Cause::LightScale(sky), sigma);
-            }
-            if let Some(sigma) = stated.sky_shape {
-                for order in 1..4 {
-                    add(
-                        Cause::LightShape { light: sky, order },
-                        sigma * ((2 * order + 1) as f64 / 3.0).sqrt(),
-                    );
-                }
-            }
+        self.of_sky(stated, &mut add)?;
+        let ground =
+            |one: &LightFound| one.temperature_sigma_k.map(|sigma| (one.light, one.temperature_k, sigma));
+        let grounds = self.found.iter().filter_map(ground);
+        let surfaces = self.environment.iter().enumerate().filter_map(|(light, source)| match source {
+            LightSource::Surface { temperature_k, .. } => Some((light, *temperature_k)),
+            _ => None,
+        });
+        let warm = surfaces.map(|(light, temperature_k)| (light, temperature_k, None));
+        let warm =
+            warm.chain(grounds.map(|(light, temperature_k, sigma)| (light, temperature_k, Some(sigma))));
+        let warm: Vec<_> = warm.collect();
+        if stated.light_temperature_k.is_some() && warm.is_empty() {
+            return lacks("unknown.light_temperature", "surroundings without temperature");
         }
-        if let Some(sigma) = stated.light_temperature_k {
-            let surfaces = self.environment.iter().enumerate().filter_map(|(light, source)| match source {
-                LightSource::Surface { temperature_k, .. } => Some((light, *temperature_k)),
-                _ => None,
-            });
-            let surfaces: Vec<_> = surfaces.collect();
-            if surfaces.is_empty() {
-                return lacks("unknown.light_temperature", "surroundings without temperature");
-            }
-            for (light, temperature_k) in surfaces {
+        for (light, temperature_k, found) in warm {
+            if let Some(sigma) = stated.light_temperature_k.or(found) {
                 add(Cause::LightTemperature { light, temperature_k }, sigma);
             }
+        }
+        for one in self.found.iter().filter(|one| one.temperature_sigma_k.is_some()) {
+            shape(one.light, one.shape_sigma, &mut add);
         }
         if let Some(sigma) = stated.missing_light {
             add(Cause::LightMissing { temperature_k: hottest_k(self.environment) }, sigma);
@@ -132,6 +111,64 @@ impl Of<'_> {
         }
         Ok(all)
     }
+
+    fn lacks(&self, key: &str, found: &str) -> Error {
+        let error = Error::malformed(found, "write an [[environment]] that it is said of, or leave it out");
+        error.at(self.source.place(key))
+    }
+
+    /// What is unknown of the sky: as stated, else as it was found.
+    fn of_sky(&self, stated: &SharedUnknown, add: &mut impl FnMut(Cause, f64)) -> Result<()> {
+        let told = self.told;
+        let signal = |light: &Light| match light {
+            Light::Radiance(radiance) => told.bands.weigh(radiance),
+            Light::Counts(counts) => {
+                counts.iter().zip(&told.counts_per_radiance).map(|(n, k)| n / k).collect()
+            }
+        };
+        let strength = |light: &Light| -> f64 {
+            signal(light).iter().zip(&told.counts_per_radiance).map(|(s, k)| s * k).sum()
+        };
+        let is_sky = |one: &&LightFound| one.path_sigma.is_some();
+        let all =
+            [("sky_scale", stated.sky_scale), ("sky_shape", stated.sky_shape), ("sky_path", stated.sky_path)];
+        let asked = all.iter().find(|(_, sigma)| sigma.is_some());
+        let lights = told.surroundings.iter().enumerate();
+        let darkest = lights.min_by(|a, b| strength(a.1).total_cmp(&strength(b.1)));
+        // Where several are found, each has its error.
+        let found = self.found.iter().filter(is_sky).map(|one| one.light);
+        let mut skies: Vec<usize> = self.sky.into_iter().collect();
+        skies.extend(found.filter(|light| Some(*light) != self.sky));
+        if skies.is_empty() && asked.is_some() {
+            skies.extend(darkest.map(|(sky, _)| sky));
+        }
+        if let (Some((key, _)), true) = (asked, skies.is_empty()) {
+            return Err(self.lacks(&format!("unknown.{key}"), "sky without surroundings"));
+        }
+        for sky in skies {
+            let found = self.found.iter().find(|one| one.light == sky).filter(is_sky);
+            if let Some(sigma) = stated.sky_scale.or(found.and_then(|one| one.scale_sigma)) {
+                add(Cause::LightScale(sky), sigma);
+            }
+            if let Some(sigma) = stated.sky_shape.or(found.map(|one| one.shape_sigma)) {
+                shape(sky, sigma, add);
+            }
+            if let Some(sigma) = stated.sky_path.or(found.and_then(|one| one.path_sigma)) {
+                let radiances = told.surroundings.get(sky).map_or_else(Vec::new, signal);
+                let of = (&told.bands, &told.bad_bands[..]);
+                let emissivity = air_of_sky(of, &radiances, found.and_then(|one| one.air_k));
+                add(Cause::LightPath { light: sky, emissivity }, sigma);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The shape of a light, as three amounts.
+fn shape(light: usize, sigma: f64, add: &mut impl FnMut(Cause, f64)) {
+    for order in 1..4 {
+        add(Cause::LightShape { light, order }, sigma * ((2 * order + 1) as f64 / 3.0).sqrt());
+    }
 }
 
 /// Temperature of the warmest light that has one, K.
@@ -141,6 +178,30 @@ pub(super) fn hottest_k(environment: &[LightSource]) -> f64 {
         _ => None,
     });
     warm.reduce(f64::max).unwrap_or(MISSING_K)
+}
+
+/// The air that is said of a cube, with the length of its path, m, and what it does at the nodes; refused beside lights that were counted behind it.
+pub(super) fn air_of_cube(
+    spec: Option<&AirOfCube>,
+    (nodes, lights): (&[f64], &[Light]),
+    source: &Source,
+) -> Result<Option<((Air, f64), Path)>> {
+    let at = |key: &str| {
+        let (place, key) = (source.place(key), key.to_owned());
+        move |error: Error| match &error {
+            Error::At { place, .. } if place.path.is_some() => error.for_key(key.clone()),
+            _ => error.at(place.clone()),
+        }
+    };
+    let Some(spec) = spec else { return Ok(None) };
+    let air = (Air::looked_up(&spec.air, source)?, spec.distance_m);
+    let path = path(&air, nodes).map_err(at("atmosphere"))?;
+    if let Some(counted) = lights.iter().position(|light| matches!(light, Light::Counts(_))) {
+        let found = "rows or pixels of the cube as a light, and air before the camera";
+        let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
+        return Err(at(&format!("environment[{counted}]"))(Error::malformed(found, instead)));
+    }
+    Ok(Some((air, path)))
 }
 
 /// The air at the nodes.

@@ -1,6 +1,7 @@
 //! `hadar library` as its user runs it: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
+use hadar::atmosphere::Atmosphere;
 use hadar::cube::Shape;
 use hadar::planck::photon_radiance;
 use hadar_formats::cube::{npy_map, write_npy};
@@ -109,6 +110,62 @@ fn a_library_comes_out_and_takes_the_cube_apart() {
     assert_eq!(other["clusters"], found["clusters"]);
     let text = folder.run(&["library", "a.toml"]).stdout;
     assert!(text.starts_with("2 emissivities found in 192 pixels"), "{text}");
+}
+
+/// The cube through 80 m of air: with it told the emissivities are those without air, within a fifth of their deviations; not told, they are off by
+/// more than a deviation; the scenario that is written has the air. What the length may be off by is in the deviations.
+#[test]
+fn a_library_is_found_through_the_air() {
+    const AIR: &str =
+        "[atmosphere]\nmodel = \"us-standard\"\ntemperature = \"288.15 K\"\ndistance = \"80 m\"\n";
+    let nodes: Vec<f64> = (0..BANDS).map(wavenumber).collect();
+    let air = Atmosphere::embedded("us-standard").unwrap();
+    let tau = air.transmittance(&nodes, 80.0).unwrap();
+    let own = air.path_radiance(&nodes, 80.0, 288.15).unwrap();
+    let behind = |scenario: &str| {
+        let folder = with(scenario);
+        let path = folder.path().join("counts.npy");
+        let bytes = fs::read(&path).unwrap();
+        let first = bytes.len() - 8 * ROWS * COLUMNS * BANDS;
+        let counts: Vec<f64> = bytes[first..]
+            .as_chunks::<8>()
+            .0
+            .iter()
+            .enumerate()
+            .map(|(i, n)| tau[i % BANDS] * f64::from_le_bytes(*n) + 1e-13 * own[i % BANDS])
+            .collect();
+        write_npy(&path, Shape::new(ROWS, COLUMNS, BANDS).unwrap(), &counts).unwrap();
+        folder
+    };
+    let emissivities = |found: &serde_json::Value| -> Vec<[f64; 2]> {
+        let mut clusters: Vec<(u64, Vec<[f64; 2]>)> = Vec::new();
+        let materials = found["truth"]["material_of_cluster"].as_array().unwrap();
+        for (own, material) in found["clusters"].as_array().unwrap().iter().zip(materials) {
+            let of = |w: usize| ["emissivity", "sigma"].map(|key| own[key][w].as_f64().unwrap());
+            clusters.push((material.as_u64().unwrap(), (0..BANDS).map(of).collect()));
+        }
+        clusters.sort_by_key(|one| one.0);
+        clusters.into_iter().flat_map(|one| one.1).collect()
+    };
+    let off = |a: &[[f64; 2]], b: &[[f64; 2]]| -> f64 {
+        a.iter().zip(b).map(|([a, _], [b, sigma])| (a - b).abs() / sigma).fold(0.0, f64::max)
+    };
+    let without = emissivities(&with(SCENARIO).json(&["library", "a.toml"]));
+    let told = behind(&format!("{SCENARIO}{AIR}"));
+    let found = told.json(&["library", "a.toml", "--out", "out"]);
+    let with_it = emissivities(&found);
+    assert!(off(&with_it, &without) < 0.2, "{}", off(&with_it, &without));
+    let silent = emissivities(&behind(SCENARIO).json(&["library", "a.toml"]));
+    assert!(off(&silent, &without) > 1.0, "{}", off(&silent, &without));
+    let written = fs::read_to_string(told.path().join("out/decompose.toml")).unwrap();
+    assert!(written.contains("[atmosphere]") && written.contains("distance = \"80 m\""), "{written}");
+    let unsure = SCENARIO.replace("[unknown]\n", "[unknown]\nair = \"40 m\"\n");
+    let found = behind(&format!("{unsure}{AIR}")).json(&["library", "a.toml"]);
+    assert_eq!(found["shared"][0]["unknown"], "air");
+    let wider = emissivities(&found);
+    assert!(wider.iter().zip(&with_it).all(|(wide, own)| wide[1] >= own[1]));
+    let refused = behind(&unsure).refusal(&["library", "a.toml"]);
+    assert!(refused.contains("unknown.air") && refused.contains("write [atmosphere] too"), "{refused}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod cli_mistakes;
 mod companion;
 mod cube_judges;
 mod cube_shares;
+mod cube_surroundings;
 mod cubes;
 mod cut_bands;
 mod decompose;

@@ -8,6 +8,7 @@
 //! | wavelength shift | cm⁻¹ | difference of the counts with all spectra read a little higher and lower |
 //! | scale of light k | | Vₖ Cₖ, Cₖ the counts that are scattered of it at V = 1 |
 //! | shape of light k | | Vₖ Cₖ P_w, P Legendre's polynomial of an order over the bands; the tilt is the first |
+//! | path of the sky's light through the air | | −Vₖ Cₖ (1 − ε) ln(1 − ε)/ε, ε(ν) the emissivity of that sky: a path longer by θ has 1 − (1 − ε)^(1 + θ) |
 //! | temperature of light k | K | κ_w Vₖ (1 − e) ∂Sₖ/∂T |
 //! | sum of the lighting factors | | Σ Vₖ Cₖ/ΣVₖ, where it is told |
 //! | a light that is missing | | κ_w (1 − e) B(T_x), its V |
@@ -37,6 +38,13 @@ pub enum Cause {
         /// From 1 to 3.
         order: usize,
     },
+    /// The light of a sky comes by a path through the air that is longer by this share: as if the sky were seen at another height.
+    LightPath {
+        /// Which of the surroundings.
+        light: usize,
+        /// What share of a blackbody's radiance at the temperature of its air it sends at the nodes, above 0 and below 1.
+        emissivity: Vec<f64>,
+    },
     /// A light is so many kelvin warmer.
     LightTemperature {
         /// Which of the surroundings.
@@ -65,6 +73,6 @@ pub enum Cause {
 impl Cause {
     /// Whether its amount is a share of what it is a cause of.
     pub(super) fn is_share(&self) -> bool {
-        matches!(self, Self::Gain | Self::LightScale(_) | Self::Band(_))
+        matches!(self, Self::Gain | Self::LightScale(_) | Self::LightPath { .. } | Self::Band(_))
     }
 }

@@ -3,7 +3,7 @@
 use super::cause::Cause;
 use super::setting::{Light, Setting};
 use super::tangent::{Tangent, Tangents, dot};
-use super::told::{Told, legendre};
+use super::told::{Told, legendre, longer_slope};
 use hadar::error::Result;
 use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_into};
 
@@ -13,7 +13,7 @@ pub(super) struct Effect {
     cause: Cause,
     /// Radiance in each band: of the light that a unit of it adds, or of the air.
     radiance: Vec<f64>,
-    /// P_w of a shape, α_w of the air.
+    /// P_w of a shape, what a longer path adds to a light, α_w of the air.
     share: Vec<f64>,
     /// All spectra read higher and lower by [`Effect::step`].
     shifted: Option<Box<[Tangents; 2]>>,
@@ -34,7 +34,19 @@ impl Effect {
                     let own = slope.iter_mut().zip(value.iter().zip(radiance));
                     own.for_each(|(d, (b, s))| *d *= if *b > 0.0 { s / b } else { 0.0 });
                 }
-                pick(bands.weigh(&slope))
+                let slope = bands.weigh(&slope);
+                match setting.surroundings.get(*light) {
+                    // Of bands, not of nodes, and as much as it is beside the blackbody.
+                    Some(Light::Counts(counts)) => {
+                        let of = bands.weigh(&value);
+                        let each = slope.iter().zip(&of).zip(counts.iter().zip(setting.counts_per_radiance));
+                        pick(
+                            each.map(|((d, b), (n, k))| if *b > 0.0 { d * n / (k * b) } else { 0.0 })
+                                .collect(),
+                        )
+                    }
+                    _ => pick(slope),
+                }
             }
             Cause::LightMissing { temperature_k } | Cause::Air { temperature_k, .. } => {
                 let mut radiance = vec![0.0; bands.nodes_cm1().len()];
@@ -46,6 +58,11 @@ impl Effect {
         let share = match cause {
             Cause::LightShape { order, .. } => {
                 let wide = bands.weigh(&legendre(*order, bands.nodes_cm1()));
+                pick(wide).iter().zip(&tangents.widths_cm1).map(|(sum, width)| sum / width).collect()
+            }
+            Cause::LightPath { emissivity, .. } => {
+                let slopes: Vec<f64> = emissivity.iter().map(|e| longer_slope(*e)).collect();
+                let wide = bands.weigh(&slopes);
                 pick(wide).iter().zip(&tangents.widths_cm1).map(|(sum, width)| sum / width).collect()
             }
             Cause::Air { depth_per_m, .. } => {
@@ -94,7 +111,7 @@ impl Effect {
                 0.5 * (higher - lower) / self.step
             }
             Cause::LightScale(k) => v(*k) * all(tangents, *k),
-            Cause::LightShape { light, .. } => {
+            Cause::LightShape { light, .. } | Cause::LightPath { light, .. } => {
                 let of_light = tangents.lights.get(*light).map_or(0.0, |light| dot(light, &self.share));
                 v(*light) * of_light
             }
@@ -134,7 +151,7 @@ impl Effect {
                 }
             }
             Cause::LightScale(k) => to.extend(scattered(*k).iter().map(|c| v(*k) * c)),
-            Cause::LightShape { light, .. } => {
+            Cause::LightShape { light, .. } | Cause::LightPath { light, .. } => {
                 to.extend(scattered(*light).iter().zip(&self.share).map(|(c, x)| v(*light) * c * x));
             }
             Cause::LightTemperature { light, .. } => {

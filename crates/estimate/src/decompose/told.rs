@@ -114,6 +114,9 @@ impl Told {
                 let shape = legendre(*order, nodes);
                 told.light(*light, |i| 1.0 + amount * shape[i]);
             }
+            Cause::LightPath { light, emissivity } => {
+                told.light(*light, |i| emissivity.get(i).map_or(1.0, |e| longer(*e, factor)));
+            }
             Cause::LightTemperature { light, temperature_k } => {
                 let other_k = temperature_k + amount;
                 if other_k <= 0.0 {
@@ -187,6 +190,16 @@ fn impossible(cause: &Cause, amount: f64) -> Error {
         format!("{cause:?} by {amount}, with which nothing can be seen"),
         "state a smaller deviation",
     )
+}
+
+/// By what share air of emissivity ε sends more over a path so many times as long.
+fn longer(emissivity: f64, times: f64) -> f64 {
+    -libm::expm1(times * libm::log1p(-emissivity)) / emissivity
+}
+
+/// Slope of [`longer`] along the length, at 1.
+pub(super) fn longer_slope(emissivity: f64) -> f64 {
+    -(1.0 - emissivity) * libm::log1p(-emissivity) / emissivity
 }
 
 /// Legendre's polynomial of an order from 0 to 3 over the range of some wavenumbers.

@@ -1,6 +1,6 @@
 //! One emissivity for a group of pixels, each of its own temperature and lighting: least squares on the heat signal.
 //!
-//! Pixel p sends N_pw = κ_w [e_w B_w(T_p) + (1 − e_w) Σₖ V_pk S_kw] with variance N + σ². Near a state, with scores D = κ(B − X)/√var of
+//! Pixel p sends N_pw = κ_w [e_w B_w(T_p) + (1 − e_w) Σₖ V_pk S_kw] + a_w, a_w the counts of the air before the camera, with variance N + σ². Near a state, with scores D = κ(B − X)/√var of
 //! the emissivities and those of T_p and V_p, the latter are taken off by projection (P⊥), so that the emissivities have the
 //! information F = Σ_p D P⊥ D and the slope g = Σ_p D P⊥ r, r the residuals in deviations. A change of all emissivities that a change
 //! of all temperatures undoes is left in F as a direction without information: **magnitude and temperature are almost degenerate**. What
@@ -77,7 +77,8 @@ impl Look {
             (vec![0.0; width], vec![0.0; width], vec![0.0; width]);
         for w in 0..width {
             let per = radiometry.counts[w];
-            let mean = (per * (e[w] * black[w] + (1.0 - e[w]) * light[w])).max(1e-6);
+            let sent = e[w] * black[w] + (1.0 - e[w]) * light[w];
+            let mean = per.mul_add(sent, radiometry.of_air[w]).max(1e-6);
             let sigma = (mean + radiometry.var_added[w]).sqrt();
             residual[w] = (counts[w] - mean) / sigma;
             emissivity[w] = per * (black[w] - light[w]) / sigma;

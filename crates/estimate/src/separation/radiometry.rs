@@ -1,10 +1,14 @@
 //! Counts of a cube as mean radiances of its bands.
 //!
-//! L_w = n_w/(κ_w Δ_w): counts n, κ counts for each unit of band signal, Δ width of the band (cm⁻¹). An emissivity is one number for a
-//! band. The surroundings are vertices as in [`crate::decompose`]: darkness first where the lighting adds up to at most 1.
+//! L_w = (n_w − κ_w P_w)/(κ_w Δ_w): counts n, κ counts for each unit of band signal, P what the air before the camera sends itself, Δ = ∫τ dν
+//! of its transmittance τ over the band (cm⁻¹), P = 0 and τ = 1 where there is none. Radiances of a band are means with the weight τ. Bands
+//! of which less than [`CLEAR`] comes through do not count. An emissivity is one number for a band. The surroundings are vertices as in [`crate::decompose`]: darkness first where the lighting adds up to at most 1.
 
 use crate::decompose::{Light, Setting};
 use hadar::planck;
+
+/// Least mean transmittance of a band that tells of what is behind the air.
+const CLEAR: f64 = 0.01;
 
 /// What is the same for all pixels, one value for each band that counts.
 #[derive(Debug)]
@@ -16,9 +20,14 @@ pub(super) struct Radiometry<'a> {
     pub(super) centres_cm1: Vec<f64>,
     /// Those of the bands that count.
     pub(super) wavenumbers_cm1: Vec<f64>,
+    /// τ at the nodes; empty without air.
+    through: Vec<f64>,
+    /// Δ of all bands.
     widths_cm1: Vec<f64>,
     /// κ Δ.
     pub(super) counts: Vec<f64>,
+    /// κ P.
+    pub(super) of_air: Vec<f64>,
     /// Variance of electronic noise, counts².
     pub(super) var_added: Vec<f64>,
     /// Mean radiance of each of the surroundings.
@@ -31,14 +40,20 @@ impl<'a> Radiometry<'a> {
     /// Of a setting that was checked.
     pub(super) fn new(setting: &Setting<'a>) -> Self {
         let bands = setting.bands;
-        let widths_cm1 = bands.widths_cm1();
+        let plain_cm1 = bands.widths_cm1();
         let centres_cm1: Vec<f64> =
-            bands.weigh(bands.nodes_cm1()).iter().zip(&widths_cm1).map(|(sum, width)| sum / width).collect();
-        let used: Vec<usize> = (0..bands.len()).filter(|band| !setting.bad_bands.contains(band)).collect();
+            bands.weigh(bands.nodes_cm1()).iter().zip(&plain_cm1).map(|(sum, width)| sum / width).collect();
+        let through = setting.path.map_or_else(Vec::new, |path| path.transmittance.clone());
+        let widths_cm1 = if through.is_empty() { plain_cm1.clone() } else { bands.weigh(&through) };
+        let air = setting.path.map_or_else(|| vec![0.0; bands.len()], |path| bands.weigh(&path.radiance));
+        let is_clear = |band: &usize| widths_cm1[*band] > CLEAR * plain_cm1[*band];
+        let used: Vec<usize> =
+            (0..bands.len()).filter(|band| !setting.bad_bands.contains(band) && is_clear(band)).collect();
         let light = |light: &Light| -> Vec<f64> {
             let all: Vec<f64> = match light {
                 Light::Radiance(nodes) => {
-                    bands.weigh(nodes).iter().zip(&widths_cm1).map(|(sum, width)| sum / width).collect()
+                    let sums = bands.weigh(&behind(nodes.clone(), &through));
+                    sums.iter().zip(&widths_cm1).map(|(sum, width)| sum / width).collect()
                 }
                 Light::Counts(counts) => counts
                     .iter()
@@ -53,10 +68,12 @@ impl<'a> Radiometry<'a> {
             wavenumbers_cm1: used.iter().map(|band| centres_cm1[*band]).collect(),
             counts: used.iter().map(|band| setting.counts_per_radiance[*band] * widths_cm1[*band]).collect(),
             var_added: used.iter().map(|band| setting.var_added.get(*band).copied().unwrap_or(0.0)).collect(),
+            of_air: used.iter().map(|band| setting.counts_per_radiance[*band] * air[*band]).collect(),
             total: setting.lighting_total.filter(|_| !setting.surroundings.is_empty()),
             setting: *setting,
             used,
             centres_cm1,
+            through,
             widths_cm1,
         }
     }
@@ -67,7 +84,7 @@ impl<'a> Radiometry<'a> {
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
         planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
         [value, slope].map(|values| {
-            let sums = self.setting.bands.weigh(&values);
+            let sums = self.setting.bands.weigh(&behind(values, &self.through));
             self.used.iter().map(|band| sums[*band] / self.widths_cm1[*band]).collect()
         })
     }
@@ -124,11 +141,18 @@ impl<'a> Radiometry<'a> {
     pub(super) fn radiance(&self, counts: &[f64]) -> [Vec<f64>; 2] {
         let each = || counts.iter().zip(self.counts.iter().zip(&self.var_added));
         let sigma = each().map(|(n, (per, var))| (n.max(0.0) + var).max(1.0).sqrt() / per);
-        [each().map(|(n, (per, _))| n / per).collect(), sigma.collect()]
+        let radiance = each().zip(&self.of_air).map(|((n, (per, _)), air)| (n - air) / per);
+        [radiance.collect(), sigma.collect()]
     }
 
     /// An emissivity of every band at the nodes.
     pub(super) fn at_nodes(&self, emissivity: &[f64]) -> Vec<f64> {
         self.setting.bands.spread(emissivity)
     }
+}
+
+/// What comes through the air of values at the nodes.
+fn behind(mut values: Vec<f64>, through: &[f64]) -> Vec<f64> {
+    values.iter_mut().zip(through).for_each(|(value, share)| *value *= share);
+    values
 }

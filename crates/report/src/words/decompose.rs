@@ -12,7 +12,9 @@ use crate::text::numbers::{degrees, listed};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_estimate::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar_scenario::decompose::{CubeUnit, PixelUnknown};
-use hadar_study::decompose::{Besides, CORRELATION_CM1, Decomposed, MixedFound, ModelVerdict, TruthFound};
+use hadar_study::decompose::{
+    Besides, CORRELATION_CM1, Decomposed, LightFound, MixedFound, ModelVerdict, TruthFound,
+};
 use std::fmt::Write as _;
 
 /// Materials that are listed.
@@ -26,7 +28,8 @@ pub fn text(result: &Decomposed) -> String {
     let is_rejected = result.model.verdict.takes_back();
     let safety =
         result.segmentation.as_ref().map_or_else(String::new, |found| segmented::safety(found, is_rejected));
-    let mut out = format!("{}{}\n{safety}\n{}", sentence(result), constants(result), read_as(&result.read));
+    let besides = surroundings_found(&result.surroundings_found) + &constants(result);
+    let mut out = format!("{}{besides}\n{safety}\n{}", sentence(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
     out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
     out.push_str(&result.none_of_these.as_ref().map_or_else(String::new, none_of_these));
@@ -127,6 +130,30 @@ fn sentence(result: &Decomposed) -> String {
         }
     }
     out
+}
+
+/// That surroundings were found in the cube, from how many pixels and with which error: behind the first sentence.
+pub(crate) fn surroundings_found(all: &[LightFound]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let one = |one: &LightFound| {
+        let mut errors = Vec::new();
+        errors.extend(one.scale_sigma.map(|sigma| format!("{} in strength", share(sigma))));
+        errors.extend(one.path_sigma.map(|sigma| format!("{} in the path of its light", share(sigma))));
+        errors.extend(one.temperature_sigma_k.map(|sigma| quantity(sigma, "K")));
+        errors.push(format!("{} in shape", share(one.shape_sigma)));
+        format!(
+            "{} ({} of {} pixels looked at, {} degC in the mean of the bands, +- {})",
+            one.like,
+            whole(one.pixels as u64),
+            whole(one.pixels_asked as u64),
+            degrees(one.temperature_k),
+            errors.join(", ")
+        )
+    };
+    let each: Vec<String> = all.iter().map(one).collect();
+    format!(" The surroundings were found in the cube itself: {}.", each.join("; "))
 }
 
 /// Surfaces that are none of the library.
@@ -371,12 +398,14 @@ fn in_library(result: &Decomposed) -> &'static str {
 }
 
 /// What nothing is stated of, and what is therefore taken as exact.
-pub(crate) fn exact(unknown: &PixelUnknown) -> String {
+pub(crate) fn exact(unknown: &PixelUnknown, found: &[LightFound]) -> String {
     let shared = &unknown.shared;
+    let of_lights = [shared.sky_scale, shared.sky_shape, shared.sky_path, shared.light_temperature_k];
+    let are_stated = !found.is_empty() || of_lights.iter().any(Option::is_some);
     let parts = [
         ("the scale of the counts", unknown.gain || shared.gain.is_some()),
         ("the bands", shared.wavelength_shift_cm1.is_some()),
-        ("the surroundings", shared.sky_scale.or(shared.sky_shape).or(shared.light_temperature_k).is_some()),
+        ("the surroundings", are_stated),
     ];
     let silent: Vec<&str> =
         parts.into_iter().filter(|(_, is_stated)| !is_stated).map(|(what, _)| what).collect();
@@ -443,7 +472,7 @@ fn assumptions(result: &Decomposed) -> String {
         "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent{library}\n  \
          unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}{}\n",
         if scenario.unknown.gain { ", gain" } else { "" },
-        exact(&scenario.unknown) + in_library(result),
+        exact(&scenario.unknown, &result.surroundings_found) + in_library(result),
         neighbours(result),
     )
 }

@@ -5,7 +5,7 @@ use crate::text::columns::{Columns, left, right};
 use crate::text::cubes::{AGAINST, lighting_total, noise};
 use crate::text::footing::{read_as, warnings};
 use crate::text::numbers::degrees;
-use crate::words::decompose::{exact, shared};
+use crate::words::decompose::{exact, shared, surroundings_found};
 use crate::words::pictures::thinned;
 use hadar::words::{fixed, quantity, share, significant, whole};
 use hadar_study::library::{LibraryFound, TruthOfClusters};
@@ -14,7 +14,12 @@ use std::fmt::Write as _;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &LibraryFound) -> String {
-    let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
+    let mut out = format!(
+        "{}{}\n\n{}",
+        sentence(result),
+        surroundings_found(&result.surroundings_found),
+        read_as(&result.read)
+    );
     out.push_str(&clusters(result));
     out.push_str(&counts(result));
     if let Some(truth) = &result.truth {
@@ -160,7 +165,7 @@ fn assumptions(result: &LibraryFound) -> String {
         quantity(known.correlation_cm1, "cm^-1"),
         scenario.environment.len(),
         whole((result.drawn - result.without_nem) as u64),
-        exact(&scenario.unknown),
+        exact(&scenario.unknown, &result.surroundings_found),
     )
 }
 

@@ -11,8 +11,8 @@ use super::super::{AtmosphereSpec, BandsSpec, Source, camera, class};
 use super::category::{Told, categories, segmentation};
 use super::image::{spatial, vision};
 use super::{
-    AirOfCube, Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown,
-    SharedUnknown, TruthSpec,
+    AirOfCube, Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightLike, LightSource,
+    PixelUnknown, SharedUnknown, TruthSpec,
 };
 use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
@@ -54,10 +54,7 @@ impl DecomposeScenario {
             truth: root.read("truth", |entry| truth(entry, &data))?,
             source: Source::default(),
         };
-        if scenario.unknown.shared.air_m.is_some() && scenario.atmosphere.is_none() {
-            let found = Error::malformed("a length of no air", "write [atmosphere] too, or leave it out");
-            return Err(root.fail("unknown.air", found));
-        }
+        no_air_without(root, &scenario.unknown, scenario.atmosphere.is_some())?;
         if scenario.categories.is_empty()
             && let Some(key) = match &scenario.truth {
                 _ if root.get("segmentation").is_some() => Some("segmentation"),
@@ -144,25 +141,36 @@ pub(crate) fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
     entry.number(example).map(|place| place as usize)
 }
 
+/// What pixels may be like.
+pub(crate) const LIKE: [(&str, LightLike); 2] = [("sky", LightLike::Sky), ("ground", LightLike::Ground)];
+
 pub(crate) fn light(entry: &Entry<'_>) -> Result<LightSource> {
     let section = entry.section()?;
+    let rows = || {
+        section.read("rows", |entry| {
+            let [first, last] = entry.pair("[0, 540]")?;
+            let [first, last] = [place(&first, "0")?, place(&last, "540")?];
+            if first < last {
+                return Ok([first, last]);
+            }
+            let found = format!("no row from {first} up to {last}");
+            Err(entry.fail(Error::malformed(found, "write the first row, and the one after the last")))
+        })
+    };
+    // Rows beside it say where.
+    if let Some(like) = section.choice("found", &LIKE)? {
+        section.at_most_one(&["found", "spectrum"])?;
+        section.at_most_one(&["found", "temperature"])?;
+        return Ok(LightSource::Found { like, rows: rows()? });
+    }
     let kinds = ["spectrum", "rows", "temperature"];
-    let instead = "write temperature = \"-10 degC\", spectrum = \"light.csv\" with column = \"sky\", or rows = [0, 540]";
+    let instead = "write temperature = \"-10 degC\", spectrum = \"light.csv\" with column = \"sky\", rows = [0, 540], or found = \"sky\"";
     match section.at_most_one(&kinds)? {
         Some("spectrum") => Ok(LightSource::Spectrum {
             path: file(&section.require("spectrum")?)?,
             column: section.require("column")?.name("\"sky\"")?,
         }),
-        Some("rows") => {
-            let [first, last] = section.require("rows")?.pair("[0, 540]")?;
-            let [first, last] = [place(&first, "0")?, place(&last, "540")?];
-            if first < last {
-                return Ok(LightSource::Rows([first, last]));
-            }
-            let found = format!("no row from {first} up to {last}");
-            Err(section
-                .fail("rows", Error::malformed(found, "write the first row, and the one after the last")))
-        }
+        Some("rows") => Ok(LightSource::Rows(rows()?.unwrap_or_default())),
         Some(_) => Ok(LightSource::Surface {
             material: section.read("material", material)?,
             temperature_k: section.require("temperature")?.quantity()?,
@@ -205,8 +213,17 @@ enum Gain {
     Shared(f64),
 }
 
+/// Refuses a length of air that nothing says.
+pub(crate) fn no_air_without(root: &Section<'_>, unknown: &PixelUnknown, is_said: bool) -> Result<()> {
+    if unknown.shared.air_m.is_none() || is_said {
+        return Ok(());
+    }
+    let found = Error::malformed("a length of no air", "write [atmosphere] too, or leave it out");
+    Err(root.fail("unknown.air", found))
+}
+
 /// The air of a cube.
-fn air(entry: &Entry<'_>) -> Result<AirOfCube> {
+pub(crate) fn air(entry: &Entry<'_>) -> Result<AirOfCube> {
     let air = AtmosphereSpec::read(entry)?;
     let distance_m = entry.section()?.require("distance")?.quantity()?;
     Ok(AirOfCube { air, distance_m })
@@ -240,6 +257,7 @@ pub(crate) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
             wavelength_shift_cm1: section.quantity("wavelength_shift")?,
             sky_scale: section.number("sky_scale")?,
             sky_shape: section.number("sky_shape")?,
+            sky_path: section.number("sky_path")?,
             light_temperature_k: section.quantity("light_temperature")?,
             missing_light: section.number("missing_light")?,
             air_m: section.quantity("air")?,

@@ -5,10 +5,10 @@ use super::super::paths::Paths;
 use super::super::{BandsSpec, CameraSpec, camera, class};
 use super::category::{categories_written, segmentation_written};
 use super::image::{spatial_written, vision_written};
-use super::read::BAD;
+use super::read::{BAD, LIKE};
 use super::{
-    Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec,
-    TruthSpec, VisionSpec,
+    AirOfCube, Bad, CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown,
+    SegmentationSpec, TruthSpec, VisionSpec,
 };
 use hadar::units::Dimension;
 use toml::Value;
@@ -36,12 +36,7 @@ impl DecomposeScenario {
             cube_written(&self.cube, self.bands.as_ref(), self.camera.as_ref(), &self.environment, paths);
         Document::titled(self.title.as_ref())
             .and(cube)
-            .put_if(
-                "atmosphere",
-                self.atmosphere.as_ref().map(|one| {
-                    one.air.written(paths).put_quantity("distance", Dimension::Length, Some(one.distance_m))
-                }),
-            )
+            .put_if("atmosphere", self.atmosphere.as_ref().map(|one| air_written(one, paths)))
             .put_if("class", class::all_written(&self.classes, paths))
             .put("library", written)
             .put("unknown", unknown_written(&self.unknown))
@@ -94,12 +89,20 @@ pub(crate) fn cube_written(
             .put_if("material", material.as_ref().map(|material| paths.material(material)))
             .put_quantity("temperature", Dimension::Temperature, Some(*temperature_k)),
         LightSource::Rows(rows) => Entries::default().put("rows", whole(rows)),
+        LightSource::Found { like, rows } => Entries::default()
+            .put_if("found", LIKE.iter().find(|(_, one)| one == like).map(|(name, _)| *name))
+            .put_if("rows", rows.map(|rows| whole(&rows))),
     });
     Document::default()
         .put("cube", written)
         .put_if("bands", bands.map(|spec| spec.written(paths)))
         .put_if("camera", camera.map(|spec| camera::written(spec, paths)))
         .put("environment", lights.collect::<Vec<_>>())
+}
+
+/// `[atmosphere]`.
+pub(crate) fn air_written(one: &AirOfCube, paths: Paths<'_>) -> Entries {
+    one.air.written(paths).put_quantity("distance", Dimension::Length, Some(one.distance_m))
 }
 
 /// `[unknown]`.
@@ -112,6 +115,7 @@ pub(crate) fn unknown_written(unknown: &PixelUnknown) -> Entries {
         .put_quantity("wavelength_shift", Dimension::Wavenumber, shared.wavelength_shift_cm1)
         .put_if("sky_scale", shared.sky_scale)
         .put_if("sky_shape", shared.sky_shape)
+        .put_if("sky_path", shared.sky_path)
         .put_quantity("light_temperature", Dimension::TemperatureDifference, shared.light_temperature_k)
         .put_if("missing_light", shared.missing_light)
         .put_quantity("air", Dimension::Length, shared.air_m)

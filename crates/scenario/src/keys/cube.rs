@@ -93,7 +93,7 @@ const LIGHT_KEYS: &[Key] = &[
     Key::row(
         "spectrum",
         Value::File,
-        Means("temperature or rows"),
+        Means("temperature, rows or found"),
         "\"light.csv\"",
         "A table of photon radiances, photons s^-1 m^-2 sr^-1 per cm^-1.",
         "S_k in X = sum of V_k S_k (S2)",
@@ -117,7 +117,7 @@ const LIGHT_KEYS: &[Key] = &[
     Key::row(
         "temperature",
         KELVIN,
-        Means("spectrum or rows"),
+        Means("spectrum, rows or found"),
         "\"-10 degC\"",
         "Temperature of a surface.",
         "S_k in X = sum of V_k S_k (S2)",
@@ -125,9 +125,17 @@ const LIGHT_KEYS: &[Key] = &[
     Key::row(
         "rows",
         Value::Pair(&WHOLE),
-        Means("spectrum or temperature"),
+        Means("spectrum, temperature or found"),
         "[0, 540]",
-        "The mean of rows of the cube itself, from the first up to the second, counted from 0.",
+        "The mean of rows of the cube itself, from the first up to the second, counted from 0; beside found, rows in which that is looked for.",
+        "S_k in X = sum of V_k S_k (S2)",
+    ),
+    Key::row(
+        "found",
+        Value::Choice(&["sky", "ground"]),
+        Means("spectrum, temperature or rows"),
+        "\"sky\"",
+        "That it is found in the cube: the median of the darkest, sky-like pixels, or of warm ones that send nearly what a blackbody does. Its error is among the unknowns of the whole cube.",
         "S_k in X = sum of V_k S_k (S2)",
     ),
 ];
@@ -247,6 +255,12 @@ const UNKNOWN_KEYS: &[Key] = &[
         POSITIVE,
         "0.02",
         "Deviation of the sky's spectrum, smooth, rms over the bands, as a share.",
+    ),
+    shared(
+        "sky_path",
+        POSITIVE,
+        "0.5",
+        "Deviation of the length of the path through the air that the sky's light comes by, as a share: 0.5 where it is told as it is seen at some height.",
     ),
     shared(
         "light_temperature",

@@ -189,6 +189,7 @@ pub(crate) static LIBRARY: Table = Table::of(
         needed(table("cube", &cube::CUBE)),
         BANDS,
         CAMERA,
+        silent("no air on the path", table("atmosphere", &task::ATMOSPHERE_OF_CUBE)),
         tables("environment", &cube::LIGHT),
         needed(table("clusters", &cube::CLUSTERS)),
         table("emissivity", &cube::EMISSIVITY),

@@ -1,6 +1,6 @@
 //! Reads what a library is to be made from: every key checked, every error one line with file, line and key.
 
-use super::super::decompose::read::{heat_cube, light, truth, unknown};
+use super::super::decompose::read::{air, heat_cube, light, no_air_without, truth, unknown};
 use super::super::decompose::{PixelUnknown, SharedUnknown};
 use super::super::keys::files;
 use super::super::kind::Kind;
@@ -48,8 +48,10 @@ impl LibraryScenario {
             );
             return Err(found.at(root.source().place("unknown.gain")));
         }
-        let SharedUnknown { missing_light, air_m, noise_scale, .. } = unknown.shared;
-        let absent = [("missing_light", missing_light), ("air", air_m), ("noise_scale", noise_scale)];
+        let atmosphere = root.read("atmosphere", air)?;
+        no_air_without(root, &unknown, atmosphere.is_some())?;
+        let SharedUnknown { missing_light, noise_scale, .. } = unknown.shared;
+        let absent = [("missing_light", missing_light), ("noise_scale", noise_scale)];
         if let Some((key, _)) = absent.into_iter().find(|(_, sigma)| sigma.is_some()) {
             let found = "an unknown that is not put into emissivities";
             let instead = "leave it out, or decompose the cube with a library that is there";
@@ -69,6 +71,7 @@ impl LibraryScenario {
             cube,
             bands: root.read("bands", BandsSpec::read)?,
             camera,
+            atmosphere,
             environment,
             clusters: clusters(&root.table("clusters", MINIMUM)?)?,
             emissivity: root.read("emissivity", emissivity)?.unwrap_or(EMISSIVITY),

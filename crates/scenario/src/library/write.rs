@@ -1,6 +1,6 @@
 //! Writes what a library is made from, as TOML and, in the same structure, for JSON.
 
-use super::super::decompose::write::{cube_written, truth_written, unknown_written};
+use super::super::decompose::write::{air_written, cube_written, truth_written, unknown_written};
 use super::super::entries::{Document, Entries};
 use super::super::paths::Paths;
 use super::LibraryScenario;
@@ -22,6 +22,7 @@ impl LibraryScenario {
             cube_written(&self.cube, self.bands.as_ref(), self.camera.as_ref(), &self.environment, paths);
         Document::titled(self.title.as_ref())
             .and(cube)
+            .put_if("atmosphere", self.atmosphere.as_ref().map(|one| air_written(one, paths)))
             .put("clusters", clusters.put("max_emissivity", self.clusters.max_emissivity))
             .put("emissivity", emissivity)
             .put("unknown", unknown_written(&self.unknown))

@@ -61,13 +61,18 @@ impl Estimated {
     /// Nothing where nothing is asked for.
     pub(super) fn of(study: &DecomposeStudy, method: Method, options: &Options) -> Result<Option<Self>> {
         let stated = study.scenario.unknown.shared;
-        if stated == SharedUnknown::default() {
+        if stated == SharedUnknown::default() && study.found.is_empty() {
             return Ok(None);
         }
         let refused = |key: &str, found: String, instead: &str| {
             Err(Error::malformed(found, instead).at(study.scenario.place(key)))
         };
         if method != Method::Ml {
+            if let Some(one) = study.found.first() {
+                let found = format!("surroundings found in the cube and the method {}", method.name());
+                let key = format!("environment[{}].found", one.light);
+                return refused(&key, found, "give their spectra or temperatures, or take --method ml");
+            }
             let found = format!("unknowns of the whole cube and the method {}", method.name());
             return refused("unknown", found, "leave them out, or take --method ml");
         }
@@ -83,6 +88,7 @@ impl Estimated {
             told: &study.told,
             environment: &study.scenario.environment,
             sky: study.scenario.vision.sky,
+            found: &study.found,
             spectra: &study.spectra,
             air: study.air.as_ref(),
             source: &study.scenario.source,

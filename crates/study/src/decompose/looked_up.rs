@@ -7,11 +7,12 @@ use crate::air::Air;
 use crate::budget::Takes;
 use crate::cube_bad::BadFound;
 use crate::heat_cube::{Measured, Said, columns};
-use crate::shared_unknown::{path, spectra};
+use crate::light_found::LightFound;
+use crate::shared_unknown::{air_of_cube, spectra};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar_estimate::decompose::{Alike, Light, SpatialPrior, Spectra, Told};
+use hadar_estimate::decompose::{Alike, SpatialPrior, Spectra, Told};
 use hadar_estimate::segmentation::Categories;
 use hadar_formats::cube::Found;
 use hadar_formats::spectra::measured;
@@ -32,6 +33,8 @@ pub struct DecomposeStudy {
     pub(super) bad: BadFound,
     /// All that is told of the cube.
     pub(super) told: Told,
+    /// What is said of surroundings that it shows itself.
+    pub(super) found: Vec<LightFound>,
     /// Its spectra besides, for a shift of the bands.
     pub(super) spectra: Arc<Spectra>,
     /// The air before the camera, and the length of its path, m.
@@ -86,7 +89,7 @@ impl DecomposeStudy {
         };
         let at = |key: &str| said.at(key);
         let measured = said.measured(library)?;
-        let Measured { cube, read, bad_bands, bad, mut warnings, bands, lights, .. } = measured;
+        let Measured { cube, read, bad_bands, bad, mut warnings, bands, lights, found, .. } = measured;
         let Measured { counts_per_radiance, var_added, together, common, units_per_count, .. } = measured;
         let materials =
             materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
@@ -99,17 +102,8 @@ impl DecomposeStudy {
             material.emissivity(nodes).map_err(|error| error.at(scenario.place(&key)))
         });
         let emissivities = emissivities.collect::<Result<Vec<_>>>()?;
-        let atmosphere = scenario.atmosphere.as_ref();
-        let air = atmosphere.map(|one| Ok((Air::looked_up(&one.air, &scenario.source)?, one.distance_m)));
-        let air = air.transpose()?;
-        let path = air.as_ref().map(|air| path(air, nodes)).transpose().map_err(at("atmosphere"))?;
-        if path.is_some()
-            && let Some(rows) = lights.iter().position(|light| matches!(light, Light::Counts(_)))
-        {
-            let found = "rows of the cube as a light, and air before the camera";
-            let instead = "give the light as a spectrum or a temperature, or leave [atmosphere] out";
-            return Err(at(&format!("environment[{rows}]"))(Error::malformed(found, instead)));
-        }
+        let (air, path) =
+            air_of_cube(scenario.atmosphere.as_ref(), (nodes, &lights), &scenario.source)?.unzip();
         let each: Vec<&Material> = materials.iter().map(|one| &one.material).collect();
         let of = (&each[..], &scenario.environment[..], library);
         let spectra = spectra((&bands, &emissivities, &lights), of, air.as_ref());
@@ -162,6 +156,7 @@ impl DecomposeStudy {
                 path,
                 light_besides: Vec::new(),
             },
+            found,
             spectra: Arc::new(spectra),
             air,
             names,

@@ -9,6 +9,7 @@ use super::vision::{DRAWN, Vision, apart};
 pub use super::worth::TruthFound;
 use crate::Warning;
 use crate::cube_bad::BadFound;
+use crate::light_found::LightFound;
 use crate::model_judged::{ModelJudged, ModelVerdict, fits};
 use hadar::cube::Shape;
 use hadar::demand::Work;
@@ -48,6 +49,9 @@ pub struct Decomposed {
     /// What was estimated for the whole cube; nothing where nothing is shared.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shared: Option<SharedFound>,
+    /// Surroundings that were found in the cube, with their errors; empty where all are told.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub surroundings_found: Vec<LightFound>,
     /// Surfaces that are none of the library; nothing where that is not asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub none_of_these: Option<Besides>,
@@ -385,6 +389,7 @@ pub(super) fn summary(
         decided_if_model_holds: counted.decided,
         model,
         shared,
+        surroundings_found: study.found.clone(),
         none_of_these,
         mixed,
         constants: study.constants().map(|m| study.names[m].clone()).collect(),

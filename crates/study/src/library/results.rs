@@ -4,6 +4,7 @@ use crate::Warning;
 use crate::cube_bad::BadFound;
 use crate::decompose::{FlagCount, There, flags};
 use crate::heat_cube::Measured;
+use crate::light_found::LightFound;
 use crate::shared_unknown::Stated;
 use hadar::cube::Shape;
 use hadar::demand::Work;
@@ -47,6 +48,9 @@ pub struct LibraryFound {
     pub flags: Vec<FlagCount>,
     /// What emissivities may be off by, errors of the library and spread of its pixels, over the emissivities, both as root mean squares.
     pub emissivity_error: f64,
+    /// Surroundings that were found in the cube, with their errors; empty where all are told.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub surroundings_found: Vec<LightFound>,
     /// What unknowns that the whole cube shares do to the emissivities; their deviations hold it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub shared: Vec<SharedOfLibrary>,
@@ -215,6 +219,7 @@ pub(super) fn summary(
         flags: skipped,
         emissivity_error: if weight > 0.0 { f64::sqrt(square / weight) } else { 0.0 },
         shared,
+        surroundings_found: measured.found.clone(),
         bad: measured.bad.clone(),
         truth,
         stats: maps.spared.work(),

@@ -28,18 +28,20 @@ impl LibraryStudy {
         again: &dyn Fn(&Setting<'_>) -> Result<Found>,
     ) -> Result<Vec<SharedOfLibrary>> {
         let (measured, scenario) = (&self.measured, &self.scenario);
-        if scenario.unknown.shared == SharedUnknown::default() {
+        if scenario.unknown.shared == SharedUnknown::default() && measured.found.is_empty() {
             return Ok(Vec::new());
         }
         let told = Told::of(&self.setting());
         let environment = &scenario.environment[..];
-        let spectra = spectra((&measured.bands, &[], &measured.lights), (&[], environment, library), None);
+        let spectra =
+            spectra((&measured.bands, &[], &measured.lights), (&[], environment, library), self.air.as_ref());
         let of = Of {
             told: &told,
             environment,
             sky: None,
+            found: &measured.found,
             spectra: &Arc::new(spectra),
-            air: None,
+            air: self.air.as_ref(),
             source: &scenario.source,
         };
         let used: Vec<usize> =

@@ -150,6 +150,10 @@ pub(in crate::decompose) fn causes(setting: &Setting<'_>) -> Vec<Cause> {
         Cause::LightTemperature { light: 1, temperature_k: 290.0 },
         Cause::Air { depth_per_m: nodes.iter().map(|nu| depth_per_m(*nu)).collect(), temperature_k: 288.0 },
         Cause::Band(17),
+        Cause::LightPath {
+            light: 0,
+            emissivity: nodes.iter().map(|nu| (0.1 + 3e-4 * (nu - 700.0)).clamp(0.05, 0.95)).collect(),
+        },
     ]
 }
 

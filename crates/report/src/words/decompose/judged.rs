@@ -87,6 +87,7 @@ pub(crate) fn cause(row: &CauseRow) -> String {
             "{light} of another shape: stronger at the upper end of the bands, weaker at the lower one, by {}",
             amount(" %", 100.0)
         ),
+        "light-path" => format!("{light} seen through air that is longer by {}", amount(" %", 100.0)),
         "light-temperature" => format!("{light} warmer by {}", amount(" K", 1.0)),
         "lighting-total" => format!("a sum of the lighting factors that is larger by {}", amount("", 1.0)),
         "light-missing" => format!("a light that is missing, with V = {}", amount("", 1.0)),

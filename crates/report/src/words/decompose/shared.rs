@@ -65,6 +65,7 @@ pub(crate) fn named(unknown: &str, light: Option<usize>, order: Option<usize>) -
         "wavelength-shift" => "wavelength shift".to_owned(),
         "light-scale" => format!("strength{light}"),
         "light-shape" => format!("shape{light}, Legendre polynomial {}", order.unwrap_or(1)),
+        "light-path" => format!("path of the light{light} through the air"),
         "light-temperature" => format!("temperature{light}"),
         "light-missing" => "V of a light besides".to_owned(),
         "air" => "length of the air's path".to_owned(),
