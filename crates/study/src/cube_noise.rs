@@ -3,7 +3,7 @@
 //! A table has a column `sigma` (all noise of a sample; for radiances) or `electronic_sigma` (what is added to shot noise; for counts),
 //! and, where it is known, `sigma_common`: what all pixels are off by, each band for itself, as by noise of a calibration. For the interval of
 //! one pixel that is one more deviation, independent of its noise: the squares add. `sigma_together` is what all bands are off by together,
-//! as by temperatures of blackbodies: bands do not average it down, so that it is kept apart as well ([`hadar_estimate::decompose::widen`]). A band that is left out may have no row.
+//! as by temperatures of blackbodies: bands do not average it down, so that it is kept apart. A band that is left out may have no row.
 
 use hadar::error::{Error, Result, check};
 use hadar::grid::Grid;
@@ -140,8 +140,7 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
         }
         let coherent = coherent.map_or(Ok(0.0), |place| at("sigma_together", cell(place)))?;
         if let (Some(var), Some(together)) = (var.get_mut(i), together.get_mut(i)) {
-            // Of each band that is its whole variance; what bands have together is counted once in deviations.
-            (*var, *together) = (sigma * sigma + more * more + coherent * coherent, coherent);
+            (*var, *together) = (sigma * sigma + more * more, coherent);
         }
     }
     let together = together.iter().any(|sigma| *sigma > 0.0).then_some(together);

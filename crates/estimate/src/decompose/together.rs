@@ -2,8 +2,7 @@
 //!
 //! A temperature follows whitened counts by a row g ([`super::tangent`]): with counts off by z·s_w, one number z of deviation 1 for all
 //! bands, it is off by z Σ_w g_w s_w/σ_w, whose square is added to its variance. Bands do not average it down, as they do noise: blackbodies
-//! that are warmer than they are said to be make everything as much too cold. Where the noise σ_w that pixels are fitted with holds s_w² as if each
-//! band had it for itself, Σ_w g_w² s_w²/σ_w² is in the variance already, and is taken off.
+//! that are warmer than they are said to be make everything as much too cold.
 //!
 //! A cause whose amount θ̂ was found ([`super::judge`]) moves it by θ̂ Σ_w g_w d_w, d its slope in deviations of the noise; that is put in as
 //! if it were a deviation, as what is found is but one of what may be.
@@ -73,7 +72,7 @@ pub fn widen(
     let together_estimated = shared.map_or_else(Vec::new, Shared::causes);
     let estimated = together_estimated.iter().map(effect).collect::<Result<Vec<_>>>()?;
     let followed = Followed::all(setting);
-    let wider = Wider { together, added: setting.var_added, effects, estimated, shared, followed, tangents };
+    let wider = Wider { together, effects, estimated, shared, followed, tangents };
     let Maps {
         material,
         temperature_k,
@@ -185,8 +184,6 @@ struct Room {
 #[derive(Debug)]
 struct Wider<'a> {
     together: &'a [f64],
-    /// Variance that the pixels are fitted with beside that of the photons, counts².
-    added: &'a [f64],
     /// Causes, each with its effect.
     effects: Vec<(Effect, &'a ToHold)>,
     estimated: Vec<Effect>,
@@ -218,13 +215,10 @@ impl Wider<'_> {
         for (followed, sigma) in self.followed.iter().zip(sigmas).filter(|(_, sigma)| sigma.is_finite()) {
             let Some(g) = tangent.row(&followed.form(tangents)) else { continue };
             let shares = g.iter().zip(&tangents.used).zip(&tangent.sigma);
-            let (mut off, mut held) = (0.0, 0.0);
-            for ((g, band), sigma) in shares {
-                let of = |list: &[f64]| list.get(*band).copied().unwrap_or(0.0);
-                let (together, share) = (of(self.together), g / sigma);
-                off += share * together;
-                held += share * share * (together * together).min(of(self.added));
-            }
+            let off = |((g, band), sigma): ((&f64, &usize), &f64)| {
+                g * self.together.get(*band).copied().unwrap_or(0.0) / sigma
+            };
+            let off: f64 = shares.map(off).sum();
             let moved_by: Vec<f64> = effects()
                 .zip(slopes.iter())
                 .map(|(effect, slope)| dot(&g, slope) - followed.itself(tangents, effect, lit))
@@ -234,9 +228,7 @@ impl Wider<'_> {
             let moved = moved.map(|(by, (_, one))| ((by - dot(by_shared, &one.follow)) * one.amount).abs());
             let moved = moved.fold(0.0, f64::max);
             let by_shared = self.shared.map_or(0.0, |shared| shared.sigma_of(by_shared));
-            let own = f64::from(*sigma);
-            let own = own.mul_add(own, off.mul_add(off, -held)).max(0.0).sqrt();
-            *sigma = own.hypot(moved).hypot(by_shared) as f32;
+            *sigma = f64::from(*sigma).hypot(off).hypot(moved).hypot(by_shared) as f32;
         }
         let Some(shared) = self.shared else { return 0.0 };
         let own = &mut slopes[self.effects.len()..];
