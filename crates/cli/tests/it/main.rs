@@ -6,7 +6,6 @@ mod arrows;
 mod asked;
 mod calibrate;
 mod calibrate_blackbodies;
-mod calibrate_common;
 mod cameras;
 mod certificate;
 mod classes;

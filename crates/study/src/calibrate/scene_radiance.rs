@@ -1,8 +1,7 @@
 //! Radiances of a scene by a calibrated spectrometer, with what all pixels err by in common and what each errs by for itself.
 //!
 //! S = B̄ + (C − C̄)/R of every sample, W m⁻² sr⁻¹ per cm⁻¹, R and C̄ of the band or of each pixel for itself; the errors of
-//! [`hadar::calibration::blackbody`], whose variance is a parabola in the radiance. Of what all pixels have in common, each band has a part for
-//! itself, σ_c, and all bands one together, σ_t: independent, σ_c² + σ_t² the whole. A table of noise states each once.
+//! [`hadar::calibration::blackbody`], whose variance is a parabola in the radiance.
 
 use super::whole::{at, beside, check_memory, pairs, shown};
 use hadar::calibration::blackbody::Blackbodies;
@@ -44,10 +43,9 @@ pub struct SceneFound {
     pub sigma_common_most_k: f64,
     /// Deviation of each sample for itself, of every band; with that of its pixel's calibration (rms) where it has its own.
     pub sigma_noise: Vec<f64>,
-    /// Deviation common to all pixels that each band has for itself, by noise of the blackbodies' readings: no larger in 95 of 100 samples.
-    /// 0 where every pixel is calibrated for itself, whose noise it then is. Its square and that of the next make up the whole.
+    /// Deviation common to all pixels that it is no larger than in 95 of 100 of them, of every band.
     pub sigma_common_most: Vec<f64>,
-    /// Deviation common to all pixels that all bands have together, by the blackbodies' temperatures, emissivities and surroundings: the largest between their radiances, of every band.
+    /// What of it all bands have together, by the blackbodies' temperatures, emissivities and surroundings: the largest between their radiances, of every band.
     pub sigma_together: Vec<f64>,
 }
 
@@ -114,12 +112,7 @@ impl Spectrometer<'_> {
             missing: radiance.iter().filter(|x| x.is_nan()).count(),
             sigma_common_most_k: most_k(self.wavenumbers_cm1, &radiance, &sigma_common),
             sigma_noise: lines.iter().map(|line| (self.noise * line[1]).abs()).collect(),
-            sigma_common_most: most(&radiance, shape, |c, radiance| {
-                let joules = joules(self.wavenumbers_cm1[c]);
-                let channel = &of.channels()[c];
-                let photons = radiance.map_or(channel.mean_radiance, |radiance| radiance / joules);
-                joules * channel.var_radiance(photons, found.response[c]).sqrt()
-            }),
+            sigma_common_most: most(&sigma_common, shape, |c| lines[c][3].max(0.0).sqrt()),
             sigma_together: self.together(),
             radiance,
             sigma_common,
@@ -197,7 +190,7 @@ impl Spectrometer<'_> {
         Ok(SceneFound {
             shape,
             sigma_noise: sigma_noise.collect(),
-            sigma_common_most: vec![0.0; nu.len()],
+            sigma_common_most: most(&sigma_common, shape, |c| lines[c][0] * lines[c][1].max(0.0).sqrt()),
             sigma_together: self.together(),
             sigma_common_most_k: most_k(nu, &radiance, &sigma_common),
             missing,
@@ -209,16 +202,16 @@ impl Spectrometer<'_> {
     }
 }
 
-/// Of each band, the deviation that 95 of 100 samples do not exceed, `of` a band and a radiance; of bands without a number that of none.
-fn most(radiance: &[f32], shape: Shape, of: impl Fn(usize, Option<f64>) -> f64) -> Vec<f64> {
+/// Of each band, what 95 of 100 samples do not exceed; of bands without a number what `else_of` says.
+fn most(sigma: &[f32], shape: Shape, else_of: impl Fn(usize) -> f64) -> Vec<f64> {
     let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
-    let of_band = |band: usize| {
-        let some = radiance.iter().skip(band).step_by(every).filter(|x| x.is_finite());
-        let mut sigma: Vec<f64> = some.map(|x| of(band, Some(f64::from(*x)))).collect();
-        sigma.sort_by(f64::total_cmp);
-        sigma.get(sigma.len() * 95 / 100).copied().unwrap_or_else(|| of(band, None))
+    let of = |band: usize| {
+        let mut some: Vec<f32> =
+            sigma.iter().skip(band).step_by(every).copied().filter(|x| x.is_finite()).collect();
+        some.sort_by(f32::total_cmp);
+        some.get(some.len() * 95 / 100).map_or_else(|| else_of(band), |x| f64::from(*x))
     };
-    (0..shape.bands()).map(of_band).collect()
+    (0..shape.bands()).map(of).collect()
 }
 
 /// What errors of radiances are as temperatures: of each band what 95 of 100 samples do not exceed, rms of the bands, K.

@@ -73,7 +73,7 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
              by band in sigma.csv, by sample in {}; for a decomposition\n  [cube]\n  data = \"{file}\"\n  unit = \
              \"{RADIANCE}\"\n  noise = \"sigma.csv\"\n  (a number as noise leaves out what all pixels have in common, up to {}: only sigma.csv carries it)",
             significant(mean(&scene.sigma_noise), 2),
-            significant(mean(&scene.sigma_common_most).hypot(mean(&scene.sigma_together)), 2),
+            significant(mean(&scene.sigma_common_most), 2),
             format.file("sigma_common"),
             milli(scene.sigma_common_most_k),
         );
