@@ -23,6 +23,9 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64) -> Result<Bundle> {
     bundle.add_asked("scenario.toml", study.scenario().to_toml());
     bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
     bundle.add_conditions(&result.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
+    if !result.safety.is_empty() {
+        bundle.add_table("safety.csv", tables::safety(&result.safety))?;
+    }
     bundle.add_warnings(&result.warnings)?;
     if let Some(prediction) = &result.identifiability.prediction_heuristic {
         let mut table = Table::new(["material", "prediction_s32_heuristic"]);
@@ -47,6 +50,9 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64) -> Result<Bundle> {
             bundle.add_table("matrix_camera_lower.csv", square(matrix, lower, STATISTICAL))?;
         }
         bundle.add_table("targets.csv", targets(matrix))?;
+        if !matrix.safety.is_empty() {
+            bundle.add_table("matrix_safety.csv", tables::safety(&matrix.safety))?;
+        }
         plots.push(figures::distance_matrix(matrix));
         plots.push(figures::minimum_distances(matrix));
         if let Some(spectra) = study.sample_spectra(seed)? {

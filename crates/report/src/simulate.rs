@@ -10,6 +10,7 @@ pub use crate::words::simulate::text;
 use self::figures::SimulationCurves;
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
+use crate::tables;
 use crate::words::simulate::{pair, retrieved};
 use hadar::error::Result;
 use hadar_study::{NoiseCurves, Simulation, Study};
@@ -24,6 +25,9 @@ pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>) -
     bundle.add_table("simulation.csv", figures::simulation_table(result))?;
     bundle.add_table("confusion.csv", confusion(result))?;
     spectra::add(&mut bundle, result)?;
+    if !result.safety.is_empty() {
+        bundle.add_table("safety.csv", tables::safety(&result.safety))?;
+    }
     bundle.add_warnings(&result.warnings)?;
     let pair = pair(result);
     let plot = match result.points.as_slice() {

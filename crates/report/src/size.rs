@@ -45,6 +45,9 @@ pub fn bundle(study: &Study, result: &Sizing) -> Result<Bundle> {
         bundle.add_table("companion.csv", tables::companions([found]))?;
     }
     bundle.add_conditions(&result.verdict.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
+    if !result.safety.is_empty() {
+        bundle.add_table("safety.csv", tables::safety(&result.safety))?;
+    }
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&classes::pictures(&result.classes))?;
     bundle.add_plots(&drawn(study, result)?)?;

@@ -1,9 +1,9 @@
 //! Tables that several commands write.
 
-use super::table::{Table, joined, number, optional};
+use super::table::{Table, joined, number, optional, yes_no};
 use crate::words::Say;
 use hadar_study::companion::Condition;
-use hadar_study::{Companion, Condition as RestsOn, PairResult, Warning};
+use hadar_study::{Companion, Condition as RestsOn, PairResult, SafetyOfTarget, Warning};
 
 /// All pairs as a table.
 #[must_use]
@@ -42,6 +42,36 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
             ("relative_error_local_unknown_gain", &|pair| number(pair.relative_error_unknown_gain)),
         ],
     )
+}
+
+/// Categories that matter for safety where a target is, a row a material of them.
+#[must_use]
+pub fn safety(all: &[SafetyOfTarget]) -> Table {
+    let mut table = Table::new([
+        "category",
+        "target",
+        "target_is_of_it",
+        "category_excluded",
+        "material",
+        "compared",
+        "excluded",
+        "probability_left_at_least",
+    ]);
+    for found in all {
+        for one in &found.materials {
+            table.push(vec![
+                found.category.clone(),
+                found.target.clone(),
+                yes_no(found.is_target),
+                yes_no(found.excluded),
+                one.material.clone(),
+                yes_no(one.compared),
+                yes_no(one.excluded),
+                optional(one.probability_left_at_least),
+            ]);
+        }
+    }
+    table
 }
 
 /// Warnings with their codes.

@@ -12,7 +12,9 @@
 //! | `found` | all of them by their paths |
 //! | `schema` | all of them as a JSON schema |
 
+mod air;
 pub(super) mod calibrate;
+pub(super) mod clause;
 mod commented;
 pub(super) mod cube;
 pub(super) mod files;
@@ -21,7 +23,9 @@ mod key;
 pub(super) mod rule;
 pub(super) mod scene;
 mod schema;
+mod stop;
 pub(super) mod task;
+mod views;
 
 pub use commented::commented;
 pub use files::{FILES, FileKind};

@@ -22,6 +22,7 @@ pub use noise_curves::{NoiseCurve, NoiseCurves};
 pub use standing::{SimulatedPerformance, Standing};
 pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
+use super::identify::SafetyOfTarget;
 use super::{Study, Warning};
 use hadar::demand::{self, Ledger, Thing, Work};
 use hadar::error::{Error, Result};
@@ -157,6 +158,10 @@ pub struct Simulation {
     pub comparisons: usize,
     /// No classifier was right more often than the limit allows.
     pub limit_holds: bool,
+    /// Whether what is proved of the scenario's camera excludes each category with `safety = true` where the target is; no draw has a part
+    /// in it. Empty without such categories.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub safety: Vec<SafetyOfTarget>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What it took.
@@ -175,8 +180,23 @@ impl Study {
         plan: &SimulationPlan,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<(Simulation, Vec<SavedModel>)> {
+        let (mut result, models) = self.simulated(plan, progress)?;
+        if self.scenario.categories.iter().any(|spec| spec.safety) {
+            // Of the camera as it stands in the scenario, whatever is drawn.
+            let identification = self.identify()?;
+            result.stats.add(&identification.stats);
+            result.safety = identification.safety;
+        }
+        Ok((result, models))
+    }
+
+    fn simulated(
+        &self,
+        plan: &SimulationPlan,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<(Simulation, Vec<SavedModel>)> {
         if self.unknowns.has_priors() {
-            let (mut result, models) = self.without_priors()?.simulate(plan, progress)?;
+            let (mut result, models) = self.without_priors()?.simulated(plan, progress)?;
             result.warnings.push(Warning::PriorsLeftOut);
             return Ok((result, models));
         }
@@ -185,12 +205,12 @@ impl Study {
         {
             // Drawn as it is, bunching is no noise to be added.
             let camera = self.camera.clone().map(|camera| Camera { photon_bunching: false, ..camera });
-            return Self { camera, ..self.clone() }.simulate(plan, progress);
+            return Self { camera, ..self.clone() }.simulated(plan, progress);
         }
         if let Some(index) = self.paired_with(&plan.against)
             && let std::borrow::Cow::Owned(own) = self.against(index)
         {
-            return own.simulate(plan, progress);
+            return own.simulated(plan, progress);
         }
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
@@ -244,6 +264,7 @@ impl Study {
                     .flat_map(|point| &point.performances)
                     .any(|found| found.standing == Some(Standing::Beyond)),
                 points,
+                safety: Vec::new(),
                 warnings,
                 stats: ledger.close(),
             },

@@ -1,6 +1,6 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
-use super::identify::{PairResult, PhotonsRequired};
+use super::identify::{PairResult, PhotonsRequired, SafetyOfTarget};
 use super::{ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
 use crate::rests_on::Reached;
 use hadar::demand::{self, Ledger, Work};
@@ -55,6 +55,9 @@ pub struct Sizing {
     /// What the members of classes say together, alternative by alternative; empty without classes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub classes: Vec<ClassAnswer>,
+    /// Whether each category with `safety = true` is excluded where the target is; empty without such categories.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub safety: Vec<SafetyOfTarget>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What it took.
@@ -230,6 +233,7 @@ impl Study {
             limiting: identification.limiting,
             companion,
             classes: identification.classes,
+            safety: identification.safety,
             warnings,
             stats: ledger.close(),
         })

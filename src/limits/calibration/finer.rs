@@ -6,13 +6,15 @@
 //!
 //! Each value's width is therefore cut into an odd number of parts, P, no wider than ℓ/[`PER_LENGTH`]. The prior is set up at the centres
 //! of all W P parts, the sum runs over them, and value j is the part at its centre, ν_j. The posterior of the value then holds what
-//! is unknown between the values. The error of the sum falls at least as P⁻².
+//! is unknown between the values. The error of the sum falls at least as P⁻². It is in no deviation: where so many parts cannot be worked
+//! with, there is no answer.
 //!
 //! Units: cm⁻¹ for ν, Δν, ℓ. Assumption: filters are given as their means over each part.
 //!
 //! Source: O'Hagan, J. Stat. Plan. Inference 29, 245 (1991), doi:10.1016/0378-3758(91)90002-V (integrals of Gaussian processes).
 
 use crate::error::{Error, Result, check};
+use crate::words::significant;
 
 /// Fewest parts over the length at which the correlation has fallen to a quarter.
 pub const PER_LENGTH: f64 = 20.0;
@@ -30,15 +32,30 @@ impl Finer {
     /// For values at these wavenumbers, of curves with this correlation (cm⁻¹).
     ///
     /// # Errors
-    /// Fewer than two values, a length that is not positive.
+    /// Fewer than two values, a length that is not positive or takes more than about 600 parts.
     pub fn of(values_cm1: &[f64], correlation_cm1: f64) -> Result<Self> {
         check::positive("correlation of the response", correlation_cm1, "cm^-1")?;
         let step = step(values_cm1)?;
-        let wanted = (step * PER_LENGTH / correlation_cm1).ceil().clamp(1.0, MOST as f64) as usize;
-        let most = (MOST / values_cm1.len()).max(1);
         let odd = |parts: usize| if parts.is_multiple_of(2) { parts + 1 } else { parts };
-        let parts = odd(wanted).min(odd(most));
-        Self::cut(values_cm1, parts)
+        let most = odd((MOST / values_cm1.len()).max(1));
+        let wanted = (step * PER_LENGTH / correlation_cm1).ceil().max(1.0);
+        if wanted > most as f64 {
+            let least = significant(up_to_digits(step * PER_LENGTH / most as f64), 3);
+            let values = values_cm1.len();
+            let expected = format!(
+                "{least} or more for {values} values {} cm^-1 apart: what a curve does between them is summed over at most {} parts, \
+                 and the error of a coarser sum would be in no deviation",
+                significant(step, 4),
+                most * values
+            );
+            return Err(Error::out_of_range(
+                "correlation of the response",
+                correlation_cm1,
+                "cm^-1",
+                expected,
+            ));
+        }
+        Self::cut(values_cm1, odd(wanted as usize))
     }
 
     /// Each value's width cut into an odd number of parts.
@@ -94,6 +111,12 @@ impl Finer {
     }
 }
 
+/// The next number of three digits from here up.
+fn up_to_digits(value: f64) -> f64 {
+    let unit = 10_f64.powf(value.log10().floor() - 2.0);
+    (value / unit).ceil() * unit
+}
+
 fn step(values_cm1: &[f64]) -> Result<f64> {
     let (Some(first), Some(last), true) = (values_cm1.first(), values_cm1.last(), values_cm1.len() > 1)
     else {
@@ -126,8 +149,16 @@ mod tests {
     fn parts_are_no_more_than_can_be_worked_with() {
         let values: Vec<f64> = (0..200).map(|j| 600.0 + 4.0 * f64::from(j)).collect();
         assert_eq!(Finer::of(&values, 100.0).unwrap().parts(), 1);
-        assert_eq!(Finer::of(&values, 1e-9).unwrap().parts(), 3);
-        assert_eq!(Finer::of(&values[..2], 1e-9).unwrap().parts(), 301);
+        assert_eq!(Finer::of(&values, 26.7).unwrap().parts(), 3);
+        // 4 cm⁻¹ × 20 / 3 parts.
+        let refused = Finer::of(&values, 26.6).unwrap_err().to_string();
+        assert!(
+            refused.contains("26.6 cm^-1") && refused.contains("26.7 or more for 200 values"),
+            "{refused}"
+        );
+        assert!(refused.contains("at most 600 parts"), "{refused}");
+        assert!(Finer::of(&values, 1e-9).is_err() && Finer::of(&values[..2], 1e-300).is_err());
+        assert_eq!(Finer::of(&values[..2], 0.266).unwrap().parts(), 301);
         assert!(Finer::cut(&values, 4).is_err() && Finer::of(&values[..1], 10.0).is_err());
         assert!(Finer::of(&values, f64::NAN).is_err());
     }

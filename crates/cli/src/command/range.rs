@@ -28,7 +28,7 @@ pub(super) struct RangeArgs {
     /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
     #[arg(long, conflicts_with = "trials")]
     check: bool,
-    /// What is done with pixels of a cube that are found to be bad: cube.bad of the scenario
+    /// What is done with pixels of a cube that are found to be bad: cube.bad of the scenario; without a cube it is refused
     #[arg(long, value_enum)]
     bad: Option<FoundBad>,
     /// By air: the N of all bands that tell most of the distance, with what no other choice can exceed
@@ -42,10 +42,20 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
 
 fn one(scenario: &Path, args: &RangeArgs, global: &Global) -> Result<u8> {
     let mut scenario = RangingScenario::from_written(&global.written(scenario)?)?;
-    if let (RangingScenario::Stereo(scenario), Some(bad)) = (&mut scenario, args.bad)
-        && let Subject::Cube(cube) = &mut scenario.subject
-    {
-        cube.bad = bad.into();
+    if let Some(bad) = args.bad {
+        let found = match &mut scenario {
+            RangingScenario::Stereo(scenario) => match &mut scenario.subject {
+                Subject::Cube(cube) => {
+                    cube.bad = bad.into();
+                    None
+                }
+                Subject::Scene(_) => Some("--bad, but the views are rendered, and have no bad pixels"),
+            },
+            RangingScenario::Air(_) => Some("--bad, but ranging by air reads no cube"),
+        };
+        if let Some(found) = found {
+            return Err(Error::malformed(found, "leave it out, or give a [cube]"));
+        }
     }
     scenario.check_asked(args.trials, args.bands)?;
     match scenario {

@@ -580,6 +580,11 @@ fn what_no_response_comes_from_is_said() {
         .fold(WHEEL.to_owned(), |text, t| text.replace(&format!("\"{t} degC\""), "\"35 degC\""));
     says(&equal, &["blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 308.15 K"]);
     says(&WHEEL.replace("sample = 1.0\n", ""), &["nothing says how samples scatter"]);
+    // What a curve does between its values would be in no error.
+    says(
+        &WHEEL.replace("[response]\n", "[response]\ncorrelation = \"5 cm^-1\"\n"),
+        &["response.correlation", "5 cm^-1", "24.5 or more for 30 values 25.69 cm^-1 apart"],
+    );
     // The last filter is a mixture of two others.
     let table = std::fs::read_to_string(folder.path().join("filters.csv")).unwrap();
     let mixed = table.lines().enumerate().map(|(i, line)| {

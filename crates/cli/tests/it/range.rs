@@ -29,7 +29,7 @@ pub(crate) const CUBE: &str = "[cube]\nleft = \"left.npy\"\ndepth = \"10 m\"\n[s
                     focal_length = \"14 mm\"\npixel = \"12 um\"\n[requirement]\nrelative_depth_error = 0.05\n";
 
 /// A small, quick street.
-const SCENE: &str = "[scene]\nsize = [60, 80]\nsky_temperature = \"-15 degC\"\n\
+pub(crate) const SCENE: &str = "[scene]\nsize = [60, 80]\nsky_temperature = \"-15 degC\"\n\
                      [bands]\nstart = \"720 cm^-1\"\nstop = \"1240 cm^-1\"\nstep = \"40 cm^-1\"\n\
                      [camera]\nexposure = \"12 ms\"\npixel = \"96 um\"\nf_number = 1.4\nfocal_length = \"14 mm\"\nnoise_electrons = 0\n\
                      [stereo]\nbaseline = \"0.2 m\"\n";

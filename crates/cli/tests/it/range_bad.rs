@@ -1,6 +1,7 @@
 //! Pictures with bad pixels and with depths that are not known: what is left out is named and counted, and no 'yes' rests on it.
 
-use crate::range::CUBE;
+use crate::air_ranging::WALL;
+use crate::range::{CUBE, SCENE};
 use crate::support::folder::Folder;
 use hadar::cube::Shape;
 use hadar::random::generator;
@@ -145,4 +146,29 @@ fn no_yes_rests_on_a_few_windows() {
         said.contains(" of all 1944 windows at best") && said.contains("count as not reaching it"),
         "{said}"
     );
+}
+
+/// Where there is no cube the flag means nothing, and says so; of a cube it is what the key is.
+#[test]
+fn a_flag_of_bad_pixels_without_a_cube_is_refused() {
+    for (text, words) in [(SCENE, "the views are rendered"), (WALL, "ranging by air reads no cube")] {
+        let folder = Folder::with(text);
+        for bad in ["keep", "leave-out"] {
+            let refused = folder.refusal(&["range", "a.toml", "--bad", bad]);
+            assert!(refused.contains("--bad") && refused.contains(words), "{refused}");
+        }
+    }
+    let folder = asked(&spoilt(wall(1e-4), &|pixel| pixel[0] *= 1.5));
+    let [mut by_flag, mut by_key] = [
+        (CUBE.to_owned(), &["--bad", "keep"][..]),
+        (CUBE.replace("depth =", "bad = \"keep\"\ndepth ="), &[]),
+    ]
+    .map(|(text, flags)| {
+        folder.file("a.toml", &text);
+        folder.json(&[&["range", "a.toml"][..], flags].concat())
+    });
+    for answer in [&mut by_flag, &mut by_key] {
+        answer.as_object_mut().unwrap().remove("stats");
+    }
+    assert_eq!(by_flag, by_key);
 }

@@ -131,3 +131,116 @@ fn an_error_of_an_emissivity_says_what_it_is_of() {
         assert!(refused.contains(said) && refused.contains("sensitivity.emissivity_error"), "{refused}");
     }
 }
+
+/// Every row of the matrix is what a task of its own with that target says, and no row is excluded on less.
+#[test]
+fn a_matrix_says_it_of_every_material() {
+    for exposure in ["0.1 us", "20 ms"] {
+        let more =
+            PERSON.to_owned() + "[[category]]\nname = \"oven\"\nmaterials = [\"fabric\"]\nsafety = true\n";
+        let text = task(exposure, &more);
+        let folder = Folder::with(&text);
+        let answer = folder.json(&["identify", "a.toml", "--matrix"]);
+        let rows = answer["matrix"]["safety"].as_array().unwrap();
+        assert_eq!(rows.len(), 6);
+        let names: Vec<&str> = answer["matrix"]["materials"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|name| name.as_str().unwrap())
+            .collect();
+        for target in &names {
+            let others: Vec<String> =
+                names.iter().filter(|name| *name != target).map(|name| format!("\"{name}\"")).collect();
+            let own = text
+                .replace("material = \"aluminium\"", &format!("material = \"{target}\""))
+                .replace("[\"skin\", \"brick-red\"]", &format!("[{}]", others.join(", ")));
+            let alone = Folder::with(&own).json(&["identify", "a.toml"])["safety"].clone();
+            let of_matrix: Vec<&Value> = rows.iter().filter(|row| row["target"] == *target).collect();
+            assert_eq!(serde_json::json!(of_matrix), alone, "{target}");
+        }
+        let person: Vec<&Value> = rows.iter().filter(|row| row["category"] == "person").collect();
+        assert!(person.iter().any(|row| row["is_target"] == true && row["excluded"] == false));
+        let excluded = person.iter().filter(|row| row["excluded"] == true).count();
+        let of_target = person.iter().find(|row| row["target"] == "aluminium").unwrap();
+        assert_eq!(of_target["excluded"], exposure == "20 ms", "{person:#?}");
+        // Fabric is in no row.
+        assert!(rows.iter().all(|row| row["category"] == "person" || row["excluded"] == false));
+        let said = folder.run(&["identify", "a.toml", "--matrix", "--out", "out"]).stdout;
+        let left = 3 - excluded;
+        let start = match left {
+            3 => "A person cannot be excluded where any of the 3 materials is, at 99 %".to_owned(),
+            left => format!("A person cannot be excluded where {left} of the 3 materials are, at 99 %"),
+        };
+        assert!(
+            said.contains(&start) && said.contains("  A person cannot be excluded: skin is of it."),
+            "{said}"
+        );
+        assert!(said.contains("An oven cannot be excluded where any of the 3 materials is"), "{said}");
+        let table = std::fs::read_to_string(folder.path().join("out/matrix_safety.csv")).unwrap();
+        assert_eq!(table.lines().count(), 7, "{table}");
+        assert!(table.contains("person,skin,yes,no,skin,no,no,"), "{table}");
+        // Only a distance that is proved excludes.
+        let local = folder.json(&["identify", "a.toml", "--matrix", "--by", "local"]);
+        let rows = local["matrix"]["safety"].as_array().unwrap();
+        assert!(rows.iter().all(|row| row["excluded"] == false));
+    }
+}
+
+/// Of a class with a member that is of the category, the category is there.
+#[test]
+fn a_class_that_may_be_a_person_excludes_none() {
+    let class = "[class.surface]\nmaterials = [\"aluminium\", \"skin\"]\n";
+    let text = task("20 ms", PERSON)
+        .replace("material = \"aluminium\"", "material = \"surface\"")
+        .replace("[\"skin\", \"brick-red\"]", "[\"brick-red\", \"fabric\"]");
+    let folder = Folder::with(&(text + class));
+    let found = folder.json(&["identify", "a.toml"])["safety"][0].clone();
+    assert_eq!((&found["is_target"], &found["excluded"]), (&true.into(), &false.into()), "{found:#}");
+    assert_eq!(found["target"], "surface");
+    // As one of the matrix the member is it by the name of its material.
+    let found = folder.json(&["identify", "a.toml", "--matrix"])["matrix"]["safety"].clone();
+    let of =
+        |target: &str| found.as_array().unwrap().iter().find(|row| row["target"] == target).unwrap().clone();
+    assert_eq!(of("surface/skin")["is_target"], true);
+    assert_eq!(of("brick-red")["materials"][0]["compared"], true);
+}
+
+/// What other commands say of a target is what `identify` says; where it means nothing the key is refused with its line.
+#[test]
+fn other_commands_say_the_same_or_refuse() {
+    for exposure in ["20 us", "20 ms"] {
+        let folder = Folder::with(&task(exposure, PERSON));
+        let said = folder.json(&["identify", "a.toml"])["safety"].clone();
+        let text = folder.run(&["identify", "a.toml"]).stdout;
+        let sentence = text.lines().find(|line| line.starts_with("A person ")).unwrap();
+        let few = ["--classifiers", "likelihood-ratio", "--spectra", "400"];
+        for (command, flags) in [("size", &[][..]), ("simulate", &few[..])] {
+            let asked = [&[command, "a.toml"][..], flags].concat();
+            assert_eq!(folder.json(&asked)["safety"], said, "{command}");
+            let text = folder.run(&[&asked[..], &["--out", command]].concat()).stdout;
+            assert!(text.contains(sentence), "{text}");
+            let table = std::fs::read_to_string(folder.path().join(command).join("safety.csv")).unwrap();
+            assert!(table.lines().count() == 2 && table.contains("person,aluminium,no,"), "{table}");
+        }
+        let line = task(exposure, PERSON).lines().position(|line| line.starts_with("safety")).unwrap() + 1;
+        let refused = folder.refusal(&["simulate", "a.toml", "--thermometry", "30 degC"]);
+        assert!(refused.contains(&format!("a.toml:{line}: category[0].safety: thermometry")), "{refused}");
+    }
+    let bare = Folder::with(&task("20 ms", ""));
+    assert!(bare.json(&["size", "a.toml"]).get("safety").is_none());
+}
+
+/// The certificate of a rule has the sentence of its text.
+#[test]
+fn a_certificate_says_where_a_person_cannot_be_excluded() {
+    for exposure in ["20 us", "200 ms"] {
+        let text = task(exposure, PERSON).replace("[camera]", "[[camera]]\nname = \"core\"")
+            + "[requirement]\ndetection_probability = 0.9\n[envelope]\ntemperature = [\"25 degC\", \"35 degC\"]\n";
+        let folder = Folder::with(&text);
+        let said = folder.run(&["rule", "a.toml", "--out", "out"]).stdout;
+        let sentence = said.lines().find(|line| line.starts_with("A person ")).unwrap();
+        let page = std::fs::read_to_string(folder.path().join("out/certificate.md")).unwrap();
+        assert!(page.contains(&format!("\n- {sentence}\n")), "{page}");
+    }
+}

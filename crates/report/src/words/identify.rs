@@ -34,7 +34,13 @@ pub fn text(answers: &Answers, study: &Study) -> String {
         out.push_str(&matrix(found, study));
     }
     match &answers.apart {
-        Some(found) => out.push_str(&apart(found, study)),
+        Some(found) => {
+            out.push_str(&apart(found, study));
+            let said = safety::of_target(&answers.identification.safety);
+            if !said.is_empty() {
+                let _ = writeln!(out, "{said}");
+            }
+        }
         None => out.push_str(&identification(&answers.identification, study)),
     }
     if let Some(found) = &answers.scaling {

@@ -1,6 +1,6 @@
 //! Where a category that matters for safety cannot be excluded, of a target and of the cameras of a rule.
 
-use crate::text::numbers::significant;
+use crate::text::numbers::{listed, significant};
 use hadar::words::share;
 use hadar_study::{SafetyMaterial, SafetyOfRule, SafetyOfTarget};
 use std::fmt::Write as _;
@@ -12,23 +12,72 @@ pub(super) fn article(name: &str) -> &'static str {
 
 /// Of a target; nothing without categories that matter for safety.
 pub(super) fn of_target(all: &[SafetyOfTarget]) -> String {
-    let mut out = String::new();
+    all.iter().map(|found| sentence(found) + "\n").collect()
+}
+
+fn sentence(found: &SafetyOfTarget) -> String {
+    let (article, name, target) = (article(&found.category), &found.category, &found.target);
+    match (found.is_target, found.excluded) {
+        (true, _) => format!("{article} {name} cannot be excluded: {target} is of it."),
+        (_, true) => format!(
+            "{article} {name} is excluded where {target} is, at 99 %: at most 1 % of its readings are taken for {target}."
+        ),
+        (_, false) => format!(
+            "{article} {name} cannot be excluded where {target} is, at 99 %: {}.",
+            found.materials.iter().filter(|one| !one.excluded).map(why).collect::<Vec<_>>().join("; ")
+        ),
+    }
+}
+
+/// Of every material of a matrix, category by category: where it cannot be excluded, then where it is.
+pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
+    let mut names: Vec<&String> = Vec::new();
     for found in all {
-        let (article, name, target) = (article(&found.category), &found.category, &found.target);
-        let _ = match (found.is_target, found.excluded) {
-            (true, _) => writeln!(out, "{article} {name} cannot be excluded: {target} is of it."),
-            (_, true) => writeln!(
+        if !names.contains(&&found.category) {
+            names.push(&found.category);
+        }
+    }
+    let mut out = String::new();
+    for name in names {
+        let (excluded, left): (Vec<&SafetyOfTarget>, Vec<&SafetyOfTarget>) =
+            all.iter().filter(|found| found.category == *name).partition(|found| found.excluded);
+        let all = left.len() + excluded.len();
+        let (article, where_left) = (article(name), left.len());
+        let _ = match where_left {
+            0 => writeln!(out, "{article} {name} is excluded where any of the {all} materials is, at 99 %"),
+            _ if where_left == all => {
+                writeln!(
+                    out,
+                    "{article} {name} cannot be excluded where any of the {all} materials is, at 99 %"
+                )
+            }
+            _ => writeln!(
                 out,
-                "{article} {name} is excluded where {target} is, at 99 %: at most 1 % of its readings are taken for {target}."
-            ),
-            (_, false) => writeln!(
-                out,
-                "{article} {name} cannot be excluded where {target} is, at 99 %: {}.",
-                found.materials.iter().filter(|one| !one.excluded).map(why).collect::<Vec<_>>().join("; ")
+                "{article} {name} cannot be excluded where {where_left} of the {all} materials are, at 99 %"
             ),
         };
+        left.iter().for_each(|found| {
+            let _ = writeln!(out, "  {}", sentence(found));
+        });
+        let where_excluded: Vec<&str> = excluded.iter().map(|found| found.target.as_str()).collect();
+        if !where_excluded.is_empty() {
+            let _ = writeln!(out, "  excluded, at 99 %, where these are: {}", listed(&where_excluded));
+        }
+        out.push('\n');
     }
     out
+}
+
+/// Beside a simulation, whose draws have no part in it.
+pub(super) fn beside_draws(all: &[SafetyOfTarget]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    format!("By what is proved of the scenario's camera, whatever is drawn\n{}\n", indented(&of_target(all)))
+}
+
+fn indented(lines: &str) -> String {
+    lines.lines().map(|line| format!("  {line}\n")).collect()
 }
 
 fn why(one: &SafetyMaterial) -> String {
@@ -45,37 +94,29 @@ fn why(one: &SafetyMaterial) -> String {
     }
 }
 
-/// Of the cameras of a clause; nothing without categories that matter for safety.
-pub(super) fn of_rule(all: &[SafetyOfRule]) -> String {
-    let mut out = String::new();
-    for found in all {
-        let (article, name, camera) = (article(&found.category), &found.category, &found.camera);
-        let _ = match (found.excluded, found.not_compared.as_slice(), found.statistical_distance_lower) {
-            (true, ..) => {
-                writeln!(out, "{article} {name} is excluded by {camera} wherever there is none, at 99 %.")
+/// Of the cameras of a clause, a sentence each; nothing without categories that matter for safety.
+pub(super) fn of_rule(all: &[SafetyOfRule]) -> Vec<String> {
+    all.iter().map(of_camera).collect()
+}
+
+fn of_camera(found: &SafetyOfRule) -> String {
+    let (article, name, camera) = (article(&found.category), &found.category, &found.camera);
+    match (found.excluded, found.not_compared.as_slice(), found.statistical_distance_lower) {
+        (true, ..) => format!("{article} {name} is excluded by {camera} wherever there is none, at 99 %."),
+        (_, [_, ..], _) => format!(
+            "{article} {name} cannot be excluded by {camera}: {} not compared.",
+            match found.not_compared.as_slice() {
+                [one] => format!("{one} is"),
+                more => format!("{} are", more.join(", ")),
             }
-            (_, [_, ..], _) => writeln!(
-                out,
-                "{article} {name} cannot be excluded by {camera}: {} not compared.",
-                match found.not_compared.as_slice() {
-                    [one] => format!("{one} is"),
-                    more => format!("{} are", more.join(", ")),
-                }
-            ),
-            (_, _, Some(lower)) => writeln!(
-                out,
-                "{article} {name} cannot be excluded by {camera} at 99 %: that takes a verdict of meeting the rule and a proved d of 2.33 \
-                 between materials of it and others, of which {} is proved.",
-                significant(lower, 2)
-            ),
-            (_, _, None) => writeln!(
-                out,
-                "{article} {name} cannot be excluded by {camera} at 99 %: nothing is proved of its statistical distance."
-            ),
-        };
+        ),
+        (_, _, Some(lower)) => format!(
+            "{article} {name} cannot be excluded by {camera} at 99 %: that takes a verdict of meeting the rule and a proved d of 2.33 \
+             between materials of it and others, of which {} is proved.",
+            significant(lower, 2)
+        ),
+        (_, _, None) => format!(
+            "{article} {name} cannot be excluded by {camera} at 99 %: nothing is proved of its statistical distance."
+        ),
     }
-    if !out.is_empty() {
-        out.push('\n');
-    }
-    out
 }

@@ -7,6 +7,7 @@ use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::{fixed, shortened, significant, some};
 use crate::words::probability::percent;
+use crate::words::safety;
 use hadar_scenario::Units;
 use hadar_study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
@@ -25,6 +26,7 @@ const SHOWN: usize = 5;
 #[must_use]
 pub fn text(result: &Simulation, study: &Study) -> String {
     let mut out = format!("{}\n\n", sentence(result));
+    out.push_str(&safety::beside_draws(&result.safety));
     let points = &result.points;
     let shown = some(points.len(), SHOWN);
     if shown.len() < points.len() {

@@ -407,7 +407,7 @@ const SURFACES: Key = Key::row(
 );
 /// `[[category]]` of a task or a rule: what `safety` says of it.
 pub(crate) static CATEGORY_OF_TASK: Table = Table::of(
-    "A kind of thing, and what it is made of: with safety = true, identify and rule say where it cannot be excluded.",
+    "A kind of thing, and what it is made of: with safety = true, identify, size, simulate and rule say where it cannot be excluded.",
     &[CATEGORY_KEYS],
 );
 /// `[[category]]` of a cube.

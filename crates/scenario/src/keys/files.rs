@@ -2,7 +2,7 @@
 
 use super::key::Silent::{Means, Refused};
 use super::key::{Key, TITLE, Table, Value};
-use super::{calibrate, cube, rule, scene, task};
+use super::{air, calibrate, clause, cube, rule, scene, stop, task, views};
 
 /// A kind of file.
 #[derive(Debug)]
@@ -92,12 +92,12 @@ pub(crate) static RULE: Table = Table::of(
             table("rule", &rule::ABOUT),
             PRESETS,
             silent("those of cameras", tables("camera", &rule::CAMERA)),
-            silent("distances are as they are written", table("stop", &rule::STOP)),
-            silent("the rule is one demand", tables("clause", &rule::CLAUSE)),
+            silent("distances are as they are written", table("stop", &stop::STOP)),
+            silent("the rule is one demand", tables("clause", &clause::CLAUSE)),
             silent("no figure has a source", tables("source", &rule::SOURCE)),
             silent("nothing is tested", tables("test", &rule::TEST)),
             table("uncertainty", &rule::UNCERTAINTY),
-            table("stand_in", &rule::STAND_IN),
+            table("stand_in", &stop::STAND_IN),
         ],
     ],
 );
@@ -106,7 +106,7 @@ const STREET: &[Key] = &[
     TITLE,
     silent("the built-in car and person", tables("object", &scene::OBJECT)),
     BANDS,
-    table("requirement", &scene::DEPTH),
+    table("requirement", &views::DEPTH),
     silent("none", tables("category", &cube::CATEGORY_OF_SCENE)),
 ];
 /// Two views of a street or in a cube.
@@ -116,9 +116,9 @@ pub(crate) static RANGE: Table = Table::of(
         STREET,
         &[
             silent("a [cube] must be there", table("scene", &scene::SCENE)),
-            silent("a [scene] must be there", table("cube", &scene::VIEWS)),
+            silent("a [scene] must be there", table("cube", &views::VIEWS)),
             CAMERA,
-            needed(table("stereo", &scene::STEREO)),
+            needed(table("stereo", &views::STEREO)),
         ],
     ],
 );
@@ -130,7 +130,7 @@ pub(crate) static RENDER: Table = Table::of(
         &[
             needed(table("scene", &scene::SCENE)),
             needed(CAMERA),
-            silent("one view", table("stereo", &scene::STEREO)),
+            silent("one view", table("stereo", &views::STEREO)),
         ],
     ],
 );
@@ -153,11 +153,11 @@ pub(crate) static AIR_RANGING: Table = Table::of(
         ENVIRONMENT,
         needed(table("atmosphere", &task::ATMOSPHERE)),
         BANDS,
-        table("unknown", &scene::AIR_UNKNOWN),
+        table("unknown", &air::AIR_UNKNOWN),
         needed(CAMERA),
-        table("distances", &scene::DISTANCES),
-        silent("no comparison", table("stereo", &scene::AIR_STEREO)),
-        silent("nothing is demanded", table("requirement", &scene::AIR_REQUIREMENT)),
+        table("distances", &air::DISTANCES),
+        silent("no comparison", table("stereo", &air::AIR_STEREO)),
+        silent("nothing is demanded", table("requirement", &air::AIR_REQUIREMENT)),
     ]],
 );
 

@@ -15,7 +15,7 @@ use super::demand::{Demand, depth_error, resolution, temperature_error};
 use super::stop::StopSpec;
 use crate::entries::{Document, Entries, Part};
 use crate::envelope::LIGHTING_ROUNDING;
-use crate::keys::rule as keys;
+use crate::keys::clause as keys;
 use crate::paths::{Paths, material};
 use crate::read::{of_root, requirement};
 use crate::section::{Entry, Section, without_repetition};

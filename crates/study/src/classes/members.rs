@@ -38,7 +38,7 @@ impl Members {
         self.spec.is_some()
     }
 
-    pub(super) fn mixtures(&self) -> bool {
+    pub(crate) fn mixtures(&self) -> bool {
         self.spec.as_ref().is_some_and(|spec| spec.mixtures) && self.surfaces.len() > 1
     }
 

@@ -145,6 +145,7 @@ impl Study {
             required_distance: self.required,
             targets,
             apart,
+            safety: self.safety_of_matrix(&materials)?,
             unproved,
             passes: solver.passes(),
             materials: names,

@@ -1,66 +1,181 @@
-//! Where a category that matters for safety cannot be excluded, of a target against its alternatives.
+//! Where a category that matters for safety cannot be excluded, of a target against its alternatives, and of every material of a matrix.
 //!
 //! With the half separation d of the target and a member of the category, in units of the noise, no test that wrongly excludes the member
 //! in at most 1 % of the readings excludes it more often than Φ(2d − z), z = Φ⁻¹(0.99) = 2.326 (Neyman and Pearson; many photons, the two
 //! nearest states known). It is left among what 99 % leave with the probability Φ(z − 2d) at least, where d is that of a state that was
-//! found. It counts as excluded only where the least d that is proved reaches z, and the camera tells the two as reliably as is demanded.
+//! found. It counts as excluded only where the least d that is proved reaches z, and the camera tells the two as reliably as is demanded;
+//! of a class only where that is proved of all its members, and of all mixtures where they belong to it.
 //! A member that was not compared, or no camera, excludes nothing.
 
 use super::results::{PairResult, SafetyMaterial, SafetyOfTarget};
-use crate::Study;
+use crate::classes::Members;
 use crate::decision::YesNo;
+use crate::{Study, Surface};
+use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
+use hadar::parallel;
 use hadar_scenario::DistanceKind;
 use hadar_scenario::decompose::CategorySpec;
 
 /// Φ⁻¹(0.99).
 pub(crate) const AT_99: f64 = 2.326_347_874_040_841;
 
+/// A material of the category beside what is there.
+#[derive(Debug, Clone, Copy)]
+struct Beside {
+    /// d of the nearest state that was found; `None` without a camera.
+    found: Option<f64>,
+    /// Whether what is proved excludes it.
+    excluded: bool,
+}
+
 impl Study {
     /// Of every category with `safety = true`.
-    pub(super) fn safety(&self, pairs: &[PairResult]) -> Vec<SafetyOfTarget> {
-        let all = self.scenario.categories.iter().filter(|spec| spec.safety);
-        all.map(|spec| self.safety_of(spec, pairs)).collect()
-    }
-
-    fn safety_of(&self, spec: &CategorySpec, pairs: &[PairResult]) -> SafetyOfTarget {
+    pub(crate) fn safety(&self, pairs: &[PairResult]) -> Vec<SafetyOfTarget> {
+        let class = self.classes.first().map(|answer| &answer.target);
+        let target = class.map_or(&self.target.name, |class| &class.name);
+        let members = class.into_iter().flat_map(|class| &class.members);
+        let own: Vec<&str> = members.chain([&self.target.name, target]).map(String::as_str).collect();
         // A class stands for all of its members.
         let names = |i: usize| {
             let class = self.classes.get(i);
             [Some(&pairs[i].alternative), class.map(|class| &class.alternative.name)]
         };
-        let own = [Some(&self.target.name), self.classes.first().map(|class| &class.target.name)];
-        let is_target = own.into_iter().flatten().any(|name| spec.materials.contains(name));
+        let beside = |name: &String| -> Vec<Beside> {
+            let is_it = |i: &usize| names(*i).into_iter().flatten().any(|other| other == name);
+            (0..pairs.len()).filter(is_it).map(|i| self.beside(i, &pairs[i])).collect()
+        };
+        self.safety_specs().map(|spec| self.safety_of(spec, target, &own, beside)).collect()
+    }
+
+    /// The same of every material of a matrix as the target, by the distances that [`Study::identify`] would give it.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub(super) fn safety_of_matrix(&self, materials: &[&Surface]) -> Result<Vec<SafetyOfTarget>> {
+        if self.safety_specs().next().is_none() {
+            return Ok(Vec::new());
+        }
+        let rows = parallel::booked(materials.len(), |i| {
+            let own = Self { target: materials[i].clone(), ..self.clone() };
+            let mut all = Vec::new();
+            for spec in self.safety_specs() {
+                let mut known = Vec::new();
+                for other in materials.iter().filter(|other| other.name != own.target.name) {
+                    if spec.materials.iter().any(|name| self.is_of(&other.name, name)) {
+                        known.push((other, own.beside_surface(other)?));
+                    }
+                }
+                let beside = |name: &String| -> Vec<Beside> {
+                    let is_it = |one: &&(&&Surface, Beside)| self.is_of(&one.0.name, name);
+                    let mut found: Vec<Beside> = known.iter().filter(is_it).map(|one| one.1).collect();
+                    if self.is_mixed(name) {
+                        // Members were compared one by one, and not their mixtures.
+                        found.push(Beside { found: None, excluded: false });
+                    }
+                    found
+                };
+                let name = own.target.name.as_str();
+                all.push(own.safety_of(spec, name, &[name], beside));
+            }
+            Ok(all)
+        })?;
+        Ok(rows.into_iter().flatten().collect())
+    }
+
+    /// Refuses `safety = true` where nothing can be said of it.
+    pub(crate) fn no_safety(&self, found: &str) -> Result<()> {
+        let Some(place) = self.scenario.categories.iter().position(|spec| spec.safety) else {
+            return Ok(());
+        };
+        let instead = "leave the key out, and ask `hadar identify` where it cannot be excluded";
+        let key = format!("category[{place}].safety");
+        Err(Error::malformed(found, instead).at(self.scenario.place(&key)))
+    }
+
+    fn safety_specs(&self) -> impl Iterator<Item = &CategorySpec> {
+        self.scenario.categories.iter().filter(|spec| spec.safety)
+    }
+
+    /// Whether a name of a category means a surface: its own name, that of its class, or that of the material within the class.
+    fn is_of(&self, surface: &str, name: &str) -> bool {
+        let own = |class: &&Members| class.is_class() && class.surfaces.iter().any(|one| one.name == surface);
+        let within = |class: &Members| {
+            let rest = surface.strip_prefix(class.name.as_str());
+            class.name == name || rest.and_then(|rest| rest.strip_prefix('/')) == Some(name)
+        };
+        surface == name || self.members.iter().flatten().filter(own).any(within)
+    }
+
+    fn is_mixed(&self, name: &String) -> bool {
+        self.members.iter().flatten().any(|members| members.name == *name && members.mixtures())
+    }
+
+    /// `own` are all names of what is there, `beside` says what is known of a material of the category.
+    fn safety_of(
+        &self,
+        spec: &CategorySpec,
+        target: &str,
+        own: &[&str],
+        beside: impl Fn(&String) -> Vec<Beside>,
+    ) -> SafetyOfTarget {
+        let is_own = |name: &String| own.iter().any(|surface| self.is_of(surface, name));
+        let is_target = spec.materials.iter().any(is_own);
         let material = |name: &String| {
-            let is_own = |i: &usize| names(*i).into_iter().flatten().any(|other| other == name);
-            let own: Vec<&PairResult> = (0..pairs.len()).filter(is_own).map(|i| &pairs[i]).collect();
-            let left = own.iter().filter_map(|pair| {
-                let found = pair.statistical_distance_bounds.map(|[_, upper]| upper);
-                let d = pair.statistical_distance_nearest.or(found)?.max(found.unwrap_or(0.0));
-                Some(detection::miss_probability(2.0 * d - AT_99))
-            });
+            let all = beside(name);
+            let left =
+                all.iter().filter_map(|one| one.found).map(|d| detection::miss_probability(2.0 * d - AT_99));
             SafetyMaterial {
                 material: name.clone(),
-                compared: !own.is_empty(),
-                excluded: !own.is_empty() && own.iter().all(|pair| self.excludes(pair)),
+                compared: !all.is_empty(),
+                excluded: !all.is_empty() && all.iter().all(|one| one.excluded),
                 probability_left_at_least: left.max_by(f64::total_cmp),
             }
         };
         let materials: Vec<SafetyMaterial> = spec.materials.iter().map(material).collect();
         SafetyOfTarget {
             category: spec.name.clone(),
-            target: self.target.name.clone(),
+            target: target.to_owned(),
             is_target,
             excluded: !is_target && materials.iter().all(|one| one.excluded),
             materials,
         }
     }
 
-    /// Only the nearest distance, with what is proved of it, excludes.
-    fn excludes(&self, pair: &PairResult) -> bool {
+    /// Of the pair of an alternative, which of a class is its worst.
+    fn beside(&self, index: usize, pair: &PairResult) -> Beside {
+        let found = pair.statistical_distance_bounds.map(|[_, upper]| upper);
+        let nearest = pair.statistical_distance_nearest.or(found);
         let lower = pair.statistical_distance_bounds.map_or(0.0, |[lower, _]| lower);
-        self.scenario.requirement.by == DistanceKind::Nearest
-            && pair.told == Some(YesNo::Yes)
-            && lower >= AT_99
+        let class = self.classes.get(index);
+        let proved = class.map_or(lower, |class| lower.min(class.decisive()));
+        let all_told = class.is_none_or(|class| class.told_apart == Some(true));
+        Beside {
+            found: nearest.map(|d| d.max(found.unwrap_or(0.0))),
+            excluded: self.excludes(pair.told, proved) && all_told,
+        }
+    }
+
+    /// Of the target and a surface that is looked at by itself.
+    fn beside_surface(&self, other: &Surface) -> Result<Beside> {
+        let kind = self.scenario.requirement.by;
+        let Some(counting) = self.counting() else {
+            return Ok(Beside { found: None, excluded: false });
+        };
+        self.book_distances(kind, 1);
+        let decision = self.decided(kind, other, &counting)?;
+        let [lower, upper] = decision.found.bounds();
+        let nearest = match kind {
+            DistanceKind::Nearest => upper,
+            DistanceKind::Local | DistanceKind::LocalUnknownGain => {
+                self.statistical_distance(DistanceKind::Nearest, other, &counting)?
+            }
+        };
+        Ok(Beside { found: Some(nearest.max(upper)), excluded: self.excludes(Some(decision.told), lower) })
+    }
+
+    /// Only the nearest distance, with what is proved of it, excludes.
+    fn excludes(&self, told: Option<YesNo>, lower: f64) -> bool {
+        self.scenario.requirement.by == DistanceKind::Nearest && told == Some(YesNo::Yes) && lower >= AT_99
     }
 }

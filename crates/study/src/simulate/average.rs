@@ -64,9 +64,11 @@ impl Study {
     /// decisions against the limits. Photons are those of the plan, else the camera's, else those that the average requires.
     ///
     /// # Errors
-    /// No priors, or an unknown without one; a fixed total; more than one alternative; photons that cannot be drawn; no number of
+    /// A category with `safety = true`; no priors, or an unknown without one; a fixed total; more than one alternative; photons that cannot be drawn; no number of
     /// photons that suffices.
     pub fn simulate_average(&self, plan: &SimulationPlan) -> Result<AverageSimulation> {
+        let found = "an average over priors proves nothing of the worst state, and excludes no category";
+        self.no_safety(found)?;
         if plan.law == PhotonLaw::NegativeBinomial
             && self.camera.as_ref().is_some_and(|camera| camera.photon_bunching)
         {

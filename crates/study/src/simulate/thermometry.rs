@@ -185,6 +185,8 @@ impl Study {
         seed: u64,
         progress: &dyn Fn(usize, usize),
     ) -> Result<Thermometry> {
+        let found = "thermometry reads temperatures, and excludes no category";
+        self.no_safety(found)?;
         let Some((counting, camera)) = self.counting().zip(self.camera.as_ref()) else {
             let error = Error::malformed("thermometry without a camera", "add a [camera] to the scenario");
             return Err(error.at(self.scenario.place("camera")));

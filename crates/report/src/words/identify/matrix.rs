@@ -4,7 +4,7 @@ use super::terms::{camera, no_limit};
 use crate::table::yes_no;
 use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::{between, listed, shortened, significant};
-use crate::words::probability as words;
+use crate::words::{probability as words, safety};
 use hadar_study::{Apart, Matrix, Study};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -94,5 +94,5 @@ pub(super) fn matrix(matrix: &Matrix, study: &Study) -> String {
     }
     out.push_str(&table.text());
     out.push('\n');
-    out
+    out + &safety::of_matrix(&matrix.safety)
 }

@@ -10,6 +10,7 @@ use crate::text::significant;
 use crate::words::Say;
 use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
+use crate::words::safety;
 use hadar_scenario::Units;
 use hadar_study::{
     ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, MeasuredVerdict, RuleAnswer, RuleStudy,
@@ -126,6 +127,12 @@ fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
     ];
     out.push_str(&markdown(&head, apart.cameras.iter().map(|camera| row(camera, units))));
     out.push('\n');
+    for sentence in safety::of_rule(&apart.safety) {
+        let _ = writeln!(out, "- {sentence}");
+    }
+    if !apart.safety.is_empty() {
+        out.push('\n');
+    }
     if let Some(part) = &apart.not_identifiable {
         let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
     }

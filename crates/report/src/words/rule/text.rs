@@ -115,7 +115,12 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
         significant(apart.requirement.distance, 4),
         demanded(apart.requirement.distance)
     );
-    out.push_str(&safety::of_rule(&apart.safety));
+    for sentence in safety::of_rule(&apart.safety) {
+        let _ = writeln!(out, "{sentence}");
+    }
+    if !apart.safety.is_empty() {
+        out.push('\n');
+    }
     apart.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
     if let Some(part) = &apart.not_identifiable {
         let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));

@@ -7,7 +7,7 @@ use crate::text::pairs::pair_table;
 use crate::words::Say;
 use crate::words::probability::demanded_probability;
 use crate::words::size::ROUNDED;
-use crate::words::{classes, companion, conditions};
+use crate::words::{classes, companion, conditions, safety};
 use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_study::{NearestProof, PairResult, Sizing, Study};
@@ -24,6 +24,9 @@ pub fn text(result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}\n", result.verdict.sentence.say());
     out.push_str(&conditions::paragraph(&result.verdict.conditions, result.verdict.met == Some(true)));
+    if !result.safety.is_empty() {
+        let _ = writeln!(out, "{}", safety::of_target(&result.safety));
+    }
     let limiting = rows::limiting(result);
     if let Some(pair) = limiting {
         out.push_str(&readings(pair, result, study));

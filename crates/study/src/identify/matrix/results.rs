@@ -1,6 +1,7 @@
 //! All against all as data.
 
 use crate::Condition;
+use crate::identify::SafetyOfTarget;
 use hadar::demand::Work;
 use hadar::identifiability::multi::Passes;
 use hadar::order;
@@ -44,6 +45,9 @@ pub struct Matrix {
     pub targets: Vec<TargetVerdict>,
     /// What the camera makes of every pair; `None` without one.
     pub apart: Option<Apart>,
+    /// Whether each category with `safety = true` is excluded where each of the materials is; empty without such categories.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub safety: Vec<SafetyOfTarget>,
     /// Nearest distances that are searched and not proved.
     pub unproved: usize,
     /// How the local distances per √photon were computed: what the targets lent to their pairs.
