@@ -50,7 +50,7 @@ const LEAST_PIVOT: f64 = 1e-12;
 /// After so many looks a fit that promises too little is given up.
 const PATIENCE: usize = 4;
 /// How often over what a step promises, or the last one brought, Φ may still fall, and what ln det H may besides.
-const HOPE: f64 = 20.0;
+const HOPE: f64 = 8.0;
 const SLACK: f64 = 6.0;
 
 /// One of the surfaces in a pixel.
