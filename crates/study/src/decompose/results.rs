@@ -417,6 +417,6 @@ fn pair_rows(pairs: &BTreeMap<[u16; 2], (usize, f64)>, names: &[String]) -> Vec<
         share_mean: sum / *pixels as f64,
     };
     let mut rows: Vec<PairRow> = pairs.iter().map(row).collect();
-    rows.sort_by(|a, b| b.pixels.cmp(&a.pixels));
+    rows.sort_by_key(|row| std::cmp::Reverse(row.pixels));
     rows
 }

@@ -24,10 +24,15 @@
 //!
 //! Assumptions: the gain is known; one mode holds most of the posterior.
 
+mod factor;
+mod way;
+
 use crate::decompose::kernel::{compare, dot, emit, far_deviance, is_far, weighted};
 use crate::decompose::model::{Hermite, MOST, Model};
+use factor::{Factor, on_both_sides};
 use hadar::simd::{Chunk, LANES, Largest, added, dispatched, fold, product};
 use std::f64::consts::TAU;
+use way::Way;
 
 /// The smaller of two parts is at least so large.
 pub(in crate::decompose) const LEAST_SHARE: f64 = 0.1;
@@ -38,15 +43,11 @@ const SHORT: f64 = 1e-2;
 /// The same of a fit that costs nearly too much: so much less than that.
 const ROUGH: f64 = 1.0;
 const LITTLE: f64 = 12.0;
-/// How far a step goes to a limit that is in its way.
-const NEARER: f64 = 0.9;
 /// A share of a step that is no way any more.
 const TINY: f64 = 1e-6;
 /// A start is so far inside the range of temperatures, as a share of it.
 const INSIDE: f64 = 1e-2;
 const MOST_LOOKS: usize = 40;
-/// A pivot of columns of length 1 is at least that.
-const LEAST_PIVOT: f64 = 1e-12;
 /// After so many looks a fit that promises too little is given up.
 const PATIENCE: usize = 4;
 /// How often over what a step promises, or the last one brought, Φ may still fall, and what ln det H may besides.
@@ -192,66 +193,6 @@ fn look(model: &Model, parts: &[Part], counts: &[f64], room: &mut Room) -> f64 {
     if is_far(worst) { far_deviance(counts, &room.planes[..model.width]) } else { deviance }
 }
 
-/// A matrix of full rank, scaled to a diagonal of 1 by D and decomposed: D H D = L Lᵀ (Cholesky).
-struct Factor {
-    count: usize,
-    lower: Square,
-    scale: Point,
-}
-
-impl Factor {
-    fn new(whole: &Square, count: usize) -> Self {
-        let nothing = [0.0; MOST_COORDINATES];
-        let mut factor = Self { count, lower: [nothing; MOST_COORDINATES], scale: nothing };
-        for i in 0..count {
-            factor.scale[i] = libm::sqrt(whole[i][i].max(f64::MIN_POSITIVE)).recip();
-        }
-        let Self { lower, scale, .. } = &mut factor;
-        for i in 0..count {
-            for j in 0..=i {
-                let done: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
-                let rest = (whole[i][j] * scale[i]).mul_add(scale[j], -done);
-                lower[i][j] = if i == j { libm::sqrt(rest.max(LEAST_PIVOT)) } else { rest / lower[j][j] };
-            }
-        }
-        factor
-    }
-
-    /// L⁻¹ D of a vector.
-    fn forward(&self, of: &Point) -> Point {
-        let mut x = [0.0; MOST_COORDINATES];
-        for i in 0..self.count {
-            let done: f64 = (0..i).map(|k| self.lower[i][k] * x[k]).sum();
-            x[i] = of[i].mul_add(self.scale[i], -done) / self.lower[i][i];
-        }
-        x
-    }
-
-    /// H⁻¹ of a slope, and the slope along it.
-    fn step(&self, slope: &Point) -> (Point, f64) {
-        let mut x = self.forward(slope);
-        let gain = x[..self.count].iter().map(|x| x * x).sum();
-        for i in (0..self.count).rev() {
-            let after: f64 = (i + 1..self.count).map(|k| self.lower[k][i] * x[k]).sum();
-            x[i] = (x[i] - after) / self.lower[i][i];
-        }
-        (0..self.count).for_each(|i| x[i] *= self.scale[i]);
-        (x, gain)
-    }
-
-    fn logarithm(&self) -> f64 {
-        (0..self.count).map(|i| 2.0 * libm::log(self.lower[i][i] / self.scale[i])).sum()
-    }
-
-    /// Deviation of a coordinate.
-    fn sigma(&self, at: usize) -> f64 {
-        let mut one = [0.0; MOST_COORDINATES];
-        one[at] = 1.0;
-        let along = self.forward(&one);
-        libm::sqrt(along[..self.count].iter().map(|x| x * x).sum())
-    }
-}
-
 /// Coordinates of parts: the share of the first of two, then the temperature and the lighting of each.
 fn temperature_at(model: &Model, parts: &[Part], p: usize) -> usize {
     parts.len() - 1 + p * model.vertices
@@ -268,18 +209,6 @@ fn improbable(model: &Model, parts: &[Part]) -> f64 {
         each.map(|(j, u)| libm::log(u * j.max(1) as f64)).sum()
     };
     -of_places - parts.iter().map(lights).sum::<f64>()
-}
-
-/// A symmetric matrix in other coordinates, that `turn` brings a slope into: one side, then the other.
-fn on_both_sides(whole: &mut Square, count: usize, turn: impl Fn(&mut Point)) {
-    whole[..count].iter_mut().for_each(&turn);
-    for i in 0..count {
-        for j in 0..i {
-            let both = (whole[i][j], whole[j][i]);
-            (whole[j][i], whole[i][j]) = both;
-        }
-    }
-    whole[..count].iter_mut().for_each(&turn);
 }
 
 /// H in the coordinates z, and ∂f/∂z, ∂T/∂z.
@@ -320,121 +249,6 @@ fn bend(model: &Model, parts: &[Part], seen: &Room) -> (Factor, Point) {
         }
     }
     (Factor::new(&whole, count), rate)
-}
-
-/// A way from a state: how far each temperature and each weight go.
-struct Way {
-    temperature_k: [f64; 2],
-    weights: [[f64; MOST]; 2],
-    /// What Φ loses on it.
-    gain: f64,
-}
-
-impl Way {
-    /// Newton's step.
-    fn new(model: &Model, parts: &[Part], seen: &Room) -> Self {
-        let vertices = model.vertices;
-        let places = || (0..parts.len()).flat_map(|p| (0..vertices).map(move |j| (p, j)));
-        let heaviest = places().max_by(|a, b| parts[a.0].weight(a.1).total_cmp(&parts[b.0].weight(b.1)));
-        let base = heaviest.unwrap_or((0, 0));
-        // Temperatures first, then more of each other weight and less of the base: ∂f = 1 of the first part's, ∂uᵢ = (δᵢⱼ − uᵢ)/f.
-        let others = || places().filter(|place| *place != base);
-        let count = parts.len() * vertices + parts.len() - 1;
-        let turn = |x: &mut Point| {
-            let old = *x;
-            let own = |p: usize| &old[temperature_at(model, parts, p)..];
-            let means: [f64; 2] = std::array::from_fn(|p| {
-                let of = |part: &Part| (1..vertices).map(|i| part.mixture[i] * own(p)[i]).sum();
-                parts.get(p).map_or(0.0, of)
-            });
-            let along = |(p, j): (usize, usize)| {
-                let of_share = if parts.len() > 1 && p == 0 { old[0] } else { 0.0 };
-                of_share + (if j > 0 { own(p)[j] } else { 0.0 } - means[p]) / parts[p].share
-            };
-            let of_base = along(base);
-            (0..parts.len()).for_each(|p| x[p] = own(p)[0]);
-            x[parts.len()..].iter_mut().zip(others()).for_each(|(x, place)| *x = along(place) - of_base);
-        };
-        let (mut slope, mut whole) = (seen.slope, seen.information);
-        turn(&mut slope);
-        on_both_sides(&mut whole, count, turn);
-        // The density: s(1 − s) of places, and Π w / f^J (1 − f)^J of weights, of which what bends upwards counts. Toward a limit it
-        // bends as much as it will where it stops the slope of the counts: no step goes far beyond.
-        let [low, high] = model.range_k;
-        let end = |s: f64, width: f64, slope: f64| {
-            let bend = |to_limit: f64, slope: f64| to_limit.recip().max(-slope) / to_limit;
-            let (below, above) = (s * width, (1.0 - s) * width);
-            (below.recip() - above.recip(), bend(below, slope) + bend(above, -slope))
-        };
-        for (p, part) in parts.iter().enumerate() {
-            let (first, second) = end(part.place(model), high - low, slope[p]);
-            slope[p] += first;
-            whole[p][p] += second;
-        }
-        let of_share =
-            (parts.len() > 1).then(|| end(place_of(parts[0].share), 1.0 - 2.0 * LEAST_SHARE, seen.slope[0]));
-        let all = vertices as f64;
-        let along = |(p, j): (usize, usize)| 1.0 / parts[p].weight(j) - all / parts[p].share;
-        let weight = |(p, j): (usize, usize)| parts[p].weight(j);
-        for (i, place) in others().enumerate() {
-            let i = parts.len() + i;
-            whole[i][i] += weight(place).recip().max(-slope[i]) / weight(place);
-            slope[i] += along(place) - along(base);
-            let turned = |place: (usize, usize)| f64::from(place.0 == 0) - f64::from(base.0 == 0);
-            for (k, other) in others().enumerate() {
-                let k = parts.len() + k;
-                whole[i][k] += weight(base).powi(-2);
-                if let Some((_, second)) = of_share {
-                    whole[i][k] += second * turned(place) * turned(other);
-                }
-            }
-            slope[i] += of_share.map_or(0.0, |(first, _)| first * turned(place));
-        }
-        let (step, gain) = Factor::new(&whole, count).step(&slope);
-        let mut way = Self { temperature_k: [0.0; 2], weights: [[0.0; MOST]; 2], gain };
-        way.temperature_k[..parts.len()].copy_from_slice(&step[..parts.len()]);
-        for ((p, j), by) in others().zip(&step[parts.len()..]) {
-            way.weights[p][j] = *by;
-            way.weights[base.0][base.1] -= by;
-        }
-        way
-    }
-
-    /// The share of the way that stays off the limits.
-    fn within(&self, model: &Model, parts: &[Part]) -> f64 {
-        let [low, high] = model.range_k;
-        let until = |from: f64, by: f64, low: f64, high: f64| {
-            let room = if by < 0.0 { from - low } else { high - from };
-            NEARER * room / by.abs()
-        };
-        let mut share: f64 = 1.0;
-        for (p, part) in parts.iter().enumerate() {
-            share = share.min(until(part.temperature_k, self.temperature_k[p], low, high));
-            for j in 0..model.vertices {
-                share = share.min(until(part.weight(j), self.weights[p][j], 0.0, f64::INFINITY));
-            }
-            if parts.len() > 1 {
-                let by = self.weights[p][..model.vertices].iter().sum();
-                share = share.min(until(part.share, by, LEAST_SHARE, 1.0 - LEAST_SHARE));
-            }
-        }
-        share
-    }
-
-    fn go(&self, vertices: usize, parts: &mut [Part], share: f64) {
-        let mut weights = [[0.0; MOST]; 2];
-        for (p, part) in parts.iter_mut().enumerate() {
-            part.temperature_k = share.mul_add(self.temperature_k[p], part.temperature_k);
-            for j in 0..vertices {
-                weights[p][j] = share.mul_add(self.weights[p][j], part.weight(j)).max(f64::MIN_POSITIVE);
-            }
-        }
-        let of: [f64; 2] = weights.map(|of| of[..vertices].iter().sum());
-        for (p, part) in parts.iter_mut().enumerate() {
-            part.share = of[p] / (of[0] + of[1]);
-            part.mixture[..vertices].iter_mut().zip(&weights[p]).for_each(|(u, w)| *u = w / of[p]);
-        }
-    }
 }
 
 /// The most probable state of one or two parts from a start; nothing once it will cost more than `enough`.
@@ -481,9 +295,9 @@ pub(super) fn most_probable(
             ends |= way.gain < ROUGH && phi + volume > enough - LITTLE;
             if ends {
                 let sigma = |at: usize| rate[at] * factor.sigma(at);
-                for p in 0..start.len() {
-                    own[p].sigma_k = sigma(temperature_at(model, start, p));
-                    own[p].sigma_share = if start.len() > 1 { sigma(0) } else { 0.0 };
+                for (p, part) in own[..start.len()].iter_mut().enumerate() {
+                    part.sigma_k = sigma(temperature_at(model, start, p));
+                    part.sigma_share = if start.len() > 1 { sigma(0) } else { 0.0 };
                 }
                 // What the last step brings, if it is short.
                 let rest = if way.gain < ROUGH { way.gain.max(0.0) } else { 0.0 };
