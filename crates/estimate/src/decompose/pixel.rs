@@ -74,7 +74,7 @@ pub struct Pixel {
     pub lighting_sigma: [f64; MOST_SURROUNDINGS],
     /// Deviation of the texture Σₖ Vₖ ∫Sₖ dν over the bands that count, photons s⁻¹ m⁻² sr⁻¹.
     pub texture_sigma: f64,
-    /// Probability of a larger residual, were the material right; NaN where there are as many unknowns as bands.
+    /// Probability of a larger residual, were the material right, or both where two are likeliest; NaN where there are as many unknowns as bands.
     pub p_value: f64,
     /// Posterior probability of the material.
     pub posterior: f64,
@@ -472,8 +472,8 @@ impl Task {
         };
         let freedom = |unknowns: usize| model.used.len().saturating_sub(unknowns) as f64;
         // Where two surfaces do not fit either, anything may be there.
-        let two_fit =
-            is_mixed && two.is_some_and(|(d, unknowns)| chi_square_survival(d, freedom(unknowns)) >= NO_FIT);
+        let of_two = two.map(|(d, unknowns)| chi_square_survival(d, freedom(unknowns)));
+        let two_fit = is_mixed && of_two.is_some_and(|p| p >= NO_FIT);
         if let (Some(hypothesis), Some(other)) = (&self.other, other.filter(|_| is_other)) {
             let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
             (model, fit) = hypothesis.told(other, room);
@@ -526,7 +526,7 @@ impl Task {
             } else {
                 sigma_of(&self.textures)
             },
-            p_value,
+            p_value: of_two.filter(|_| is_mixed).unwrap_or(p_value),
             posterior: if is_other || is_mixed {
                 shares[usize::from(is_mixed)]
             } else {

@@ -183,6 +183,13 @@ fn mixed(found: &MixedFound) -> String {
         share(found.besides.prior),
         besides(&found.besides)
     );
+    if found.unfitting > 0 {
+        let _ = writeln!(
+            out,
+            "  in {} of these pixels two surfaces do not fit either (p below 1e-4): anything may be there",
+            whole(found.unfitting as u64)
+        );
+    }
     for row in found.pairs.iter().take(LISTED_PAIRS) {
         let ([first, second], pixels) = (&row.materials, whole(row.pixels as u64));
         let _ = writeln!(

@@ -14,7 +14,7 @@ use crate::model_judged::{ModelJudged, ModelVerdict, fits};
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::error::Result;
-use hadar_estimate::decompose::{Maps, Method, NO_MATERIAL, Spared, Spatial, flag};
+use hadar_estimate::decompose::{Maps, Method, NO_FIT, NO_MATERIAL, Spared, Spatial, flag};
 use hadar_formats::cube::Found;
 use hadar_scenario::DecomposeScenario;
 use serde::Serialize;
@@ -106,6 +106,8 @@ pub struct MixedFound {
     /// How many.
     #[serde(flatten)]
     pub besides: Besides,
+    /// Pixels of which two surfaces are likeliest and do not fit either.
+    pub unfitting: usize,
     /// The pairs of pixels of which two surfaces are likeliest, that of the most pixels first.
     pub pairs: Vec<PairRow>,
 }
@@ -177,6 +179,7 @@ pub(super) struct Counted {
     none_of_these: [usize; 3],
     /// The same of two surfaces, and of each pair its pixels and the sum of the larger shares.
     mixed: [usize; 3],
+    unfitting: usize,
     pairs: BTreeMap<[u16; 2], (usize, f64)>,
     spared: Spared,
     spatial: Option<Spatial>,
@@ -220,6 +223,7 @@ impl Counted {
                 let (pixels, sum) = self.pairs.entry(*materials).or_default();
                 *pixels += 1;
                 *sum += f64::from(share[0]);
+                self.unfitting += usize::from(f64::from(maps.p_value[i]) < NO_FIT);
             }
         }
         self.pixels += maps.material.len();
@@ -369,6 +373,7 @@ pub(super) fn summary(
     let none_of_these = library.none_of_these.map(|prior| besides(prior, counted.none_of_these));
     let mixed = library.mixed.map(|prior| MixedFound {
         besides: besides(prior, counted.mixed),
+        unfitting: counted.unfitting,
         pairs: pair_rows(&counted.pairs, &study.names),
     });
     let flags = counted.flags(&mut warnings, &study.bad);

@@ -175,11 +175,12 @@ fn two_surfaces_are_told_with_their_shares_and_temperatures() {
         assert_eq!((0..300).filter(|i| is_two(&after, *i)).count(), 0, "{counts}");
         let (seen, truth) = drawn(&scene, 6, 300, 9, [285.0, 315.0]);
         let after = maps(&scene, &seen, &asked(Some(PRIOR)));
-        let (mut told, mut right, mut held) = (0, 0, [0, 0, 0]);
+        let (mut told, mut right, mut held, mut low) = (0, 0, [0, 0, 0], 0);
         for (i, (ms, f, t)) in truth.iter().enumerate().filter(|(i, _)| is_two(&after, *i)) {
             told += 1;
             let found: [usize; 2] = std::array::from_fn(|p| usize::from(after.mixed_material[2 * i + p]));
             assert_ne!(after.flags[i] & flag::NO_FIT, 0);
+            low += usize::from(after.p_value[i] < 0.1);
             assert!(!after.is_decided(i) && after.mixed_share[2 * i] >= 0.5);
             let turned = found == [ms[1], ms[0]];
             if found == *ms || turned {
@@ -197,6 +198,8 @@ fn two_surfaces_are_told_with_their_shares_and_temperatures() {
             }
         }
         assert!(told >= least_told && right as f64 > 0.96 * f64::from(told), "{counts}: {right} of {told}");
+        // Their p-values are those of a right model: a tenth is below a tenth.
+        assert!((0.04..0.17).contains(&(low as f64 / f64::from(told))), "{counts}: {low} of {told}");
         // Surfaces of a street, with deviations from a prior that is wider: they hold more often, and a mode that is bent less.
         assert!(held.iter().all(|held| *held as f64 > 0.9 * right as f64), "{counts}: {held:?} of {right}");
     }
