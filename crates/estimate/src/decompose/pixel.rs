@@ -397,6 +397,18 @@ impl Task {
         Some(cost)
     }
 
+    /// How many of the fits, in their order, hold the share of the candidates, and all that are as probable as the last of them.
+    fn leading(&self, fits: &[(usize, Fit)], weight: impl Fn(&Fit) -> f64) -> usize {
+        let (mut held, mut last) = (0.0, 0.0);
+        let is_left = |(kind, one): &&(usize, Fit)| {
+            let each = weight(one);
+            let is_left = held < CANDIDATE_SHARE || each >= last * (1.0 - TIE);
+            (held, last) = (held + each * self.alike[*kind] as f64, each);
+            is_left
+        };
+        fits.iter().take_while(is_left).count()
+    }
+
     fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
         let other = self.other(room, spared);
         let fit_deviance = fit.deviance;
@@ -412,7 +424,7 @@ impl Task {
         let shares = weights.map(|weight| weight / total);
         let [other_share, mixed_share] = shares;
         // The fewest that hold the share, and all that are as probable as the last of them.
-        let (mut held, mut candidates, mut last, mut fits) = (0.0, 0, 0.0, 0);
+        let (mut held, mut candidates, mut last) = (0.0, 0, 0.0);
         let mut is_left = [false; 2];
         let in_order = if other_share >= mixed_share { [0, 1] } else { [1, 0] };
         let mut take_besides = |held: &mut f64, last: &mut f64, least: f64| {
@@ -431,15 +443,17 @@ impl Task {
             }
             held += each * self.alike[*kind] as f64;
             candidates += self.alike[*kind];
-            fits += 1;
             last = each;
         }
         take_besides(&mut held, &mut last, 0.0);
         let [other_is_left, mixed_is_left] = is_left;
         candidates += is_left.into_iter().filter(|left| *left).count();
         let possible = self.members.as_ref().map(|members| {
+            // What materials leave were there nothing else, and what else is left: a doubt that is stated excludes nothing.
+            let of_known = |one: &Fit| weight(one) / known;
             let mut possible =
-                members.possible(&room.fits, |one| weight(one) / total, fits, &mut room.shares);
+                members.possible(&room.fits, of_known, self.leading(&room.fits, of_known), &mut room.shares);
+            room.shares.iter_mut().for_each(|share| *share = (f64::from(*share) * known / total) as f32);
             if self.other.as_ref().is_some_and(|other| is_not_excluded(other_share, other.odds_against)) {
                 possible.at_99 = possible::ANYTHING;
             }
@@ -471,9 +485,7 @@ impl Task {
             None => (Mixture::NOTHING, None),
         };
         let freedom = |unknowns: usize| model.used.len().saturating_sub(unknowns) as f64;
-        // Where two surfaces do not fit either, anything may be there.
         let of_two = two.map(|(d, unknowns)| chi_square_survival(d, freedom(unknowns)));
-        let two_fit = is_mixed && of_two.is_some_and(|p| p >= NO_FIT);
         if let (Some(hypothesis), Some(other)) = (&self.other, other.filter(|_| is_other)) {
             let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
             (model, fit) = hypothesis.told(other, room);
@@ -506,7 +518,9 @@ impl Task {
         raise(p_value < NO_FIT || is_other || is_mixed, flag::NO_FIT);
         raise(candidates > 1, flag::UNDECIDED);
         raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
-        let is_told = (flags & (flag::NO_INFORMATION | flag::NO_FIT) == 0 || two_fit) && !other_is_left;
+        // Where no single material fits anything may be there, whatever two would.
+        let fits = p_value.is_nan() || p_value >= NO_FIT;
+        let is_told = fits && !no_information && !is_other && !other_is_left;
         let mut temperature = [fit.state.temperature_k, sigma_k];
         let mut lighting = model.lighting(mixture);
         if is_mixed {

@@ -179,7 +179,7 @@ fn besides(found: &Besides) -> String {
 fn mixed(found: &MixedFound) -> String {
     let mut out = format!(
         "Two surfaces in a pixel (each a tenth of it at least, prior {})\n  {}\n  \
-         such a pixel has no one material and may be of the categories of both; its temperature is that of the larger\n",
+         such a pixel has no one material, where none alone fits it may be of any category, and its temperature is that of the larger\n",
         share(found.besides.prior),
         besides(&found.besides)
     );
