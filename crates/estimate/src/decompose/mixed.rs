@@ -10,7 +10,10 @@
 //!
 //! Assumptions: the emissivities of the library are exact and the gain is known. Two surfaces of the same material are one.
 
+mod factor;
 mod mean_likelihood;
+mod parts;
+mod way;
 
 use super::fit::Fit;
 use super::model::Model;
@@ -18,7 +21,8 @@ use super::screen::{Screen, Screened};
 use super::space::{Space, dot, norm, remove, unit};
 use super::thresholds::NO_MATERIAL;
 use hadar::error::{Error, Result};
-use mean_likelihood::{Found, most_probable, start};
+use mean_likelihood::{Found, most_probable};
+use parts::start;
 
 /// Materials of a library of which pairs are formed, at most: their number grows with the square.
 pub const MOST_MIXED: usize = 64;
@@ -80,7 +84,7 @@ struct Pair {
 /// Room for one pixel's work, and what was found of it.
 #[derive(Debug, Default)]
 pub(super) struct Workplace {
-    room: mean_likelihood::Room,
+    room: parts::Room,
     order: Vec<(f64, usize)>,
     /// Pairs that count, with what they cost on the scale of the deviances of single materials.
     found: Vec<(f64, usize, Found)>,

@@ -20,7 +20,8 @@ fn sentence(found: &SafetyOfTarget) -> String {
     match (found.is_target, found.excluded) {
         (true, _) => format!("{article} {name} cannot be excluded: {target} is of it."),
         (_, true) => format!(
-            "{article} {name} is excluded where {target} is, at 99 %: at most 1 % of its readings are taken for {target}."
+            "{article} {name} is excluded where {target} is, at 99 %: at most 1 % of its readings are taken for {target}{}.",
+            if_constant(&found.constants)
         ),
         (_, false) => format!(
             "{article} {name} cannot be excluded where {target} is, at 99 %: {}.",
@@ -44,7 +45,17 @@ pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
         let all = left.len() + excluded.len();
         let (article, where_left) = (article(name), left.len());
         let _ = match where_left {
-            0 => writeln!(out, "{article} {name} is excluded where any of the {all} materials is, at 99 %"),
+            0 => {
+                let mut constants: Vec<String> =
+                    excluded.iter().flat_map(|found| found.constants.iter().cloned()).collect();
+                constants.sort_unstable();
+                constants.dedup();
+                let rests = if_constant(&constants);
+                writeln!(
+                    out,
+                    "{article} {name} is excluded where any of the {all} materials is, at 99 %{rests}"
+                )
+            }
             _ if where_left == all => {
                 writeln!(
                     out,
@@ -59,7 +70,13 @@ pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
         left.iter().for_each(|found| {
             let _ = writeln!(out, "  {}", sentence(found));
         });
-        let where_excluded: Vec<&str> = excluded.iter().map(|found| found.target.as_str()).collect();
+        let where_excluded: Vec<String> = excluded
+            .iter()
+            .map(|found| match found.constants.is_empty() {
+                true => found.target.clone(),
+                false => format!("{} ({})", found.target, listed_constants(&found.constants)),
+            })
+            .collect();
         if !where_excluded.is_empty() {
             let _ = writeln!(out, "  excluded, at 99 %, where these are: {}", listed(&where_excluded));
         }
@@ -78,6 +95,18 @@ pub(super) fn beside_draws(all: &[SafetyOfTarget]) -> String {
 
 fn indented(lines: &str) -> String {
     lines.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// What an exclusion rests on where materials are entered as one number.
+fn if_constant(constants: &[String]) -> String {
+    match constants.len() {
+        0 => String::new(),
+        _ => format!(", if real surfaces are as {}", listed_constants(constants)),
+    }
+}
+
+fn listed_constants(constants: &[String]) -> String {
+    format!("the one number of {}", listed(constants))
 }
 
 fn why(one: &SafetyMaterial) -> String {
@@ -102,13 +131,20 @@ pub(super) fn of_rule(all: &[SafetyOfRule]) -> Vec<String> {
 fn of_camera(found: &SafetyOfRule) -> String {
     let (article, name, camera) = (article(&found.category), &found.category, &found.camera);
     match (found.excluded, found.not_compared.as_slice(), found.statistical_distance_lower) {
-        (true, ..) => format!("{article} {name} is excluded by {camera} wherever there is none, at 99 %."),
+        (true, ..) => format!(
+            "{article} {name} is excluded by {camera} where any of the materials that the rule compares with it is, at 99 %{}.",
+            if_constant(&found.constants)
+        ),
         (_, [_, ..], _) => format!(
             "{article} {name} cannot be excluded by {camera}: {} not compared.",
             match found.not_compared.as_slice() {
                 [one] => format!("{one} is"),
                 more => format!("{} are", more.join(", ")),
             }
+        ),
+        (_, _, Some(_)) if !found.not_compared_with.is_empty() => format!(
+            "{article} {name} cannot be excluded by {camera}: it is not compared with {}.",
+            listed(&found.not_compared_with)
         ),
         (_, _, Some(lower)) => format!(
             "{article} {name} cannot be excluded by {camera} at 99 %: that takes a verdict of meeting the rule and a proved d of 2.33 \

@@ -264,7 +264,8 @@ impl Counted {
         if let Some(Spatial { changed, settled, .. }) = self.spatial {
             warnings.push(Warning::SpatialPrior { changed, pixels, settled });
         }
-        let unfit = self.has(flag::NO_FIT);
+        // Two surfaces that fit explain a pixel.
+        let unfit = self.has(flag::NO_FIT) + self.unfitting - self.mixed[0];
         if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
             warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
         }

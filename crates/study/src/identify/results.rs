@@ -248,6 +248,9 @@ pub struct SafetyOfTarget {
     pub excluded: bool,
     /// Its materials, in the order in which they are named.
     pub materials: Vec<SafetyMaterial>,
+    /// What of it and of the target is entered as one number: an exclusion rests on it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constants: Vec<String>,
 }
 
 /// A material of a category that matters for safety, against the target.

@@ -107,6 +107,19 @@ impl Study {
         surface == name || self.members.iter().flatten().filter(own).any(within)
     }
 
+    /// Surfaces that are entered as one number, of those that are asked for.
+    pub(crate) fn constants(&self, is_asked: impl Fn(&str) -> bool) -> Vec<String> {
+        let members = self.members.iter().flatten().flat_map(|class| &class.surfaces);
+        let all = std::iter::once(&self.target).chain(&self.alternatives).chain(members);
+        let mut names: Vec<String> = Vec::new();
+        for surface in all.filter(|surface| surface.one_number.is_some() && is_asked(&surface.name)) {
+            if !names.contains(&surface.name) {
+                names.push(surface.name.clone());
+            }
+        }
+        names
+    }
+
     fn is_mixed(&self, name: &String) -> bool {
         self.members.iter().flatten().any(|members| members.name == *name && members.mixtures())
     }
@@ -137,6 +150,9 @@ impl Study {
             category: spec.name.clone(),
             target: target.to_owned(),
             is_target,
+            constants: self.constants(|name| {
+                own.contains(&name) || spec.materials.iter().any(|one| self.is_of(name, one))
+            }),
             excluded: !is_target && materials.iter().all(|one| one.excluded),
             materials,
         }

@@ -169,7 +169,14 @@ impl TellApart {
         let requirement = self.requirement(&cameras, &envelope, alone);
         let companions =
             if asked.extent == Extent::Everything { self.companions(&cameras)? } else { Vec::new() };
-        let safety = super::safety::rows(&self.scenario.categories, &envelope, &cameras, self.required);
+        let mut constants: Vec<String> = Vec::new();
+        for study in self.candidates.iter().flat_map(|candidate| &candidate.near) {
+            constants.extend(study.constants(|_| true));
+        }
+        constants.sort_unstable();
+        constants.dedup();
+        let categories = &self.scenario.categories;
+        let safety = super::safety::rows(categories, &envelope, &cameras, self.required, &constants);
         Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety })
     }
 

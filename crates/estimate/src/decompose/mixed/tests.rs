@@ -51,7 +51,7 @@ fn drawn(
     (counts, truth)
 }
 
-const LEAST: f64 = mean_likelihood::LEAST_SHARE;
+const LEAST: f64 = parts::LEAST_SHARE;
 
 /// −2 ln of a mean likelihood over all states of two surfaces, at the middles of a grid of five dimensions, and of one.
 fn integrated(scene: &Scene, ms: &[usize], n: &[f64]) -> f64 {
@@ -96,7 +96,7 @@ fn mean_likelihoods_are_those_of_a_grid() {
         seen.extend(drawn(&scene, 3, 4, 9, RANGE_K).0);
         scene.with(|setting| {
             let model = Model::new(setting).unwrap();
-            let mut room = mean_likelihood::Room::default();
+            let mut room = parts::Room::default();
             for n in seen.chunks(9) {
                 let mut padded = vec![1.0; model.width];
                 padded[..9].copy_from_slice(n);
@@ -215,7 +215,7 @@ fn nothing_is_given_up_that_would_count() {
         seen.extend(scene.draw(20, 0.0, 7).0);
         scene.with(|setting| {
             let model = Model::new(setting).unwrap();
-            let mut room = mean_likelihood::Room::default();
+            let mut room = parts::Room::default();
             for n in seen.chunks(41) {
                 let mut padded = vec![1.0; model.width];
                 padded[..41].copy_from_slice(n);

@@ -6,7 +6,7 @@
 //! Source: Nocedal and Wright, Numerical Optimization, 2nd ed. (2006), chapter 19.
 
 use super::factor::{Factor, on_both_sides};
-use super::{LEAST_SHARE, Part, Point, Room, place_of, temperature_at};
+use super::parts::{LEAST_SHARE, Part, Point, Room, place_of, temperature_at};
 use crate::decompose::model::{MOST, Model};
 
 /// How far a step goes to a limit that is in its way.

@@ -2,7 +2,7 @@
 //!
 //! A pivot that rounding takes away is a direction without information beside the density: it stays at least [`LEAST_PIVOT`].
 
-use super::{MOST_COORDINATES, Point, Square};
+use super::parts::{MOST_COORDINATES, Point, Square};
 
 /// A pivot of columns of length 1 is at least that.
 const LEAST_PIVOT: f64 = 1e-12;

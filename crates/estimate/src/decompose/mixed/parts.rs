@@ -1,0 +1,148 @@
+//! One surface in a pixel, or two with their shares, and what is seen of their counts: deviance, slope and information of f, T and u.
+//!
+//! N = Σₚ fₚ [A(Tₚ) + Σⱼ uₚⱼ Cⱼ] over parts p ([`crate::decompose::model`]); deviance and information are those of [`crate::decompose::kernel`].
+
+use crate::decompose::kernel::{compare, dot, emit, far_deviance, is_far, weighted};
+use crate::decompose::model::{Hermite, MOST, Model};
+use hadar::simd::{Chunk, LANES, Largest, added, dispatched, fold, product};
+
+/// The smaller of two parts is at least so large.
+pub(in crate::decompose) const LEAST_SHARE: f64 = 0.1;
+/// Coordinates at most: a share, and temperature and lighting of two parts.
+pub(super) const MOST_COORDINATES: usize = 2 * MOST - 1;
+/// A start is so far inside the range of temperatures, as a share of it.
+const INSIDE: f64 = 1e-2;
+
+/// One of the surfaces in a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::decompose) struct Part {
+    /// Its material in the model.
+    pub(in crate::decompose) m: usize,
+    pub(in crate::decompose) share: f64,
+    pub(in crate::decompose) sigma_share: f64,
+    pub(in crate::decompose) temperature_k: f64,
+    pub(in crate::decompose) sigma_k: f64,
+    pub(super) mixture: [f64; MOST],
+}
+
+/// A number for each coordinate.
+pub(super) type Point = [f64; MOST_COORDINATES];
+/// Rows of a symmetric matrix.
+pub(super) type Square = [Point; MOST_COORDINATES];
+
+/// Room for the work, and what was seen at the last look.
+#[derive(Debug, Default)]
+pub(in crate::decompose) struct Room {
+    planes: Vec<f64>,
+    /// Slope and information of the first one's share, then of T and u but the first of each part.
+    pub(super) slope: Point,
+    pub(super) information: Square,
+    pub(super) looks: u64,
+}
+
+impl Part {
+    pub(super) fn weight(&self, j: usize) -> f64 {
+        self.share * self.mixture[j]
+    }
+
+    /// Where its temperature is in the range, as a share of it.
+    pub(super) fn place(&self, model: &Model) -> f64 {
+        let [low, high] = model.range_k;
+        (self.temperature_k - low) / (high - low)
+    }
+}
+
+/// Parts of equal shares, each lit by the middle of what is possible.
+pub(super) fn start<const P: usize>(model: &Model, ms: [usize; P], temperatures_k: [f64; P]) -> [Part; P] {
+    let [low, high] = model.range_k;
+    std::array::from_fn(|p| {
+        let mut mixture = [0.0; MOST];
+        mixture[..model.vertices].fill(1.0 / model.vertices as f64);
+        let within = INSIDE * (high - low);
+        Part {
+            m: ms[p],
+            share: 1.0 / P as f64,
+            sigma_share: 0.0,
+            temperature_k: temperatures_k[p].clamp(low + within, high - within),
+            sigma_k: 0.0,
+            mixture,
+        }
+    })
+}
+
+/// Where the share of the first part is between its limits.
+pub(super) fn place_of(share: f64) -> f64 {
+    (share - LEAST_SHARE) / (1.0 - 2.0 * LEAST_SHARE)
+}
+
+dispatched! {
+    /// χ² and deviance at a state, slope and information into `room`; the largest |n′ − N′|/(n′ + N′).
+    fn accumulate<'a>(model: &'a Model, parts: &'a [Part], counts: &'a [f64], room: &'a mut Room) -> (f64, f64) {
+        let (width, vertices) = (model.width, model.vertices);
+        let count = parts.len() - 1 + parts.len() * vertices;
+        room.planes.resize(width * (5 + count), 0.0);
+        let (mean, rest) = room.planes.split_at_mut(width);
+        let (weight, rest) = rest.split_at_mut(width);
+        let (relative, rest) = rest.split_at_mut(width);
+        let (series, rest) = rest.split_at_mut(width);
+        let (sent, columns) = rest.split_at_mut(width);
+        mean.copy_from_slice(&model.var_added);
+        if parts.len() > 1 {
+            columns[..width].fill(0.0);
+        }
+        for (p, part) in parts.iter().enumerate() {
+            let place = model.place(part.temperature_k);
+            let hermite = Hermite::at(place.share);
+            let emission = model.emission(part.m, place.row);
+            emit(hermite.value, emission, sent);
+            for (j, u) in part.mixture[..vertices].iter().enumerate() {
+                sent.iter_mut().zip(model.scattered_of(part.m, j)).for_each(|(n, c)| *n = u.mul_add(*c, *n));
+            }
+            mean.iter_mut().zip(&*sent).for_each(|(mean, n)| *mean = part.share.mul_add(*n, *mean));
+            if parts.len() > 1 {
+                let sign: f64 = if p == 0 { 1.0 } else { -1.0 };
+                columns[..width].iter_mut().zip(&*sent).for_each(|(to, n)| *to = sign.mul_add(*n, *to));
+            }
+            let at = parts.len() - 1 + p * vertices;
+            let own = &mut columns[at * width..(at + vertices) * width];
+            let (slope, lights) = own.split_at_mut(width);
+            emit(hermite.slope, emission, slope);
+            let per_kelvin = part.share / place.step_k;
+            slope.iter_mut().for_each(|slope| *slope *= per_kelvin);
+            for (to, from) in lights.chunks_exact_mut(width).zip(model.columns(part.m)) {
+                to.iter_mut().zip(from).for_each(|(to, c)| *to = part.share * c);
+            }
+        }
+        compare(counts, mean, weight, relative, series);
+        let mut worst = Largest::default();
+        let mut total = [0.0; LANES];
+        let chunks = mean.as_chunks::<LANES>().0.iter().zip(series.as_chunks::<LANES>().0);
+        let (counts, relatives) = (counts.as_chunks::<LANES>().0, relative.as_chunks::<LANES>().0);
+        for ((mean, s), (n, t)) in chunks.zip(counts.iter().zip(relatives)) {
+            let residual: Chunk = std::array::from_fn(|i| n[i] - mean[i]);
+            worst.see(std::array::from_fn(|i| residual[i] / (n[i] + mean[i])));
+            total = added(product(residual, *t), *s, total);
+        }
+        for i in 0..count {
+            let column = &columns[i * width..][..width];
+            room.slope[i] = dot(column, relative);
+            for j in 0..=i {
+                let each = weighted(column, &columns[j * width..][..width], weight);
+                (room.information[i][j], room.information[j][i]) = (each, each);
+            }
+        }
+        (worst.value(), fold(&total))
+    }
+}
+
+/// Deviance at a state.
+pub(super) fn look(model: &Model, parts: &[Part], counts: &[f64], room: &mut Room) -> f64 {
+    room.looks += 1;
+    let (worst, deviance) = accumulate(model, parts, counts, room);
+    if is_far(worst) { far_deviance(counts, &room.planes[..model.width]) } else { deviance }
+}
+
+/// Coordinates of parts: the share of the first of two, then the temperature and the lighting of each.
+pub(super) fn temperature_at(model: &Model, parts: &[Part], p: usize) -> usize {
+    parts.len() - 1 + p * model.vertices
+}
