@@ -22,6 +22,7 @@
 
 mod alike;
 mod cause;
+mod described;
 mod distil;
 mod effect;
 mod fit;

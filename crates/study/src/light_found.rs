@@ -157,14 +157,14 @@ impl Looked<'_> {
         if own_k > others_k - DARKER_K {
             return refused(format!(
                 "the darkest pixels look {:.1} K colder than all others, the sky at least {DARKER_K} K",
-                others_k - own_k
+                below(others_k - own_k)
             ));
         }
         let range = range(&bands_k);
         if rows.is_none() && range[1] - range[0] < CLEAR_K {
             return refused(format!(
                 "the darkest pixels look as warm in all bands to {:.1} K, as a cold wall does: a clear sky differs by at least {CLEAR_K} K",
-                range[1] - range[0]
+                below(range[1] - range[0])
             ));
         }
         let [scale, shape] = self.spread(&chosen, &median);
@@ -230,6 +230,11 @@ impl Looked<'_> {
             },
         ))
     }
+}
+
+/// To a tenth downwards: what misses a limit does not look as if it met it.
+fn below(x: f64) -> f64 {
+    (10.0 * x).floor() / 10.0
 }
 
 /// What share of a blackbody's radiance at the temperature of its air a sky sends at the nodes: at `least_k`, or as warm as it looks in its brightest band.

@@ -95,6 +95,15 @@ pub(crate) fn fits(maps: &Maps, i: usize) -> Option<bool> {
     told.then_some(flags & flag::NO_FIT == 0)
 }
 
+/// Pixels that some material fits, the sum of their p-values, and pixels that none fits.
+pub(crate) fn p_values(maps: &Maps) -> (usize, f64, usize) {
+    (0..maps.material.len()).fold((0, 0.0, 0), |(fitting, sum, unfit), i| match fits(maps, i) {
+        Some(true) => (fitting + 1, sum + f64::from(maps.p_value[i]), unfit),
+        Some(false) => (fitting, sum, unfit + 1),
+        None => (fitting, sum, unfit),
+    })
+}
+
 /// Name, light, band and unit of a cause.
 pub(crate) fn said(cause: &Cause) -> (&'static str, Option<usize>, Option<usize>, &'static str) {
     match cause {

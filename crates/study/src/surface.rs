@@ -3,6 +3,15 @@
 use hadar::error::Result;
 use hadar::material::{Basis, Material};
 
+/// Emissivities that differ by no more are one number with its rounding: no surface was measured to be so flat.
+const FLAT: f64 = 1e-5;
+
+/// Whether an emissivity is entered as one number for all of several wavenumbers.
+pub(crate) fn is_one_number(emissivity: &[f64]) -> bool {
+    let least = emissivity.iter().copied().fold(f64::INFINITY, f64::min);
+    emissivity.len() > 1 && emissivity.iter().all(|e| e - least <= FLAT)
+}
+
 /// A material on the nodes of the bands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
@@ -22,8 +31,10 @@ impl Surface {
     pub fn of(material: &Material, nodes_cm1: &[f64]) -> Result<Self> {
         hadar::stop::check();
         let emissivity = material.emissivity(nodes_cm1)?;
-        let flat = emissivity.windows(2).all(|pair| pair[0] == pair[1])
-            && (emissivity.len() > 1 || material.provenance().basis == Basis::Constant);
+        let flat = match emissivity.len() {
+            1 => material.provenance().basis == Basis::Constant,
+            _ => is_one_number(&emissivity),
+        };
         let one_number = emissivity.first().copied().filter(|_| flat);
         Ok(Self { name: material.name().to_owned(), emissivity, one_number })
     }

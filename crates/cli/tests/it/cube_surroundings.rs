@@ -207,6 +207,11 @@ fn what_cannot_be_found_is_refused_by_its_key() {
     assert!(told.contains("environment[0].found") && told.contains("name rows"), "{told}");
     for (from, to, key) in [
         ("found = \"sky\"", "found = \"moon\"", "environment[0].found"),
+        (
+            "found = \"sky\"",
+            "found = \"ground\"",
+            "environment[1].found: what environment[0] finds once more",
+        ),
         ("found = \"sky\"", "found = \"sky\"\ntemperature = \"260 K\"", "environment[0].temperature"),
         ("found = \"sky\"", "found = \"sky\"\nrows = [0, 31]", "environment[0].found"),
         ("found = \"sky\"", "found = \"sky\"\nrows = [5, 5]", "environment[0].rows"),

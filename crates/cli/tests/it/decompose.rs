@@ -152,6 +152,15 @@ fn what_is_entered_as_one_number_is_said() {
     let found = folder.json(&["decompose", "a.toml"]);
     assert_eq!(found["constants"], serde_json::json!(["flat"]));
     assert_eq!(found["segmentation"]["safety"][0]["constants"], serde_json::json!(["flat"]));
+    let rounded: Vec<String> = table
+        .lines()
+        .enumerate()
+        .map(|(i, line)| {
+            line.to_owned() + [",0.600000", ",0.600001", ",flat"][if i == 0 { 2 } else { i % 2 }]
+        })
+        .collect();
+    folder.file("library.csv", &rounded.join("\n"));
+    assert_eq!(folder.json(&["decompose", "a.toml"])["constants"], serde_json::json!(["flat"]));
     let measured = with(SCENARIO).json(&["decompose", "a.toml"]);
     assert!(measured.get("constants").is_none());
 }

@@ -206,7 +206,7 @@ impl Mixed {
         least - 2.0 * libm::log(sum)
     }
 
-    /// What is told of a mixed pixel of this probability, and the deviance of the likeliest pair with the number of its unknowns.
+    /// What is told of a mixed pixel of this probability, and χ² of the likeliest pair with the number of its unknowns.
     pub(super) fn told(
         &self,
         model: &Model,
@@ -225,7 +225,7 @@ impl Mixed {
             temperature_k: [first.temperature_k, second.temperature_k],
             sigma_k: [first.sigma_k, second.sigma_k],
         };
-        (mixture, Some((found.deviance, 1 + 2 * model.vertices)))
+        (mixture, Some((found.chi_square, 1 + 2 * model.vertices)))
     }
 
     /// Kinds of the pairs that hold 99 % of what all pairs are worth.

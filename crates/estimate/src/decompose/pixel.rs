@@ -6,12 +6,12 @@
 //!
 //! The residual is Pearson's χ² of the best, with one degree of freedom for each band less the unknowns that no limit holds.
 
-use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit, scan};
-use super::kernel::{Asked, Sums, contrast};
+use super::fit::{COMPARED, Fit, MOST_LOOKS, fit, scan};
+use super::kernel::Sums;
 use super::library_error::{Errors, Other, Workplace};
 use super::mixed::{self, Mixed, Mixture};
 use super::model::Model;
-use super::possible::{self, CANDIDATE_SHARE, Members, Possible, TIE};
+use super::possible::{Members, Possible};
 use super::ranked::Ranked;
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::setting::MOST_SURROUNDINGS;
@@ -23,8 +23,6 @@ use hadar::demand::{Reason, Thing, Work};
 use hadar::simd::Aligned;
 use hadar::statistics::chi_square_survival;
 
-/// Squared deviations by which what a pixel sends must differ from what its surroundings send.
-const CONTRAST: f64 = 16.0;
 /// Deviation of a lighting factor, as a share of its range, beyond which it is not known: half of 1/√12, what a blind guess has.
 pub(super) const ANY_LIGHTING: f64 = 0.144_337_567_297_406_43;
 
@@ -186,22 +184,16 @@ pub(super) struct Task {
 pub(super) struct Room {
     pub(super) sums: Sums,
     pub(super) workplace: Workplace,
-    mixed: mixed::Workplace,
+    pub(super) mixed: mixed::Workplace,
     pub(super) screened: Option<Screened>,
     pub(super) counts: Aligned,
     pub(super) shifted: Aligned,
-    mean: Vec<f64>,
+    pub(super) mean: Vec<f64>,
     pub(super) bounds: Vec<(f64, usize)>,
     /// Kinds that count of the pixel at hand, the best first.
     pub(super) fits: Vec<(usize, Fit)>,
     /// Shares of the categories in the posterior of the pixel at hand.
     pub(super) shares: Vec<f32>,
-}
-
-/// Whether what has this share of the posterior is among what 99 % leave, by the rules of [`possible`].
-fn is_not_excluded(share: f64, odds_against: f64) -> bool {
-    let odds = share / (1.0 - share).max(f64::MIN_POSITIVE);
-    share > possible::MISSED || odds * odds_against > possible::MISSED / (1.0 - possible::MISSED)
 }
 
 impl Task {
@@ -371,188 +363,8 @@ impl Task {
     }
 
     /// Probability of a larger residual; NaN where as many unknowns as bands fit everything, which says nothing.
-    fn p_value(&self, state: &State, chi_square: f64) -> f64 {
+    pub(super) fn p_value(&self, state: &State, chi_square: f64) -> f64 {
         chi_square_survival(chi_square, self.freedom(state) as f64)
-    }
-
-    /// The best fit of none of the library's materials, beside the best of the library; nothing where that is not asked.
-    fn other(&self, room: &mut Room, spared: &mut Spared) -> Option<(usize, Fit)> {
-        let (other, &(kind, fit)) = (self.other.as_ref()?, room.fits.first()?);
-        let best = Fit { deviance: fit.deviance - self.handicap[kind], ..fit };
-        let at = (&self.model, self.kinds[kind], &best);
-        let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
-        other.fit(at, self.errors.as_ref(), room, &mut spared.looks)
-    }
-
-    /// −2 ln of what two surfaces are worth, beside the best of the library; nothing where that is not asked.
-    fn mixed(&self, room: &mut Room, spared: &mut Spared) -> Option<f64> {
-        let (mixed, &(kind, fit)) = (self.mixed.as_ref()?, room.fits.first()?);
-        let handicap = self.handicap[kind];
-        let best = Fit { deviance: fit.deviance - handicap, ..fit };
-        let single = (self.kinds[kind], &best, fit.deviance);
-        let screened = self.screen.as_ref().filter(|_| self.skip).zip(room.screened.as_ref());
-        let known = (&self.model, &*self.kinds);
-        let cost = mixed.fit(known, single, screened, &room.shifted, &mut room.mixed);
-        spared.looks += room.mixed.looks();
-        Some(cost)
-    }
-
-    /// How many of the fits, in their order, hold the share of the candidates, and all that are as probable as the last of them.
-    fn leading(&self, fits: &[(usize, Fit)], weight: impl Fn(&Fit) -> f64) -> usize {
-        let (mut held, mut last) = (0.0, 0.0);
-        let is_left = |(kind, one): &&(usize, Fit)| {
-            let each = weight(one);
-            let is_left = held < CANDIDATE_SHARE || each >= last * (1.0 - TIE);
-            (held, last) = (held + each * self.alike[*kind] as f64, each);
-            is_left
-        };
-        fits.iter().take_while(is_left).count()
-    }
-
-    fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
-        let other = self.other(room, spared);
-        let fit_deviance = fit.deviance;
-        let mut model = &self.model;
-        // What is not asked for has no weight.
-        let besides = [other.map(|(_, other)| other.deviance), self.mixed(room, spared)];
-        let [of_other, of_mixed] = besides.map(|cost| cost.unwrap_or(f64::INFINITY));
-        let least = fit.deviance.min(of_other).min(of_mixed);
-        let weight = |one: &Fit| libm::exp(-0.5 * (one.deviance - least));
-        let weights = [of_other, of_mixed].map(|cost| libm::exp(-0.5 * (cost - least)));
-        let known: f64 = room.fits.iter().map(|(kind, one)| self.alike[*kind] as f64 * weight(one)).sum();
-        let total = known + weights[0] + weights[1];
-        let shares = weights.map(|weight| weight / total);
-        let [other_share, mixed_share] = shares;
-        // The fewest that hold the share, and all that are as probable as the last of them.
-        let (mut held, mut candidates, mut last) = (0.0, 0, 0.0);
-        let mut is_left = [false; 2];
-        let in_order = if other_share >= mixed_share { [0, 1] } else { [1, 0] };
-        let mut take_besides = |held: &mut f64, last: &mut f64, least: f64| {
-            for i in in_order {
-                if !is_left[i] && shares[i] >= least && *held < CANDIDATE_SHARE {
-                    is_left[i] = besides[i].is_some();
-                    (*held, *last) = (*held + shares[i], shares[i]);
-                }
-            }
-        };
-        for (kind, one) in &room.fits {
-            let each = weight(one) / total;
-            take_besides(&mut held, &mut last, each);
-            if held >= CANDIDATE_SHARE && each < last * (1.0 - TIE) {
-                break;
-            }
-            held += each * self.alike[*kind] as f64;
-            candidates += self.alike[*kind];
-            last = each;
-        }
-        take_besides(&mut held, &mut last, 0.0);
-        let [other_is_left, mixed_is_left] = is_left;
-        candidates += is_left.into_iter().filter(|left| *left).count();
-        let possible = self.members.as_ref().map(|members| {
-            // What materials leave were there nothing else, and what else is left: a doubt that is stated excludes nothing.
-            let of_known = |one: &Fit| weight(one) / known;
-            let mut possible =
-                members.possible(&room.fits, of_known, self.leading(&room.fits, of_known), &mut room.shares);
-            room.shares.iter_mut().for_each(|share| *share = (f64::from(*share) * known / total) as f32);
-            if self.other.as_ref().is_some_and(|other| is_not_excluded(other_share, other.odds_against)) {
-                possible.at_99 = possible::ANYTHING;
-            }
-            if let Some(mixed) = &self.mixed {
-                let not_excluded = is_not_excluded(mixed_share, mixed.odds_against);
-                for kinds in mixed.kinds_left(&room.mixed) {
-                    members.add_pair(&mut possible, kinds, [mixed_is_left, not_excluded]);
-                }
-            }
-            possible
-        });
-        let others = room.fits.iter().filter(|(other, _)| *other != kind);
-        let others = others.map(|(other, one)| (*other, weight(one) / total));
-        let ranked = self.ranked(std::iter::once((kind, weight(&fit) / total)).chain(others));
-        let (m, weight_of_fit) = (self.kinds[kind], weight(&fit));
-        let (mut fit, looks) = match &self.errors {
-            None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
-            Some(errors) => room.workplace.fit(model, errors, m, &room.shifted, fit.state, &mut room.sums),
-        };
-        spared.looks += looks as u64;
-        let p_value = self.p_value(&fit.state, room.sums.chi_square);
-        let mixture = &fit.state.mixture[..model.vertices];
-        let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
-        let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
-        let is_other = other.is_some() && of_other < fit_deviance.min(of_mixed);
-        let is_mixed = of_mixed < fit_deviance.min(of_other);
-        let (mixed, two) = match &self.mixed {
-            Some(mixed) => mixed.told(model, &room.mixed, mixed_share),
-            None => (Mixture::NOTHING, None),
-        };
-        let freedom = |unknowns: usize| model.used.len().saturating_sub(unknowns) as f64;
-        let of_two = two.map(|(d, unknowns)| chi_square_survival(d, freedom(unknowns)));
-        if let (Some(hypothesis), Some(other)) = (&self.other, other.filter(|_| is_other)) {
-            let room = (&*room.shifted, &mut room.workplace, &mut room.sums);
-            (model, fit) = hypothesis.told(other, room);
-        }
-        let sums = &room.sums;
-        let mixture = &fit.state.mixture[..model.vertices];
-        let deviations = fit.state.deviations(sums, &model.limits());
-        let mut flags = 0;
-        let mut raise = |condition: bool, flag: u8| flags |= if condition { flag } else { 0 };
-        let at_limit = fit.state.held;
-        let free = (0..model.vertices).filter(|&j| fit.state.free[j]).count();
-        let calibrated = usize::from(!model.gain);
-        // One vertex alone is no choice; a mixture that lacks one is at a limit.
-        let lit_at_limit = model.vertices > calibrated && free < model.vertices;
-        let sigma_k = deviations.temperature_k();
-        let no_temperature = !sigma_k.is_finite();
-        let sigma_of = |a: &[f64]| deviations.of_mixture(&model.slopes_of_lighting(a, mixture));
-        let mut lighting_sigma = [f64::NAN; MOST_SURROUNDINGS];
-        for (k, sigma) in lighting_sigma[..model.surroundings].iter_mut().enumerate() {
-            let mut one = [0.0; MOST_SURROUNDINGS];
-            one[k] = 1.0;
-            *sigma = sigma_of(&one);
-        }
-        let any_lighting = ANY_LIGHTING * model.lighting_total.unwrap_or(1.0);
-        let no_lighting = lighting_sigma.iter().any(|sigma| *sigma > any_lighting);
-        raise(at_limit, flag::TEMPERATURE_AT_LIMIT);
-        raise(lit_at_limit && !lighting_sigma.contains(&f64::INFINITY), flag::LIGHTING_AT_LIMIT);
-        raise(no_information, flag::NO_INFORMATION);
-        raise(no_lighting, flag::LIGHTING_UNKNOWN);
-        raise(p_value < NO_FIT || is_other || is_mixed, flag::NO_FIT);
-        raise(candidates > 1, flag::UNDECIDED);
-        raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
-        // Where no single material fits anything may be there, whatever two would.
-        let fits = p_value.is_nan() || p_value >= NO_FIT;
-        let is_told = fits && !no_information && !is_other && !other_is_left;
-        let mut temperature = [fit.state.temperature_k, sigma_k];
-        let mut lighting = model.lighting(mixture);
-        if is_mixed {
-            // Each surface has a lighting of its own.
-            temperature = [mixed.temperature_k[0], mixed.sigma_k[0]];
-            lighting[..model.surroundings].fill(f64::NAN);
-            lighting_sigma[..model.surroundings].fill(f64::INFINITY);
-        }
-        Pixel {
-            material: if no_information || is_other || is_mixed { NO_MATERIAL } else { m as u16 },
-            temperature_k: if no_temperature { f64::NAN } else { temperature[0] },
-            sigma_k: temperature[1],
-            lighting,
-            lighting_sigma,
-            texture_sigma: if self.textures.is_empty() || is_mixed {
-                f64::NAN
-            } else {
-                sigma_of(&self.textures)
-            },
-            p_value: of_two.filter(|_| is_mixed).unwrap_or(p_value),
-            posterior: if is_other || is_mixed {
-                shares[usize::from(is_mixed)]
-            } else {
-                weight_of_fit / total
-            },
-            other: other_share,
-            mixed,
-            ranked: if no_information { Ranked::NOTHING } else { ranked },
-            candidates: candidates as u16,
-            flags,
-            possible: possible.filter(|_| is_told).unwrap_or(Possible::ANYTHING),
-        }
     }
 }
 

@@ -13,7 +13,7 @@
 use super::DecomposeStudy;
 use super::estimated::{AGAINST, Estimated};
 use crate::cube_sample::{LOOKED, some};
-use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, fits, said};
+use crate::model_judged::{BandResidual, CauseRow, ModelJudged, ModelVerdict, p_values, said};
 use crate::shared_unknown::hottest_k;
 use hadar::atmosphere::Atmosphere;
 use hadar::cube::Cube;
@@ -45,6 +45,8 @@ pub(super) struct Asked {
     causes: Vec<Cause>,
     judged: Option<Judged>,
     most_decided: bool,
+    /// Pixels that some material fits, the sum of their p-values, and pixels that none fits, where other hypotheses beside the materials are in the maps.
+    plain: Option<(usize, f64, usize)>,
     /// Whether the library is taken as exact.
     exact: bool,
     /// Whether materials can be decided with what is known of what the cube shares.
@@ -84,7 +86,10 @@ impl Asked {
         let against = shared.map_or_else(Vec::new, against);
         let mut asked = Self { causes, exact, is_told, against, ..Self::default() };
         let error = (options.library_error, shared);
-        let pixels = |maps: &Maps| (0..maps.material.len()).filter(|i| fits(maps, *i).is_some()).count();
+        let pixels = |maps: &Maps| {
+            let (fitting, _, unfit) = p_values(maps);
+            fitting + unfit
+        };
         let (judged, asked_of) = match whole.filter(|_| shape.rows() * shape.columns() <= LOOKED) {
             Some(maps) => (judge(setting, &asked.causes, error, maps, &study.cube)?, pixels(maps)),
             None => {
@@ -92,8 +97,10 @@ impl Asked {
                     Cube::F32(rows) => Cube::F32(Box::new(some(rows.as_ref(), LOOKED)?)),
                     Cube::F64(rows) => Cube::F64(Box::new(some(rows.as_ref(), LOOKED)?)),
                 };
-                let options = Options { spatial: None, other: None, mixed: None, ..options.clone() };
-                let maps = decompose_by(method, setting, &options, &some, &|_| ())?;
+                let has_doubts = options.other.is_some() || options.mixed.is_some();
+                let plain = Options { spatial: None, other: None, mixed: None, ..options.clone() };
+                let maps = decompose_by(method, setting, &plain, &some, &|_| ())?;
+                asked.plain = Some(p_values(&maps)).filter(|_| has_doubts);
                 (judge(setting, &asked.causes, error, &maps, &some)?, pixels(&maps))
             }
         };
@@ -176,8 +183,9 @@ impl Asked {
         &self,
         study: &DecomposeStudy,
         method: Method,
-        (pixels, p_sum, unfit): (usize, f64, usize),
+        counted: (usize, f64, usize),
     ) -> ModelJudged {
+        let (pixels, p_sum, unfit) = self.plain.unwrap_or(counted);
         // Only what is known of all pixels, or of some together.
         let is_judged = method == Method::Ml && pixels + unfit > 0 && (self.exact || self.sums().is_some());
         let p_z = p_deviations(p_sum, pixels);

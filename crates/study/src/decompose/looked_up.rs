@@ -9,6 +9,7 @@ use crate::cube_bad::BadFound;
 use crate::heat_cube::{Measured, Said, columns};
 use crate::light_found::LightFound;
 use crate::shared_unknown::{air_of_cube, spectra};
+use crate::surface::is_one_number;
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
@@ -60,9 +61,7 @@ pub struct DecomposeStudy {
 impl DecomposeStudy {
     /// Materials that are entered as one number for all wavenumbers, in the order of the library: no surface was measured to be so.
     pub(super) fn constants(&self) -> impl Iterator<Item = usize> {
-        let is_one =
-            |emissivity: &Vec<f64>| emissivity.len() > 1 && emissivity.iter().all(|e| *e == emissivity[0]);
-        self.told.library.iter().enumerate().filter(move |(_, e)| is_one(e)).map(|(m, _)| m)
+        self.told.library.iter().enumerate().filter(|(_, e)| is_one_number(e)).map(|(m, _)| m)
     }
 
     /// What it takes at least.

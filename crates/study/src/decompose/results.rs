@@ -10,7 +10,7 @@ pub use super::worth::TruthFound;
 use crate::Warning;
 use crate::cube_bad::BadFound;
 use crate::light_found::LightFound;
-use crate::model_judged::{ModelJudged, ModelVerdict, fits};
+use crate::model_judged::{ModelJudged, ModelVerdict, p_values};
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::error::Result;
@@ -196,15 +196,10 @@ impl Counted {
             let [pixels, decided] = self.materials.entry(*material).or_default();
             *pixels += 1;
             *decided += usize::from(is_decided);
-            match fits(maps, i) {
-                Some(true) => {
-                    self.p_values.0 += 1;
-                    self.p_values.1 += f64::from(maps.p_value[i]);
-                }
-                Some(false) => self.p_values.2 += 1,
-                None => {}
-            }
         }
+        let (fitting, sum, unfit) = p_values(maps);
+        let so_far = self.p_values;
+        self.p_values = (so_far.0 + fitting, so_far.1 + sum, so_far.2 + unfit);
         let is_likeliest = |i: usize, probability: f32| {
             maps.material[i] == NO_MATERIAL
                 && maps.flags[i] & flag::NO_FIT != 0

@@ -39,6 +39,11 @@ impl Said<'_> {
         let lights = each.map(|(environment, (source, lit))| match (source, &looked) {
             (LightSource::Found { like, rows }, Some(looked)) => {
                 let key = format!("environment[{environment}].found");
+                if let Some(before) = self.environment[..environment].iter().position(|one| one == source) {
+                    let found = format!("what environment[{before}] finds once more");
+                    let instead = "leave one of them out, or name the rows of each";
+                    return Err(self.at(&key)(Error::malformed(found, instead)));
+                }
                 let (light, found) = looked.find(environment, (*like, *rows)).map_err(self.at(&key))?;
                 all_found.push(found);
                 Ok(light)

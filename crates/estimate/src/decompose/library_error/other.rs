@@ -42,7 +42,7 @@ pub(in crate::decompose) struct Other {
     /// −2 ln of its prior, to that of the most probable material of the library.
     handicap: f64,
     /// (1 − π)/π.
-    pub(in crate::decompose) odds_against: f64,
+    odds_against: f64,
 }
 
 impl Other {
@@ -118,6 +118,11 @@ impl Other {
         };
         let deviance = fit.deviance - offset + narrower - volume(library, sums) + self.handicap;
         Some((asked.m, Fit { deviance, ..fit }))
+    }
+
+    /// (1 − π)/π.
+    pub(in crate::decompose) fn odds_against(&self) -> f64 {
+        self.odds_against
     }
 
     /// The same to its end; the sums are those of the last look.

@@ -49,7 +49,8 @@ const SLACK: f64 = 6.0;
 pub(in crate::decompose) struct Found {
     /// The second one is of no share for a single surface.
     pub(in crate::decompose) parts: [Part; 2],
-    pub(in crate::decompose) deviance: f64,
+    /// Pearson's χ².
+    pub(in crate::decompose) chi_square: f64,
     /// −2 ln of the mean likelihood.
     pub(in crate::decompose) cost: f64,
 }
@@ -157,7 +158,7 @@ pub(super) fn most_probable(
                 }
                 // What the last step brings, if it is short.
                 let rest = if way.gain < ROUGH { way.gain.max(0.0) } else { 0.0 };
-                return Some(Found { parts: own, deviance, cost: phi - rest + volume });
+                return Some(Found { parts: own, chi_square: room.chi_square, cost: phi - rest + volume });
             }
         }
         let share = way.within(model, parts);

@@ -34,6 +34,8 @@ pub(super) type Square = [Point; MOST_COORDINATES];
 #[derive(Debug, Default)]
 pub(in crate::decompose) struct Room {
     planes: Vec<f64>,
+    /// Pearson's.
+    pub(super) chi_square: f64,
     /// Slope and information of the first one's share, then of T and u but the first of each part.
     pub(super) slope: Point,
     pub(super) information: Square,
@@ -76,7 +78,7 @@ pub(super) fn place_of(share: f64) -> f64 {
 }
 
 dispatched! {
-    /// χ² and deviance at a state, slope and information into `room`; the largest |n′ − N′|/(n′ + N′).
+    /// χ², slope and information at a state into `room`; the largest |n′ − N′|/(n′ + N′), and the deviance where that is small.
     fn accumulate<'a>(model: &'a Model, parts: &'a [Part], counts: &'a [f64], room: &'a mut Room) -> (f64, f64) {
         let (width, vertices) = (model.width, model.vertices);
         let count = parts.len() - 1 + parts.len() * vertices;
@@ -115,14 +117,17 @@ dispatched! {
         }
         compare(counts, mean, weight, relative, series);
         let mut worst = Largest::default();
-        let mut total = [0.0; LANES];
+        let (mut chi, mut total) = ([0.0; LANES], [0.0; LANES]);
         let chunks = mean.as_chunks::<LANES>().0.iter().zip(series.as_chunks::<LANES>().0);
         let (counts, relatives) = (counts.as_chunks::<LANES>().0, relative.as_chunks::<LANES>().0);
         for ((mean, s), (n, t)) in chunks.zip(counts.iter().zip(relatives)) {
             let residual: Chunk = std::array::from_fn(|i| n[i] - mean[i]);
             worst.see(std::array::from_fn(|i| residual[i] / (n[i] + mean[i])));
-            total = added(product(residual, *t), *s, total);
+            let squared = product(residual, *t);
+            chi = std::array::from_fn(|i| chi[i] + squared[i]);
+            total = added(squared, *s, total);
         }
+        room.chi_square = fold(&chi);
         for i in 0..count {
             let column = &columns[i * width..][..width];
             room.slope[i] = dot(column, relative);

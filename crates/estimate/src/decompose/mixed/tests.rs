@@ -223,7 +223,7 @@ fn nothing_is_given_up_that_would_count() {
                     let from = start(&model, ms, [300.0, 300.0]);
                     let whole = most_probable(&model, &from, &padded, f64::INFINITY, &mut room).unwrap();
                     // What fits; what costs nearly too much is told roughly.
-                    if whole.deviance > 150.0 {
+                    if whole.chi_square > 150.0 {
                         continue;
                     }
                     for (more, rough) in [(8.0, 8.0), (30.0, 0.5)] {
