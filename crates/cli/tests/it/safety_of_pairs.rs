@@ -59,6 +59,13 @@ fn a_person_is_excluded_only_where_that_is_proved() {
         let sentence =
             if found["excluded"] == true { "A person is excluded" } else { "A person cannot be excluded" };
         assert!(text.contains(sentence), "{text}");
+        // Skin is one number in the library: an exclusion says that it rests on it.
+        assert_eq!(found["constants"], serde_json::json!(["skin"]));
+        assert_eq!(
+            text.contains("if real surfaces are as the one number of skin."),
+            found["excluded"] == true,
+            "{text}"
+        );
         said.push(found["excluded"] == true);
         // Without the key nothing else changes, and nothing is said to be excluded.
         let bare = Folder::with(&task(exposure, "")).json(&["identify", "a.toml"]);
