@@ -32,9 +32,9 @@ use std::f64::consts::TAU;
 
 /// Squared length, in deviations, of the last step.
 const SHORT: f64 = 1e-2;
-/// The same of a fit that costs nearly too much: so much less than that.
+/// The same of a fit that costs nearly too much: so much less than that. At 12 instead of 6 some pairs count too little at few counts.
 const ROUGH: f64 = 1.0;
-const LITTLE: f64 = 12.0;
+const LITTLE: f64 = 6.0;
 /// A share of a step that is no way any more.
 const TINY: f64 = 1e-6;
 const MOST_LOOKS: usize = 40;
