@@ -13,7 +13,7 @@ const CODED: [&str; 2] = ["warnings", "conditions"];
 pub type Record = BTreeMap<String, Cell>;
 
 /// The values of an answer. Of lists, which have tables of their own, only the `items` that are named are there
-/// (`pairs[0].distance_nearest`, or `cameras[0]` for all of it); of warnings the codes.
+/// (`pairs[0].distance_nearest`, or `cameras[0]` for all of it), and what the scenario asks of safety; of warnings the codes.
 pub(super) fn record(answer: &Value, items: &[String]) -> Record {
     let mut record = Record::new();
     if let Value::Object(map) = answer {
@@ -21,6 +21,9 @@ pub(super) fn record(answer: &Value, items: &[String]) -> Record {
             flatten(key, value, &mut record);
         }
         codes("", map, &mut record);
+        for (i, of_target) in map.get("safety").and_then(Value::as_array).into_iter().flatten().enumerate() {
+            flatten(&format!("safety[{i}]"), of_target, &mut record);
+        }
     }
     for item in items {
         if let Some(value) = at(answer, item) {
@@ -79,10 +82,11 @@ mod tests {
         let answer = json!({
             "scenario": {"target": "x"}, "verdict": {"met": true, "margin": 1.5, "limit": null}, "n": 3,
             "pairs": [{"d": 0.25, "state": {"v": [0.5]}}], "warnings": [{"code": "a"}, {"code": "a"}, {"code": "b"}],
+            "safety": [{"category": "person", "excluded": false, "materials": [{"excluded": true}]}],
         });
         let plain = record(&answer, &[]);
         let names: Vec<&str> = plain.keys().map(String::as_str).collect();
-        assert_eq!(names, ["n", "verdict.limit", "verdict.margin", "verdict.met", "warnings"]);
+        assert_eq!(names, ["n", "safety[0].category", "safety[0].excluded", "verdict.limit", "verdict.margin", "verdict.met", "warnings"]);
         assert_eq!(plain["n"], Cell::Integer(3));
         assert_eq!(plain["verdict.margin"], Cell::Number(1.5));
         assert_eq!(plain["warnings"], Cell::Text("a b".into()));
