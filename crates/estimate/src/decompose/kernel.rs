@@ -10,8 +10,12 @@
 //!
 //! Source: Snyder, Hammoud and White, J. Opt. Soc. Am. A 10, 1014 (1993), doi:10.1364/JOSAA.10.001014, for σ² in the count.
 
+mod over_bands;
+
+pub(super) use self::over_bands::{Bent, Compared, Fitting, over_bands};
+
 use super::model::{Hermite, MOST, Model};
-use hadar::simd::{Chunk, LANES, Largest, added, dispatched, fold, product};
+use hadar::simd::dispatched;
 
 /// |x| up to which the series is taken: the first term left out is x¹⁶/19 of 1/3.
 const SMALL: f64 = 0.25;
@@ -43,14 +47,9 @@ pub(super) struct Asked<'a> {
 
 /// The sums at a state.
 pub(super) fn sums(model: &Model, asked: Asked<'_>, sums: &mut Sums) {
-    if is_far(accumulate(model, asked, sums)) {
+    if accumulate(model, asked, sums) {
         sums.deviance = far_deviance(asked.shifted, &mean_counts(model, asked));
     }
-}
-
-/// Whether the series does not hold for the largest |x|.
-pub(super) fn is_far(largest: f64) -> bool {
-    largest > SMALL
 }
 
 /// N′ of every band at a state.
@@ -97,9 +96,9 @@ pub(super) fn far_deviance(shifted: &[f64], mean: &[f64]) -> f64 {
 }
 
 dispatched! {
-    /// Fills `sums`; the largest |x|. Loops over all bands for what is each band's own, and chunks for what is added up: the
-    /// compiler makes whole vectors of both.
-    fn accumulate<'a>(model: &'a Model, asked: Asked<'a>, sums: &'a mut Sums) -> f64 {
+    /// Fills `sums`; whether the series does not hold. Loops over all bands for what is each band's own, and chunks for what is
+    /// added up: the compiler makes whole vectors of both.
+    fn accumulate<'a>(model: &'a Model, asked: Asked<'a>, sums: &'a mut Sums) -> bool {
         let (width, count) = (model.width, model.unknowns());
         let place = model.place(asked.temperature_k);
         let hermite = Hermite::at(place.share);
@@ -109,7 +108,7 @@ dispatched! {
         let (mean, rest) = sums.room.split_at_mut(width);
         let (weight, rest) = rest.split_at_mut(width);
         let (relative, rest) = rest.split_at_mut(width);
-        let (deviance, columns) = rest.split_at_mut(width);
+        let (series, columns) = rest.split_at_mut(width);
         let [v0, s0, v1, s1, factor] = model.emission(asked.m, place.row);
         emit(hermite.value, [v0, s0, v1, s1, factor], mean);
         let (first, weights) = match model.gain {
@@ -134,29 +133,12 @@ dispatched! {
         let slope = &mut columns[..width];
         emit(hermite.slope, [v0, s0, v1, s1, factor], slope);
         slope.iter_mut().for_each(|slope| *slope *= per_kelvin);
-        compare(asked.shifted, mean, weight, relative, deviance);
-        let mut worst = Largest::default();
-        let (mut chi, mut total) = ([0.0; LANES], [0.0; LANES]);
-        let chunks = mean.as_chunks::<LANES>().0.iter().zip(deviance.as_chunks::<LANES>().0);
-        let (counts, relatives) = (asked.shifted.as_chunks::<LANES>().0, relative.as_chunks::<LANES>().0);
-        for ((mean, s), (n, t)) in chunks.zip(counts.iter().zip(relatives)) {
-            let residual: Chunk = std::array::from_fn(|i| n[i] - mean[i]);
-            worst.see(std::array::from_fn(|i| residual[i] / (n[i] + mean[i])));
-            let squared = product(residual, *t);
-            chi = std::array::from_fn(|i| chi[i] + squared[i]);
-            total = added(squared, *s, total);
-        }
-        sums.chi_square = fold(&chi);
-        sums.deviance = fold(&total);
-        for i in 0..count {
-            let column = &columns[i * width..][..width];
-            sums.slope[i] = dot(column, relative);
-            for j in 0..=i {
-                let dot = weighted(column, &columns[j * width..][..width], weight);
-                (sums.information[i][j], sums.information[j][i]) = (dot, dot);
-            }
-        }
-        worst.value()
+        compare(asked.shifted, mean, weight, relative, series);
+        let compared = Compared { counts: asked.shifted, mean, weight, relative, series, columns };
+        let Fitting { deviance, chi_square, is_far } =
+            over_bands(compared, count, Bent { slope: &mut sums.slope, information: &mut sums.information });
+        (sums.deviance, sums.chi_square) = (deviance, chi_square);
+        is_far
     }
 }
 
@@ -197,25 +179,4 @@ pub(super) fn compare(
         let inner = (x + square).mul_add(inner, 1.0);
         *series = (-x).mul_add(inner, inner);
     }
-}
-
-/// Σ a b.
-#[inline(always)]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = [0.0; LANES];
-    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-        sum = added(*a, *b, sum);
-    }
-    fold(&sum)
-}
-
-/// Σ a b weight.
-#[inline(always)]
-pub(super) fn weighted(a: &[f64], b: &[f64], weight: &[f64]) -> f64 {
-    let mut sum = [0.0; LANES];
-    let chunks = a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0);
-    for ((a, b), weight) in chunks.zip(weight.as_chunks::<LANES>().0) {
-        sum = added(product(*a, *b), *weight, sum);
-    }
-    fold(&sum)
 }

@@ -22,7 +22,7 @@
 use super::model::{MOST, Model};
 use super::space::{Space, dot};
 use super::step::State;
-use hadar::simd::{Aligned, Chunk, LANES, added, dispatched, fold};
+use hadar::simd::{Aligned, Chunk, LANES, added, dispatched, fold, fused};
 
 /// Temperatures of the table from one start to the next.
 const STRIDE: usize = 2;
@@ -377,34 +377,33 @@ dispatched! {
         to.lightest = lightest;
         to.least = least;
         to.glare = glare * glare;
-        // Four chunks of columns stay in registers while the bands go by.
-        const TILE: usize = 4 * LANES;
+        let chunks = screen.columns / LANES;
         let mut at = 0;
-        while at < screen.columns {
-            let tile = TILE.min(screen.columns - at);
-            if tile == TILE {
-                let mut sums = [[0.0; LANES]; 4];
-                for (w, z) in to.white.iter().enumerate() {
-                    let row = &screen.directions[w * screen.columns + at..][..TILE];
-                    for (part, sum) in sums.iter_mut().enumerate() {
-                        *sum = std::array::from_fn(|i| z.mul_add(row[part * LANES + i], sum[i]));
-                    }
-                }
-                for (part, sum) in sums.iter().enumerate() {
-                    to.coordinates[at + part * LANES..][..LANES].copy_from_slice(sum);
-                }
-                at += TILE;
-            } else {
-                let mut sum = [0.0; LANES];
-                for (w, z) in to.white.iter().enumerate() {
-                    let row = &screen.directions[w * screen.columns + at..][..LANES];
-                    sum = std::array::from_fn(|i| z.mul_add(row[i], sum[i]));
-                }
-                to.coordinates[at..][..LANES].copy_from_slice(&sum);
-                at += LANES;
-            }
+        while at < chunks {
+            at += match chunks - at {
+                TILE.. => project_tile::<TILE>(screen, at, to),
+                4.. => project_tile::<4>(screen, at, to),
+                _ => project_tile::<1>(screen, at, to),
+            };
         }
     }
+}
+
+/// Chunks of columns that stay in registers while the bands go by.
+const TILE: usize = 8;
+
+/// [`project`] on N chunks of columns; how many these are.
+#[inline(always)]
+fn project_tile<const N: usize>(screen: &Screen, at: usize, to: &mut Screened) -> usize {
+    let mut sums = [[0.0; LANES]; N];
+    for (z, row) in to.white.iter().zip(screen.directions.chunks_exact(screen.columns)) {
+        let row = &row[at * LANES..].as_chunks().0[..N];
+        for part in 0..N {
+            sums[part] = fused(*z, row[part], sums[part]);
+        }
+    }
+    to.coordinates[at * LANES..][..N * LANES].copy_from_slice(sums.as_flattened());
+    N
 }
 
 dispatched! {
@@ -432,24 +431,24 @@ dispatched! {
             }
             let shortness = &screen.shortness[kind * grid + at..][..LANES];
             let length = &screen.length[kind * grid + at..][..LANES];
-            let share: Chunk = std::array::from_fn(|k| {
-                (dot[k] * shortness[k]).clamp(0.0, 1.0)
-            });
-            // |off|² − share (2 dot − share |along|²), less than what it may lose.
-            let mut cost: Chunk = std::array::from_fn(|k| {
+            // Loops instead of closures of this length, which would be compiled for the oldest processor.
+            let (mut share, mut cost) = ([0.0; LANES], [0.0; LANES]);
+            for k in 0..LANES {
+                share[k] = (dot[k] * shortness[k]).clamp(0.0, 1.0);
+                // |off|² − share (2 dot − share |along|²), less than what it may lose.
                 let gone = share[k] * share[k].mul_add(-length[k], 2.0 * dot[k]);
-                f64::max(0.0, square[k].mul_add(1.0 - ROUNDING, -gone))
-            });
+                cost[k] = f64::max(0.0, square[k].mul_add(1.0 - ROUNDING, -gone));
+            }
             if lights == 1 {
                 // Beside a chord the lighting reaches an interval.
                 let reach = screen.lighting[kind * rank];
                 let [curve, along] = chord(0);
-                let beyond: Chunk = std::array::from_fn(|k| {
+                for k in 0..LANES {
                     let low = curve[k] + f64::min(along[k], 0.0) + f64::min(reach, 0.0);
                     let high = curve[k] + f64::max(along[k], 0.0) + f64::max(reach, 0.0);
-                    f64::max(0.0, f64::max(low - coordinates[0], coordinates[0] - high))
-                });
-                cost = added(beyond, beyond, cost);
+                    let beyond = f64::max(0.0, f64::max(low - coordinates[0], coordinates[0] - high));
+                    cost[k] = beyond.mul_add(beyond, cost[k]);
+                }
             }
             costs[at..][..LANES].copy_from_slice(&cost);
             shares[at..][..LANES].copy_from_slice(&share);

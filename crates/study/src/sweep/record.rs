@@ -86,7 +86,18 @@ mod tests {
         });
         let plain = record(&answer, &[]);
         let names: Vec<&str> = plain.keys().map(String::as_str).collect();
-        assert_eq!(names, ["n", "safety[0].category", "safety[0].excluded", "verdict.limit", "verdict.margin", "verdict.met", "warnings"]);
+        assert_eq!(
+            names,
+            [
+                "n",
+                "safety[0].category",
+                "safety[0].excluded",
+                "verdict.limit",
+                "verdict.margin",
+                "verdict.met",
+                "warnings"
+            ]
+        );
         assert_eq!(plain["n"], Cell::Integer(3));
         assert_eq!(plain["verdict.margin"], Cell::Number(1.5));
         assert_eq!(plain["warnings"], Cell::Text("a b".into()));

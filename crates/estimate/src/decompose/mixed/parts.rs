@@ -2,9 +2,9 @@
 //!
 //! N = Σₚ fₚ [A(Tₚ) + Σⱼ uₚⱼ Cⱼ] over parts p ([`crate::decompose::model`]); deviance and information are those of [`crate::decompose::kernel`].
 
-use crate::decompose::kernel::{compare, dot, emit, far_deviance, is_far, weighted};
+use crate::decompose::kernel::{Bent, Compared, Fitting, compare, emit, far_deviance, over_bands};
 use crate::decompose::model::{Hermite, MOST, Model};
-use hadar::simd::{Chunk, LANES, Largest, added, dispatched, fold, product};
+use hadar::simd::dispatched;
 
 /// The smaller of two parts is at least so large.
 pub(in crate::decompose) const LEAST_SHARE: f64 = 0.1;
@@ -78,8 +78,8 @@ pub(super) fn place_of(share: f64) -> f64 {
 }
 
 dispatched! {
-    /// χ², slope and information at a state into `room`; the largest |n′ − N′|/(n′ + N′), and the deviance where that is small.
-    fn accumulate<'a>(model: &'a Model, parts: &'a [Part], counts: &'a [f64], room: &'a mut Room) -> (f64, f64) {
+    /// Slope and information at a state into `room`; how well it fits.
+    fn accumulate<'a>(model: &'a Model, parts: &'a [Part], counts: &'a [f64], room: &'a mut Room) -> Fitting {
         let (width, vertices) = (model.width, model.vertices);
         let count = parts.len() - 1 + parts.len() * vertices;
         room.planes.resize(width * (5 + count), 0.0);
@@ -116,35 +116,17 @@ dispatched! {
             }
         }
         compare(counts, mean, weight, relative, series);
-        let mut worst = Largest::default();
-        let (mut chi, mut total) = ([0.0; LANES], [0.0; LANES]);
-        let chunks = mean.as_chunks::<LANES>().0.iter().zip(series.as_chunks::<LANES>().0);
-        let (counts, relatives) = (counts.as_chunks::<LANES>().0, relative.as_chunks::<LANES>().0);
-        for ((mean, s), (n, t)) in chunks.zip(counts.iter().zip(relatives)) {
-            let residual: Chunk = std::array::from_fn(|i| n[i] - mean[i]);
-            worst.see(std::array::from_fn(|i| residual[i] / (n[i] + mean[i])));
-            let squared = product(residual, *t);
-            chi = std::array::from_fn(|i| chi[i] + squared[i]);
-            total = added(squared, *s, total);
-        }
-        room.chi_square = fold(&chi);
-        for i in 0..count {
-            let column = &columns[i * width..][..width];
-            room.slope[i] = dot(column, relative);
-            for j in 0..=i {
-                let each = weighted(column, &columns[j * width..][..width], weight);
-                (room.information[i][j], room.information[j][i]) = (each, each);
-            }
-        }
-        (worst.value(), fold(&total))
+        let compared = Compared { counts, mean, weight, relative, series, columns };
+        over_bands(compared, count, Bent { slope: &mut room.slope, information: &mut room.information })
     }
 }
 
 /// Deviance at a state.
 pub(super) fn look(model: &Model, parts: &[Part], counts: &[f64], room: &mut Room) -> f64 {
     room.looks += 1;
-    let (worst, deviance) = accumulate(model, parts, counts, room);
-    if is_far(worst) { far_deviance(counts, &room.planes[..model.width]) } else { deviance }
+    let fitting = accumulate(model, parts, counts, room);
+    room.chi_square = fitting.chi_square;
+    if fitting.is_far { far_deviance(counts, &room.planes[..model.width]) } else { fitting.deviance }
 }
 
 /// Coordinates of parts: the share of the first of two, then the temperature and the lighting of each.
