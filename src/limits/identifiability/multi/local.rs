@@ -6,9 +6,9 @@
 //!
 //!   4d² = Σ m Δ² − Σᵢ (Σ kᵢ Δ)²,   m = u c²,  kᵢ = u c q̂ᵢ
 //!
-//! is one pass over the bands with 2 + n multiplications each. The subtraction loses u·(none/d)² of d, none the
-//! distance with no nuisance; where it would lose more than [`ONE_PASS`] allows, the residual is formed
-//! band by band in a second pass, and beyond [`TWO_PASSES`] the pair goes to [`LocalSolver`], which judges rank
+//! is one pass over the bands with 2 + n multiplications each, of a few targets with a few alternatives at a time ([`lent`]). The subtraction loses u·(none/d)² of d, none the
+//! distance with no nuisance; where it would lose too much, the residual is formed
+//! band by band in a second pass, and where that is not enough the pair goes to [`LocalSolver`], which judges rank
 //! and rounding. So do targets with a nuisance that is dependent, or nearly, and those whose contrast nearly vanishes at
 //! a node. Results agree with those of [`LocalSolver`] to 1e-14·none/d, or by as much as rounding may have turned the
 //! directions of the nuisances: [`LocalMatrix::relative_errors`].
@@ -16,23 +16,23 @@
 //! Assumption: all targets in the same state. Source: paper S27–S30, Algorithm 3.
 
 mod kernels;
+mod lent;
 
-use self::kernels::{
-    Contrast, Lent, MOST_NUISANCES, TOGETHER, contrast_into, direction_into, projections, residual_square,
-    weighted_square,
-};
+use self::kernels::{Contrast, MOST_NUISANCES, TOGETHER, contrast_into, weighted_square};
+use self::lent::{Lent, grouped};
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
-use crate::simd::{Aligned, LANES, spaced};
+use crate::simd::Aligned;
 use crate::spectrum::Bands;
 use rayon::prelude::*;
 
-/// Largest none/d for which the one-pass difference of squares keeps 1e-14·none/d: 2u·(none/d)² below it.
-const ONE_PASS: f64 = 16.0;
-/// Largest none/d for which a residual once projected is good; beyond it rank and rounding are judged too.
-const TWO_PASSES: f64 = 1e5;
+/// Targets that take turns with a group of alternatives: what they lend stays in the second-level cache.
+const TARGETS: usize = 16;
+/// Groups of alternatives that stay in the second-level cache, and targets in the first.
+const GROUPS: usize = 32;
+const NEAR: usize = 2;
 /// Rounding of the elements of a score whose terms do not cancel, and most that they may cancel for targets to share.
 const ROUNDING: f64 = 1e-15;
 const MOST_CANCELLATION: f64 = 1e3;
@@ -70,13 +70,14 @@ enum Weights<'c> {
 #[derive(Debug, Clone)]
 pub struct LocalMatrix<'a> {
     passes: Passes,
-    library: Aligned,
     unknowns: Unknowns,
     parameters: Vec<Parameter>,
     jacobian: Jacobian<'a>,
     pair: LocalSolver<'a>,
     projector: Projector,
-    shared: Shared,
+    /// σ²/κ of each band.
+    noise: Aligned,
+    lent: Vec<Lent>,
     lost: Lost,
 }
 
@@ -114,24 +115,6 @@ impl Passes {
     }
 }
 
-/// What one target lends to all its pairs.
-#[derive(Debug, Clone)]
-struct Shared {
-    /// σ²/κ, u and c of each band.
-    noise: Aligned,
-    weights: Aligned,
-    contrast: Aligned,
-    /// m, and k₁, k₂… one after the other.
-    square: Aligned,
-    directions: Aligned,
-    /// Bands rounded up.
-    stride: usize,
-    /// Nuisances that are left, and which column each is.
-    live: Vec<(usize, f64)>,
-    /// Factor from the norm to the distance.
-    half: f64,
-}
-
 impl<'a> LocalMatrix<'a> {
     /// A workspace for one set of bands, surroundings and unknowns.
     #[must_use]
@@ -139,22 +122,13 @@ impl<'a> LocalMatrix<'a> {
         let count = bands.len();
         Self {
             passes: Passes::default(),
-            library: Aligned::default(),
             parameters: unknowns.parameters(surroundings.objects().len()),
             jacobian: Jacobian::new(bands, surroundings),
             pair: LocalSolver::new(bands, surroundings, unknowns.clone()),
             projector: Projector::default(),
+            noise: Aligned::zeros(count),
+            lent: Vec::new(),
             lost: Lost::default(),
-            shared: Shared {
-                noise: Aligned::zeros(count),
-                weights: Aligned::zeros(count),
-                contrast: Aligned::zeros(count),
-                square: Aligned::zeros(count),
-                directions: Aligned::default(),
-                stride: count.next_multiple_of(LANES),
-                live: Vec::new(),
-                half: 0.5,
-            },
             unknowns,
         }
     }
@@ -212,17 +186,8 @@ impl<'a> LocalMatrix<'a> {
         if count < 2 {
             return Ok(distances);
         }
-        // A copy whose rows start at cache lines: every spectrum is read once per other material.
-        let stride = spaced(nodes);
-        let mut library = std::mem::take(&mut self.library);
-        library.set_len(stride * count);
-        for (row, emissivity) in library.chunks_mut(stride).zip(emissivities) {
-            row[..nodes].copy_from_slice(emissivity);
-        }
-        let aligned: Vec<&[f64]> = library.chunks(stride).map(|row| &row[..nodes]).collect();
         let mut lost = std::mem::take(&mut self.lost);
-        let found = self.rows(&aligned, state, weights, &mut distances, &mut lost);
-        self.library = library;
+        let found = self.blocks(emissivities, state, weights, &mut distances, &mut lost);
         self.lost = lost;
         found.map(|passes| {
             self.passes = passes;
@@ -230,8 +195,8 @@ impl<'a> LocalMatrix<'a> {
         })
     }
 
-    /// The whole matrix, row by row.
-    fn rows(
+    /// The whole matrix, some rows at a time.
+    fn blocks(
         &mut self,
         emissivities: &[&[f64]],
         state: &State,
@@ -240,68 +205,93 @@ impl<'a> LocalMatrix<'a> {
         lost: &mut Lost,
     ) -> Result<Passes> {
         let count = emissivities.len();
-        let lost = lost.pairs.chunks_mut(count).zip(&mut lost.targets);
-        let rows = distances.chunks_mut(count).zip(lost).enumerate();
+        let groups = grouped(emissivities);
+        let library = Library { emissivities, groups: &groups };
+        let lost = lost.pairs.chunks_mut(TARGETS * count).zip(lost.targets.chunks_mut(TARGETS));
+        let blocks = distances.chunks_mut(TARGETS * count).zip(lost).enumerate();
         let few = count * count * self.jacobian.bands().len() < WORTH_THREADS;
         if few || rayon::current_num_threads() == 1 {
             let mut passes = Passes::default();
-            for (target, (out, (pairs, own))) in rows {
-                let row = Out { distances: out, lost: pairs, target: own };
-                passes = passes.and(self.row(emissivities, target, state, weights, row)?);
+            for (block, (out, (pairs, targets))) in blocks {
+                let out = Out { distances: out, lost: pairs, targets };
+                passes = passes.and(self.block(library, block * TARGETS, state, weights, out)?);
             }
             Ok(passes)
         } else {
-            rows.collect::<Vec<_>>()
+            blocks
+                .collect::<Vec<_>>()
                 .into_par_iter()
                 .map_init(
                     || self.clone(),
-                    |own, (target, (out, (pairs, of_target)))| {
-                        let row = Out { distances: out, lost: pairs, target: of_target };
-                        own.row(emissivities, target, state, weights, row)
+                    |own, (block, (out, (pairs, targets)))| {
+                        let out = Out { distances: out, lost: pairs, targets };
+                        own.block(library, block * TARGETS, state, weights, out)
                     },
                 )
                 .try_reduce(Passes::default, |a, b| Ok(a.and(b)))
         }
     }
 
-    /// Distances of one target to all.
-    fn row(
+    /// Distances of some targets, from `first` on, to all.
+    fn block(
         &mut self,
-        emissivities: &[&[f64]],
-        target: usize,
+        library: Library<'_>,
+        first: usize,
         state: &State,
         weights: Weights<'_>,
         out: Out<'_>,
     ) -> Result<Passes> {
-        crate::stop::check();
-        let own = emissivities[target];
-        let others = out.distances.len() - 1;
-        let shared = self.share(own, state, weights);
-        *out.target = shared.unwrap_or(0.0);
+        let Library { emissivities, groups } = library;
+        let count = emissivities.len();
         let mut passes = Passes::default();
-        if shared.is_some() {
-            passes.shared_targets = 1;
-            let columns = self.jacobian.columns_mut();
-            let row = Row { shared: &self.shared, own, columns: columns.values, stride: columns.stride };
-            let outs = out.distances.chunks_mut(TOGETHER).zip(out.lost.chunks_mut(TOGETHER));
-            for (group, (out, lost)) in emissivities.chunks(TOGETHER).zip(outs) {
-                passes.two_passes += row.distances(group, out, lost);
-            }
-        } else {
-            out.distances.fill(f64::NAN);
+        let mut lent = std::mem::take(&mut self.lent);
+        lent.resize_with(out.targets.len(), Lent::default);
+        for ((lent, lost), own) in lent.iter_mut().zip(&mut *out.targets).zip(&emissivities[first..]) {
+            crate::stop::check();
+            let error = self.share(own, state, weights, lent);
+            lent.is_shared = error.is_some();
+            *lost = error.unwrap_or(0.0);
+            passes.shared_targets += usize::from(lent.is_shared);
         }
-        for (alternative, (distance, lost)) in out.distances.iter_mut().zip(out.lost).enumerate() {
-            if alternative == target {
-                *distance = 0.0;
-            } else if distance.is_nan() {
-                let error;
-                (*distance, error) = self.alone(own, emissivities[alternative], state, weights)?;
-                *lost = -error;
-                passes.alone += 1;
-                passes.two_passes = passes.two_passes.saturating_sub(1);
+        let group_len = groups.len() / count.div_ceil(TOGETHER);
+        let others: Vec<_> =
+            emissivities.chunks(TOGETHER).zip(groups.chunks(group_len)).enumerate().collect();
+        for some in others.chunks(GROUPS) {
+            for near in (0..lent.len()).step_by(NEAR) {
+                crate::stop::check();
+                for (group, (others, grouped)) in some {
+                    for row in near..(near + NEAR).min(lent.len()) {
+                        let start = row * count + group * TOGETHER;
+                        let range = start..start + others.len();
+                        let (distances, lost) = (&mut out.distances[range.clone()], &mut out.lost[range]);
+                        let own = emissivities[first + row];
+                        if lent[row].is_shared {
+                            passes.two_passes += lent[row].distances(own, others, grouped, distances, lost);
+                        } else {
+                            distances.fill(f64::NAN);
+                        }
+                    }
+                }
             }
         }
-        passes.one_pass = others.saturating_sub(passes.two_passes + passes.alone);
+        self.lent = lent;
+        let rows = out.distances.chunks_mut(count).zip(out.lost.chunks_mut(count)).enumerate();
+        for (row, (distances, lost)) in rows {
+            let target = first + row;
+            for (alternative, (distance, lost)) in distances.iter_mut().zip(lost).enumerate() {
+                if alternative == target {
+                    *distance = 0.0;
+                } else if distance.is_nan() {
+                    let error;
+                    (*distance, error) =
+                        self.alone(emissivities[target], emissivities[alternative], state, weights)?;
+                    *lost = -error;
+                    passes.alone += 1;
+                    passes.two_passes = passes.two_passes.saturating_sub(1);
+                }
+            }
+        }
+        passes.one_pass = (out.targets.len() * (count - 1)).saturating_sub(passes.two_passes + passes.alone);
         Ok(passes)
     }
 
@@ -325,7 +315,7 @@ impl<'a> LocalMatrix<'a> {
 
     /// Forms what the target lends to its pairs; their relative error × distance ÷ √(4 none²), or `None` if they must go
     /// pair by pair.
-    fn share(&mut self, own: &[f64], state: &State, weights: Weights<'_>) -> Option<f64> {
+    fn share(&mut self, own: &[f64], state: &State, weights: Weights<'_>, lent: &mut Lent) -> Option<f64> {
         let bands = self.jacobian.bands();
         let priors = matches!(weights, Weights::Counting(_)) && self.unknowns.has_priors();
         let count = self.parameters.len();
@@ -341,16 +331,16 @@ impl<'a> LocalMatrix<'a> {
         if !SAFE_RANGE.contains(&total) || cancellation > MOST_CANCELLATION {
             return None;
         }
-        let shared = &mut self.shared;
+        lent.clear(bands.len());
         let counts = match weights {
             Weights::PerPhoton => {
-                shared.half = 0.5 / total.sqrt();
-                shared.noise.fill(0.0);
+                lent.half = 0.5 / total.sqrt();
+                self.noise.fill(0.0);
                 1.0
             }
             Weights::Counting(counting) => {
-                shared.half = 0.5;
-                for (w, noise) in shared.noise.iter_mut().enumerate() {
+                lent.half = 0.5;
+                for (w, noise) in self.noise.iter_mut().enumerate() {
                     *noise = counting.var_added(w) / counting.counts_per_radiance;
                 }
                 counting.counts_per_radiance
@@ -362,13 +352,12 @@ impl<'a> LocalMatrix<'a> {
             contrast: self.jacobian.contrast(),
             widths: bands.weights_cm1(),
             signal: self.jacobian.signal(),
-            noise: &shared.noise,
-            u: &mut shared.weights,
-            c: &mut shared.contrast,
-            m: &mut shared.square,
+            noise: &self.noise,
+            u: &mut lent.weights,
+            c: &mut lent.contrast,
+            m: &mut lent.square,
         });
-        shared.live.clear();
-        let root = |w: usize| shared.weights[w].sqrt();
+        let root = |w: usize| lent.weights[w].sqrt();
         let blurred = if total_known { self.jacobian.lighting_cancellation(own, state, root) } else { 1.0 };
         if blurred > MOST_CANCELLATION {
             return None;
@@ -377,93 +366,39 @@ impl<'a> LocalMatrix<'a> {
             let columns = self.jacobian.columns_mut();
             let safe = |column: &[f64]| {
                 let column = &column[..bands.len()];
-                let square = weighted_square(column, &shared.weights);
+                let square = weighted_square(column, &lent.weights);
                 SAFE_SQUARES.contains(&square) || column.iter().all(|&value| value == 0.0)
             };
             if !columns.values.chunks(columns.stride).take(count).all(safe) {
                 return None;
             }
-            let norms = self.projector.orthogonalise(columns.values, columns.stride, &shared.weights);
-            let live = norms.iter().copied().enumerate().filter(|(_, norm)| *norm > 0.0);
-            shared.live.extend(live);
+            let norms = self.projector.orthogonalise(columns.values, columns.stride, &lent.weights);
+            for (column, &norm) in columns.values.chunks(columns.stride).zip(norms) {
+                if norm > 0.0 {
+                    lent.take(&column[..bands.len()], norm);
+                }
+            }
             let exactly = |&i: &usize| self.pair.depends_exactly(i, state);
             if !self.projector.well_known() || !self.projector.dropped().iter().all(exactly) {
                 return None;
             }
-            shared.directions.set_len(shared.stride * shared.live.len());
-            let outs = shared.directions.chunks_mut(shared.stride);
-            for (&(column, norm), out) in shared.live.iter().zip(outs) {
-                let start = column * columns.stride;
-                let column = &columns.values[start..start + bands.len()];
-                direction_into(column, &shared.weights, &shared.contrast, 1.0 / norm, out);
-            }
         }
+        lent.interleave(own);
         let turned = if count > 0 { self.projector.turned() } else { 0.0 };
-        Some(blurred * shared.half * (ROUNDING * cancellation.max(10.0) + turned))
+        Some(blurred * lent.half * (ROUNDING * cancellation.max(10.0) + turned))
     }
 }
 
-/// Where the distances of one target go, and what rounding may have done to them.
+/// All materials, and the same in groups.
+#[derive(Clone, Copy)]
+struct Library<'l> {
+    emissivities: &'l [&'l [f64]],
+    groups: &'l [f64],
+}
+
+/// Where the distances of some targets go, and what rounding may have done to them.
 struct Out<'o> {
     distances: &'o mut [f64],
     lost: &'o mut [f64],
-    target: &'o mut f64,
-}
-
-/// A target against groups of alternatives.
-struct Row<'r> {
-    shared: &'r Shared,
-    own: &'r [f64],
-    /// The orthogonal nuisance columns, each beginning `stride` after the one before.
-    columns: &'r [f64],
-    stride: usize,
-}
-
-impl Row<'_> {
-    /// Distances to up to [`TOGETHER`] alternatives, NaN where the pair must be judged on its own; how many took a
-    /// second pass.
-    fn distances(&self, group: &[&[f64]], out: &mut [f64], lost: &mut [f64]) -> usize {
-        crate::stop::check();
-        let mut others = [self.own; TOGETHER];
-        for (other, given) in others.iter_mut().zip(group) {
-            *other = given;
-        }
-        let shared = self.shared;
-        let k = |i: usize| shared.directions.chunks(shared.stride).nth(i).unwrap_or_default();
-        let lent = Lent { own: self.own, square: &shared.square, directions: [k(0), k(1), k(2), k(3)] };
-        let (squares, dots) = projections(lent, others, shared.live.len());
-        for (lost, square) in lost.iter_mut().zip(squares) {
-            *lost = square;
-        }
-        let mut second = 0;
-        for (i, (out, other)) in out.iter_mut().zip(group).enumerate() {
-            let dots = dots[i];
-            let along: f64 = dots.iter().map(|dot| dot * dot).sum();
-            let left = squares[i] - along;
-            *out = if squares[i] == 0.0 {
-                // Nothing, or so little that its square is; of itself that need not be looked at.
-                if std::ptr::eq(self.own, *other) || self.own == *other { 0.0 } else { f64::NAN }
-            } else if !squares[i].is_finite() {
-                f64::NAN
-            } else if left * (ONE_PASS * ONE_PASS) >= squares[i] {
-                shared.half * left.sqrt()
-            } else {
-                second += 1;
-                let left = self.residual(other, dots);
-                let good = left * (TWO_PASSES * TWO_PASSES) >= squares[i];
-                if good { shared.half * left.sqrt() } else { f64::NAN }
-            };
-        }
-        second
-    }
-
-    /// Σ u r² with the residual r formed band by band.
-    fn residual(&self, other: &[f64], dots: [f64; MOST_NUISANCES]) -> f64 {
-        let mut taken = [(0.0, self.own); MOST_NUISANCES];
-        for ((taken, (column, norm)), dot) in taken.iter_mut().zip(&self.shared.live).zip(dots) {
-            *taken = (dot / norm, &self.columns[column * self.stride..][..self.own.len()]);
-        }
-        let count = self.shared.live.len();
-        residual_square(self.own, other, &self.shared.contrast, &self.shared.weights, taken, count)
-    }
+    targets: &'o mut [f64],
 }

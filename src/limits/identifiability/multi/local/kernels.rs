@@ -4,11 +4,11 @@
 //!
 //! * For the target: its spectra u, c, m and kᵢ.
 //! * First pass, [`projections`]: Σ m Δ² and Σ kᵢ Δ of [`TOGETHER`] alternatives. A matrix waits for memory more than for
-//!   arithmetic, so that what is read of the target serves a group of alternatives.
+//!   arithmetic, so that what is read of the target serves a group of alternatives, and a group some targets.
 //! * Second pass, [`residual_square`]: Σ u r² of one alternative, with the residual r formed band by band.
 //!
 //! Both passes have three steps: the number N of directions becomes one that the compiler knows, so that their sums stay in
-//! registers; spectra are cut into chunks of [`LANES`] bands and a rest, which is padded with zeros that add nothing;
+//! registers; spectra are cut into chunks of [`LANES`] bands, the last one padded with zeros that add nothing;
 //! chunks are gone through in blocks, after each of which the lanes are added to compensated sums.
 
 use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, padded, product};
@@ -20,17 +20,6 @@ pub(super) const TOGETHER: usize = 5;
 pub(super) const MOST_NUISANCES: usize = 4;
 /// Chunks in a block of a compensated sum: more than elsewhere, since a group of pairs ends a dozen of them.
 const BLOCK_CHUNKS: usize = 96;
-
-/// Spectra of the target that the first pass reads.
-#[derive(Clone, Copy)]
-pub(super) struct Lent<'a> {
-    /// e.
-    pub(super) own: &'a [f64],
-    /// m.
-    pub(super) square: &'a [f64],
-    /// kᵢ.
-    pub(super) directions: [&'a [f64]; MOST_NUISANCES],
-}
 
 /// What [`contrast_into`] reads, and where it writes.
 pub(super) struct Contrast<'a> {
@@ -110,75 +99,38 @@ fn less(a: Chunk, b: Chunk) -> Chunk {
 pub(super) type Projections = ([f64; TOGETHER], [[f64; MOST_NUISANCES]; TOGETHER]);
 
 dispatched! {
-    /// [`Projections`] on the first `count` directions.
-    pub(super) fn projections<'a>(lent: Lent<'a>, others: [&'a [f64]; TOGETHER], count: usize) -> Projections {
+    /// [`Projections`] on `count` directions: of a target (e, m and kᵢ chunk by chunk) and a group of alternatives (chunk by chunk).
+    pub(super) fn projections<'a>(lent: &'a [f64], group: &'a [f64], count: usize) -> Projections {
         match count {
-            0 => project::<0>(lent, others),
-            1 => project::<1>(lent, others),
-            2 => project::<2>(lent, others),
-            3 => project::<3>(lent, others),
-            _ => project::<4>(lent, others),
+            0 => project::<0>(lent, group),
+            1 => project::<1>(lent, group),
+            2 => project::<2>(lent, group),
+            3 => project::<3>(lent, group),
+            _ => project::<4>(lent, group),
         }
     }
 }
 
-/// [`Projections`] on N directions.
+/// [`Projections`] on N directions. Values pass through locals, chunk by chunk: only then are they kept in full-width registers.
 #[inline(always)]
-fn project<const N: usize>(lent: Lent<'_>, others: [&[f64]; TOGETHER]) -> Projections {
-    let bands = lent.own.len();
-    let (own, square) = (cut(lent.own, bands), cut(lent.square, bands));
-    let directions: [_; N] = std::array::from_fn(|i| cut(lent.directions[i], bands));
-    let others = others.map(|other| cut(other, bands));
-    let mut sums = Sums::new();
-    project_chunks(
-        own.chunks,
-        square.chunks,
-        directions.map(|k| k.chunks),
-        others.map(|other| other.chunks),
-        &mut sums,
-    );
-    if !own.rest.is_empty() {
-        let directions = directions.map(|k| [padded(k.rest)]);
-        let others = others.map(|other| [padded(other.rest)]);
-        project_chunks(
-            &[padded(own.rest)],
-            &[padded(square.rest)],
-            directions.each_ref().map(|k| &k[..]),
-            others.each_ref().map(|other| &other[..]),
-            &mut sums,
-        );
-    }
-    sums.values()
-}
-
-/// The chunks of [`project`]. Values pass through locals, chunk by chunk: only then are they kept in full-width
-/// registers.
-#[inline(always)]
-fn project_chunks<const N: usize>(
-    own: &[Chunk],
-    square: &[Chunk],
-    directions: [&[Chunk]; N],
-    others: [&[Chunk]; TOGETHER],
-    sums: &mut Sums<N>,
-) {
-    let count = own.len();
-    let square = &square[..count];
-    let directions = directions.map(|k| &k[..count]);
-    let others = others.map(|other| &other[..count]);
-    for start in (0..count).step_by(BLOCK_CHUNKS) {
+fn project<const N: usize>(lent: &[f64], group: &[f64]) -> Projections {
+    let (lent, group): (&[Chunk], &[Chunk]) = (lent.as_chunks().0, group.as_chunks().0);
+    let mut sums = Sums::<N>::new();
+    for (lent, group) in lent.chunks(BLOCK_CHUNKS * (N + 2)).zip(group.chunks(BLOCK_CHUNKS * TOGETHER)) {
         let (mut squares, mut dots) = ([[0.0; LANES]; TOGETHER], [[[0.0; LANES]; N]; TOGETHER]);
-        for c in start..(start + BLOCK_CHUNKS).min(count) {
-            let (e, m) = (own[c], square[c]);
+        for (lent, others) in lent.chunks_exact(N + 2).zip(group.chunks_exact(TOGETHER)) {
+            let (e, m) = (lent[0], lent[1]);
             for a in 0..TOGETHER {
-                let delta = less(others[a][c], e);
+                let delta = less(others[a], e);
                 squares[a] = added(product(m, delta), delta, squares[a]);
                 for i in 0..N {
-                    dots[a][i] = added(directions[i][c], delta, dots[a][i]);
+                    dots[a][i] = added(lent[2 + i], delta, dots[a][i]);
                 }
             }
         }
         sums.add(&squares, &dots);
     }
+    sums.values()
 }
 
 /// [`Projections`] while they are summed over the bands.
