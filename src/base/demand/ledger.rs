@@ -20,6 +20,8 @@ pub enum Thing {
     DerivativeColumns,
     /// Local distances.
     LocalDistances,
+    /// Bounds of the nearest distances of a target to all alternatives at once.
+    SharedBounds,
     /// Distances to the alternative in the target's own state.
     OwnStateDistances,
     /// Local distances in a few of the bands, which say what is worth trying.
@@ -72,6 +74,7 @@ impl Thing {
             Self::Sections => "sections",
             Self::DerivativeColumns => "derivative_columns",
             Self::LocalDistances => "local_distances",
+            Self::SharedBounds => "shared_bounds",
             Self::OwnStateDistances => "own_state_distances",
             Self::FewBandEstimates => "few_band_estimates",
             Self::Descents => "descents",
@@ -105,6 +108,7 @@ impl Thing {
             Self::Sections => "sections of the answer",
             Self::DerivativeColumns => "columns of derivatives",
             Self::LocalDistances => "local distances",
+            Self::SharedBounds => "bounds shared by a target's pairs",
             Self::OwnStateDistances => "distances in the own state",
             Self::FewBandEstimates => "estimates in a few bands",
             Self::Descents => "descents from the own state",

@@ -8,6 +8,7 @@
 //!
 //! Source: paper SII B, S32–S34, Algorithm 3.
 
+mod beyond;
 mod classes;
 mod decide;
 mod local;

@@ -26,6 +26,7 @@ mod search;
 
 use self::proof::Memory;
 pub use self::proof::Nearer;
+pub(super) use self::proof::{Chord, chord};
 pub use self::refine::NearestDistance;
 use self::refine::refine;
 use self::residual::{Comparison, Metric, Target};

@@ -133,13 +133,8 @@ impl Classes<'_> {
             }
             if skipping.skips() && beyond.is_finite() && beyond > 0.0 {
                 let row = &rows[a];
-                let question = Question {
-                    scene: self.scene,
-                    emissivities: &row.emissivities,
-                    counting: &row.counting,
-                    required: beyond,
-                    few: row.few.as_ref(),
-                };
+                let question =
+                    Question::new(self.scene, &row.emissivities, &row.counting, beyond, row.few.as_ref());
                 let mut solvers = question.solvers();
                 if question.reaches(&mut solvers, skipping, 0, b + 1, Some(own_states[i]))? {
                     return Ok(MemberPair { distance: None, lower: beyond, relative_error: 0.0 });

@@ -3,6 +3,7 @@
 //! Two materials are told apart if the nearest statistical distance reaches the requirement with either of them as the
 //! target. A pair is decided by the first of these that proves it:
 //!
+//! 0. sums that all pairs of the target share bound the distance from below ([`super::beyond`], in every n-th band as 3);
 //! 1. the alternative in the target's own state is nearer than required: a distance to any state is an upper
 //!    bound (to first order this is ½‖s_g‖, the distance with no nuisance);
 //! 2. a descent from there comes to a state that is nearer than required;
@@ -17,6 +18,7 @@
 //! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart. Priors have no part in
 //! a proof: with them the search has the last word.
 
+use super::beyond::{Beyond, Seeing, Seen};
 use super::{LibraryScene, Progress};
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
@@ -38,14 +40,15 @@ const FEW_BANDS: usize = 64;
 const CLOSE: f64 = 2.0;
 
 /// What deciding a distance takes at most, with skipping, and what it takes where bands are few already.
-const THINGS: [Thing; 5] = [
+const THINGS: [Thing; 6] = [
+    Thing::SharedBounds,
     Thing::FewBandEstimates,
     Thing::OwnStateDistances,
     Thing::Descents,
     Thing::FewBandSearches,
     Thing::NearestSearches,
 ];
-const THINGS_OF_FEW: [Thing; 2] = [Thing::OwnStateDistances, Thing::NearestSearches];
+const THINGS_OF_FEW: [Thing; 3] = [Thing::SharedBounds, Thing::OwnStateDistances, Thing::NearestSearches];
 
 /// Which pairs of materials can be told apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -131,10 +134,21 @@ impl LibraryScene<'_> {
             Skipping::On => Few::of(self, emissivities, counting)?,
             Skipping::Off => None,
         };
-        let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
+        let mut question = Question::new(self, emissivities, counting, required, few.as_ref());
+        if skipping.skips() {
+            question.bound_all();
+        }
+        let all = count * count.saturating_sub(1) / 2;
+        let is_open = |(a, b): &(usize, usize)| !(question.is_beyond(*a, *b) && question.is_beyond(*b, *a));
         let pairs: Vec<(usize, usize)> =
-            (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).collect();
-        let done = AtomicUsize::new(0);
+            (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).filter(is_open).collect();
+        let sure = all - pairs.len();
+        if sure > 0 {
+            demand::computed(Thing::SharedBounds, 2 * sure as u64);
+            let rest = question.things()[1..].iter();
+            rest.for_each(|thing| demand::spared(*thing, Reason::ProvedAbove, 2 * sure as u64));
+        }
+        let done = AtomicUsize::new(sure);
         let is_told = |solvers: &mut Solvers<'_>, (a, b)| {
             let nearer = skipping.until([(a, b), (b, a)], question.things(), |(a, b)| {
                 let reached = question.reaches(solvers, skipping, a, b, None)?;
@@ -142,7 +156,7 @@ impl LibraryScene<'_> {
             })?;
             let decided = done.fetch_add(1, Ordering::Relaxed) + 1;
             if decided.is_multiple_of(OFTEN) {
-                progress(decided, pairs.len());
+                progress(decided, all);
             }
             Ok(nearer.is_none())
         };
@@ -179,7 +193,7 @@ impl LibraryScene<'_> {
             Skipping::On => Few::of(self, emissivities, counting)?,
             Skipping::Off => None,
         };
-        let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
+        let question = Question::new(self, emissivities, counting, required, few.as_ref());
         let mut solvers = question.solvers();
         let mut ranked = Vec::new();
         for other in (0..emissivities.len()).filter(|&other| other != target) {
@@ -206,9 +220,40 @@ pub(super) struct Question<'q> {
     pub(super) counting: &'q Counting,
     pub(super) required: f64,
     pub(super) few: Option<&'q Few>,
+    /// Whether a bound that the pairs of a target share proves that it is told from an alternative; empty where there is none.
+    beyond: Vec<bool>,
 }
 
 impl<'q> Question<'q> {
+    pub(super) fn new(
+        scene: &'q LibraryScene<'q>,
+        emissivities: &'q [&'q [f64]],
+        counting: &'q Counting,
+        required: f64,
+        few: Option<&'q Few>,
+    ) -> Self {
+        Self { scene, emissivities, counting, required, few, beyond: Vec::new() }
+    }
+
+    /// Bounds the distances of all pairs, target by target.
+    fn bound_all(&mut self) {
+        let all = Seeing::of(self.scene, self.counting);
+        let (seeing, emissivities) = match self.few {
+            Some(few) => {
+                let own: Vec<&[f64]> = few.emissivities.iter().map(Vec::as_slice).collect();
+                let (bands, surroundings, counting) = (&few.bands, &few.surroundings, &few.counting);
+                (Seeing { bands, surroundings, counting, ..all }, own)
+            }
+            None => (all, self.emissivities.to_vec()),
+        };
+        let count = emissivities.len();
+        if let Some(beyond) = Beyond::new(seeing, emissivities, self.required) {
+            let of_target = |seen: &mut Seen, target| Ok(beyond.of_target(target, seen));
+            let rows: Result<Vec<Vec<bool>>> = parallel::booked_with(count, Seen::default, of_target);
+            self.beyond = rows.map(|rows| rows.concat()).unwrap_or_default();
+        }
+    }
+
     pub(super) fn solvers(&self) -> Solvers<'q> {
         let LibraryScene { unknowns, range, .. } = self.scene;
         let few = self.few.map(|few| {
@@ -219,9 +264,16 @@ impl<'q> Question<'q> {
         Solvers { all: self.scene.solver(), few, estimate: f64::NAN, minimum: None }
     }
 
+    /// Whether a bound that the pairs of target a share proves that it is told from b.
+    fn is_beyond(&self, a: usize, b: usize) -> bool {
+        self.beyond.get(a * self.emissivities.len() + b).is_some_and(|beyond| *beyond)
+    }
+
     /// What one distance takes at most.
     fn things(&self) -> &'static [Thing] {
-        if self.few.is_some() { &THINGS } else { &THINGS_OF_FEW }
+        let all: &[Thing] = if self.few.is_some() { &THINGS } else { &THINGS_OF_FEW };
+        // Bounds stand first.
+        &all[usize::from(self.beyond.is_empty())..]
     }
 
     /// Whether target a is told from alternative b; the distance in the target's own state where it is known.
@@ -295,14 +347,18 @@ impl<'q> Question<'q> {
                 Nearer::Undecided => (false, None),
             })
         };
+        let shared = |_: &mut Solvers<'_>| Ok(self.is_beyond(a, b).then_some(true).into());
+        let of_shared = (!self.beyond.is_empty()).then_some(Thing::SharedBounds);
         let own_is_new = in_own_state.is_none().then_some(Thing::OwnStateDistances);
         let proofs = [
+            Proof { of: of_shared, spares: Reason::ProvedAbove, find: &shared },
             Proof { of: Some(Thing::FewBandEstimates), spares: Reason::Decided, find: &estimate },
             Proof { of: own_is_new, spares: Reason::OwnState, find: &own_state },
             Proof { of: Some(Thing::Descents), spares: Reason::Descent, find: &descent },
             Proof { of: Some(Thing::FewBandSearches), spares: Reason::FewBands, find: &few_bands },
         ];
-        let proofs = if self.few.is_some() { &proofs[..] } else { &proofs[1..2] };
+        let of_few = [proofs[0], proofs[2]];
+        let proofs = if self.few.is_some() { &proofs[..] } else { &of_few };
         skipping.first_proof(solvers, proofs, Thing::NearestSearches, &in_full)
     }
 }

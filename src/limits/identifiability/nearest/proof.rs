@@ -27,6 +27,7 @@ mod view;
 use self::about::Closed;
 pub(super) use self::prover::Memory;
 use self::prover::{Goal, Prover};
+pub(in crate::limits::identifiability) use self::sources::{Chord, chord};
 use super::refine::{NearestDistance, refine};
 use super::residual::{Comparison, Target};
 use crate::best_first::BestFirst;

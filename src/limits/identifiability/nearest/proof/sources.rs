@@ -308,22 +308,22 @@ fn bent(nu: Chunk, [own, cold, hot]: [Chunk; 3], temperature_k: f64, low_k: f64)
 }
 
 /// What [`chord`] reads and writes.
-pub(super) struct Chord<'a> {
+pub(in crate::limits::identifiability) struct Chord<'a> {
     /// Between the ends, in what the slopes are along.
-    pub(super) width: f64,
+    pub(in crate::limits::identifiability) width: f64,
     /// Rounding of the counts and what they may bend the other way, as a share of the hot end.
-    pub(super) more: f64,
+    pub(in crate::limits::identifiability) more: f64,
     /// Counts and slopes at the cold and the hot end.
-    pub(super) cold: [&'a [f64]; 2],
-    pub(super) hot: [&'a [f64]; 2],
-    pub(super) low: &'a mut [f64],
-    pub(super) rise: &'a mut [f64],
-    pub(super) half: &'a mut [f64],
+    pub(in crate::limits::identifiability) cold: [&'a [f64]; 2],
+    pub(in crate::limits::identifiability) hot: [&'a [f64]; 2],
+    pub(in crate::limits::identifiability) low: &'a mut [f64],
+    pub(in crate::limits::identifiability) rise: &'a mut [f64],
+    pub(in crate::limits::identifiability) half: &'a mut [f64],
 }
 
 dispatched! {
     /// The cold end of the chord lowered by ρ/2, what it rises by, and ρ/2 with `more`: the curve is within that of them.
-    pub(super) fn chord<'a>(chord: Chord<'a>) -> () {
+    pub(in crate::limits::identifiability) fn chord<'a>(chord: Chord<'a>) -> () {
         let Chord { width, more, cold, hot, low, rise, half } = chord;
         let per_unit = 1.0 / width;
         let ends = cold[0].iter().zip(cold[1]).zip(hot[0].iter().zip(hot[1]));
