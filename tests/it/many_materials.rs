@@ -166,9 +166,10 @@ proptest! {
                 }
             }
         }
-        // Some are not tried where the local distance leaves no hope that they decide.
+        // Some are not tried where the local distance leaves no hope that they decide, or a bound shared by all pairs of a target proves it.
         let hopeless = work.spared(Thing::OwnStateDistances, Reason::Hopeless);
-        prop_assert_eq!(work.computed(Thing::OwnStateDistances) + hopeless, asked);
+        let shared = work.spared(Thing::OwnStateDistances, Reason::ProvedAbove);
+        prop_assert_eq!(work.computed(Thing::OwnStateDistances) + hopeless + shared, asked);
         let by_own_state = work.spared(Thing::NearestSearches, Reason::OwnState);
         prop_assert!(by_own_state <= decided && by_own_state + hopeless >= decided);
         prop_assert_eq!(work.spared(Thing::NearestSearches, Reason::AnotherOne), distances - asked);
