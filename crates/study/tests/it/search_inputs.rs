@@ -105,6 +105,17 @@ fn impossible_inputs_are_errors() {
             );
         }
     }
+    // Far apart, so that nothing need be asked of the pair itself.
+    let far = |range, counting: &Counting| {
+        let scene = LibraryScene { range, ..library };
+        scene.told_apart(&[&own, &other], counting, 1e-3, Skipping::On, &|_, _| ()).is_err()
+    };
+    for temperature_k in [[400.0, 300.0], [f64::NAN, 300.0], [0.0, 300.0], [100.0, f64::INFINITY]] {
+        assert!(far(StateRange { temperature_k, ..whole }, &shot), "{temperature_k:?}");
+    }
+    assert!(far(StateRange { lighting: [0.8, 0.2], ..whole }, &shot));
+    assert!(far(StateRange { lighting_sum: -1.0, ..whole }, &shot));
+    assert!(far(whole, &Counting { var_added: vec![1.0; 3], ..shot.clone() }));
     assert!(library.first_not_told_from(2, &[&own, &other], &shot, 1.0, Skipping::On).is_err());
     let decided = library.told_apart(&[&own, &other], &shot, 1.0, Skipping::On, &|_, _| ()).unwrap();
     assert!(!decided.told_apart(0, 2) && !decided.told_apart(2, 2));

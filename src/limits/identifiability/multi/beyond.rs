@@ -112,7 +112,8 @@ impl<'e> Beyond<'e> {
             return None;
         }
         let nodes = bands.nodes_cm1();
-        if !emissivities.iter().all(|e| check_emissivity(e, nodes.len()).is_ok()) {
+        let fits = emissivities.iter().all(|e| check_emissivity(e, nodes.len()).is_ok());
+        if !fits || state.lighting.len() != objects || state.environment_k.len() != objects {
             return None;
         }
         let scale: Vec<f64> =

@@ -135,7 +135,10 @@ impl LibraryScene<'_> {
             Skipping::Off => None,
         };
         let mut question = Question::new(self, emissivities, counting, required, few.as_ref());
-        if skipping.skips() {
+        if skipping.skips() && count > 1 {
+            // A pair that is looked at makes sure of these itself.
+            self.range.check()?;
+            counting.check(self.bands.len())?;
             question.bound_all();
         }
         let all = count * count.saturating_sub(1) / 2;
@@ -147,6 +150,7 @@ impl LibraryScene<'_> {
             demand::computed(Thing::SharedBounds, 2 * sure as u64);
             let rest = question.things()[1..].iter();
             rest.for_each(|thing| demand::spared(*thing, Reason::ProvedAbove, 2 * sure as u64));
+            progress(sure, all);
         }
         let done = AtomicUsize::new(sure);
         let is_told = |solvers: &mut Solvers<'_>, (a, b)| {

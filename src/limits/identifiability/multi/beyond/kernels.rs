@@ -23,8 +23,9 @@ pub(super) struct Level {
 fn products(columns: &[Products], emissivity: &[f64]) -> Products {
     let mut sums = [[0.0; LANES]; PRODUCTS];
     for (columns, &e) in columns.iter().zip(emissivity) {
-        let square = e * e;
-        let factors = [square, square, square, square, e - square, e - square, e, e];
+        // e′(1 − e′) as a product: the difference e′ − e′² would lose digits near 1, where light may be far brighter than emission.
+        let (square, mixed) = (e * e, (1.0 - e) * e);
+        let factors = [square, square, square, square, mixed, mixed, e, e];
         for i in 0..PRODUCTS {
             sums[i] = fused(factors[i], columns[i], sums[i]);
         }

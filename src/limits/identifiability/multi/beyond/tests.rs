@@ -104,7 +104,8 @@ fn nothing_within_reach_is_said_to_be_beyond() {
         };
         let objects: Vec<EnvironmentObject> = (0..if kind == 1 { 2 } else { 1 })
             .map(|_| EnvironmentObject {
-                temperature_k: 150.0 + 250.0 * draw(),
+                // Some as hot as the sun.
+                temperature_k: if draw() < 0.2 { 5800.0 } else { 150.0 + 250.0 * draw() },
                 emissivity: (draw() < 0.3).then(|| smooth(&mut draw)),
             })
             .collect();
@@ -129,6 +130,9 @@ fn nothing_within_reach_is_said_to_be_beyond() {
         };
         let mut library: Vec<Vec<f64>> = (0..5).map(|_| smooth(&mut draw)).collect();
         library.push(vec![1.0; nodes.len()]);
+        // Hardly anything is reflected, of what may be far brighter than what is sent.
+        let little = 10f64.powf(-3.0 - 6.0 * draw());
+        library.push(vec![1.0 - little; nodes.len()]);
         library.push(library[0].iter().map(|e| e * 0.999).collect());
         let emissivities: Vec<&[f64]> = library.iter().map(Vec::as_slice).collect();
         let seeing = Seeing {
@@ -139,7 +143,7 @@ fn nothing_within_reach_is_said_to_be_beyond() {
             state: &state,
             counting: &counting,
         };
-        let target = (draw() * 5.0) as usize;
+        let target = if scene % 5 == 4 { 6 } else { (draw() * 5.0) as usize };
         let scale = counting.counts_per_radiance * weight;
         let mut brute = Brute {
             bands: &bands,
@@ -226,4 +230,42 @@ fn what_it_does_not_know_it_leaves_to_the_pairs() {
         assert!(!of(temperature.clone(), required, &b));
     }
     assert!(!of(temperature.clone(), 1.0, &b[1..]) && !of(temperature, 1.0, &vec![1.5; bands.len()]));
+}
+
+/// A material is not told from itself where it reflects a millionth of a light ten million times brighter.
+#[test]
+fn nothing_is_beyond_itself() {
+    let bands = Bands::uniform(2400.0, 2600.0, 2.0).expect("bands");
+    for (little, per_band) in [(1e-6, 1e12), (1.33e-5, 1e12), (1e-6, 1e10), (1.06e-7, 1e10), (1e-9, 1e14)] {
+        let objects = vec![EnvironmentObject { temperature_k: 5800.0, emissivity: None }];
+        let surroundings = Surroundings::new(bands.nodes_cm1(), objects).expect("surroundings");
+        let state = surroundings.state(300.0, &[1.0]).expect("state");
+        let own = vec![1.0 - little; bands.len()];
+        let sent: f64 = bands
+            .nodes_cm1()
+            .iter()
+            .map(|nu| planck::photon_radiance(*nu, 300.0) + little * planck::photon_radiance(*nu, 5800.0))
+            .sum();
+        let counting = Counting {
+            counts_per_radiance: per_band * bands.len() as f64 / (2.0 * sent),
+            var_added: Vec::new(),
+        };
+        for (unknown, temperature_k) in [
+            (vec![Nuisance::Lighting], [0.1, 1e6]),
+            (vec![Nuisance::Temperature, Nuisance::Lighting], [280.0, 320.0]),
+        ] {
+            let unknowns = Unknowns::new(unknown).expect("distinct");
+            let range = StateRange { temperature_k, ..StateRange::default() };
+            let seeing = Seeing {
+                bands: &bands,
+                surroundings: &surroundings,
+                unknowns: &unknowns,
+                range,
+                state: &state,
+                counting: &counting,
+            };
+            let Some(beyond) = Beyond::new(seeing, vec![&own, &own], 1.0) else { continue };
+            assert!(!beyond.of_target(0, &mut Seen::default())[1], "{little} {per_band}");
+        }
+    }
 }
