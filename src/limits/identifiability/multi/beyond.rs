@@ -23,34 +23,21 @@
 //!
 //! Assumptions: gain and temperatures of the surroundings are known, no priors, one node a band; lighting is known, or of one object.
 
-mod eight;
+mod intervals;
 mod kernels;
 
-use self::eight::{Eight, Interval};
+use self::intervals::{Curve, Intervals};
 use self::kernels::{Level, Products, lengths, lit_sums};
 use super::LibraryScene;
-use crate::fisher::{Counting, Nuisance, Unknowns};
-use crate::identifiability::nearest::{Chord, StateRange, chord};
+use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::space::StateSpace;
 use crate::planck;
-use crate::scene::{Parameter, State, Surroundings, check_emissivity};
+use crate::scene::{Parameter, check_emissivity};
 use crate::simd::LANES;
-use crate::spectrum::Bands;
-use crate::units::SECOND_RADIATION_CM_K;
 
-/// Share of the required distance that chords of the finer intervals may miss of a target's own counts.
-const MISSED: f64 = 0.1;
-/// hcν/kT at the hot end of the intervals, ν the middle of the bands, and the widest of the finer ones.
-const HOT: f64 = 0.35;
-const WIDEST: f64 = 0.1;
-/// The hot end of an interval over its cold one at most, and intervals at most.
-const RATIO: f64 = 1.35;
-const MOST_INTERVALS: usize = 512;
-/// Share of the required distance that what is colder than all intervals may send, and hcν/kT beyond which radiances underflow.
-const DARK: f64 = 0.05;
-const DARKEST: f64 = 300.0;
 /// Rounding of a distance that is to be reached, as a share of it.
 const SURELY: f64 = 1e-9;
+
 /// A scene in which alternatives are compared with targets.
 pub(super) struct Beyond<'e> {
     emissivities: Vec<&'e [f64]>,
@@ -63,14 +50,9 @@ pub(super) struct Beyond<'e> {
     lit: Vec<f64>,
     light: Vec<f64>,
     known: Vec<f64>,
-    /// Intervals in eights, and each one cut into eight.
-    coarse: Vec<Eight>,
-    fine: Vec<Eight>,
-    /// Counts of every alternative at the cold end of every interval, alternative by alternative; without those of intervals that have
-    /// none, or must be looked at in any case.
+    intervals: Intervals,
+    /// Counts that every alternative sends at each of their ends, alternative by alternative.
     sent: Vec<f64>,
-    /// Whether warmer states than all intervals need not be looked at.
-    is_closed: bool,
 }
 
 /// A target, and its products with the finer intervals, as far as they were needed.
@@ -82,28 +64,15 @@ pub(super) struct Seen {
     fine: Vec<Option<Vec<Products>>>,
 }
 
-/// The scene with its camera.
-#[derive(Clone, Copy)]
-pub(super) struct Seeing<'s> {
-    pub(super) bands: &'s Bands,
-    pub(super) surroundings: &'s Surroundings,
-    pub(super) unknowns: &'s Unknowns,
-    pub(super) range: StateRange,
-    pub(super) state: &'s State,
-    pub(super) counting: &'s Counting,
-}
-
-impl<'s> Seeing<'s> {
-    pub(super) fn of(scene: &LibraryScene<'s>, counting: &'s Counting) -> Self {
-        let LibraryScene { bands, surroundings, unknowns, range, state, .. } = *scene;
-        Self { bands, surroundings, unknowns, range, state, counting }
-    }
-}
-
 impl<'e> Beyond<'e> {
     /// `None` where nothing of this kind can be said of the scene.
-    pub(super) fn new(seeing: Seeing<'_>, emissivities: Vec<&'e [f64]>, required: f64) -> Option<Self> {
-        let Seeing { bands, surroundings, unknowns, range, state, counting } = seeing;
+    pub(super) fn new(
+        scene: &LibraryScene<'_>,
+        counting: &Counting,
+        emissivities: Vec<&'e [f64]>,
+        required: f64,
+    ) -> Option<Self> {
+        let LibraryScene { bands, surroundings, unknowns, range, state, .. } = *scene;
         let unknown = |nuisance| unknowns.contains(nuisance);
         let objects = surroundings.objects().len();
         let free = unknown(Nuisance::Lighting) && objects > 0;
@@ -145,118 +114,19 @@ impl<'e> Beyond<'e> {
         }
         let own = counted(&mut |w| planck::photon_radiance(nodes[w], state.temperature_k));
         let noise: Vec<f64> = (0..nodes.len()).map(|w| counting.var_added(w)).collect();
-        let mut beyond = Self {
-            emissivities,
-            required,
-            lighting,
-            noise,
-            own,
-            lit,
-            light,
-            known,
-            coarse: Vec::new(),
-            fine: Vec::new(),
-            sent: Vec::new(),
-            is_closed: true,
-        };
-        let given = [&beyond.own, &beyond.lit, &beyond.light, &beyond.noise];
+        let given = [&own, &lit, &light, &noise];
         let sound = given.into_iter().flatten().all(|x| x.is_finite() && *x >= 0.0);
         if !(sound && required > 0.0 && required.is_finite()) {
             return None;
         }
-        if unknown(Nuisance::Temperature) {
-            beyond.cut(bands, &scale, range.temperature_k)?;
-        } else {
-            let point = Interval {
-                low: beyond.own.clone(),
-                rise: vec![0.0; nodes.len()],
-                half: vec![0.0; nodes.len()],
-            };
-            beyond.coarse = vec![Eight::of(&[point])];
-        }
-        Some(beyond)
-    }
-
-    /// Cuts the range of temperatures into intervals.
-    fn cut(&mut self, bands: &Bands, scale: &[f64], [lowest_k, highest_k]: [f64; 2]) -> Option<()> {
-        crate::stop::check();
-        let nodes = bands.nodes_cm1();
-        let (first, last) = bands.range_cm1();
-        let middle = SECOND_RADIATION_CM_K * 0.5 * (first + last);
-        let all: f64 = self.own.iter().sum();
-        let finest = (16.0 * MISSED * self.required / all.sqrt()).sqrt().min(WIDEST);
-        let step = LANES as f64 * finest;
-        let curve = |temperature_k: f64| {
-            let [mut value, mut slope] = [(); 2].map(|()| vec![0.0; nodes.len()]);
-            planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
-            for spectrum in [&mut value, &mut slope] {
-                spectrum.iter_mut().zip(scale).for_each(|(x, scale)| *x *= scale);
-            }
-            [value, slope]
+        let curve = Curve { bands, scale: &scale };
+        let intervals = match unknown(Nuisance::Temperature) {
+            true => Intervals::of(curve, range.temperature_k, &own, required)?,
+            false => Intervals::at(&own),
         };
-        // Weights are at most 1/R².
-        let is_dark = |x: f64| {
-            let [value, _] = curve(middle / x);
-            value.iter().map(|b| b * b).sum::<f64>().sqrt() <= DARK * self.required * self.required
-        };
-        let mut cold_k = highest_k.min(middle / HOT).max(lowest_k);
-        self.is_closed = cold_k >= highest_k;
-        let mut temperatures_k = vec![cold_k];
-        while cold_k > lowest_k && !is_dark(middle / cold_k) {
-            let x = middle / cold_k;
-            if temperatures_k.len() > MOST_INTERVALS || x > DARKEST {
-                return None;
-            }
-            cold_k = (middle / (x + step).min(x * RATIO)).max(lowest_k);
-            temperatures_k.push(cold_k);
-        }
-        temperatures_k.reverse();
-        let interval = |[cold_k, hot_k]: [f64; 2]| {
-            let [cold, hot] = [curve(cold_k), curve(hot_k)];
-            let mut interval = Interval::zeros(nodes.len());
-            chord(Chord {
-                width: hot_k - cold_k,
-                more: 0.0,
-                cold: [&cold[0], &cold[1]],
-                hot: [&hot[0], &hot[1]],
-                low: &mut interval.low,
-                rise: &mut interval.rise,
-                half: &mut interval.half,
-            });
-            interval
-        };
-        let mut intervals = Vec::new();
-        let coldest_k = temperatures_k[0];
-        let [coldest, _] = curve(coldest_k);
-        if coldest_k > lowest_k || temperatures_k.len() == 1 {
-            // All that is colder, between nothing and that; or the one temperature there is.
-            let part = if coldest_k > lowest_k { 0.5 } else { 0.0 };
-            let half: Vec<f64> = coldest.iter().map(|b| part * b).collect();
-            let low = coldest.iter().zip(&half).map(|(b, half)| b - half).collect();
-            let dark = Interval { low, rise: vec![0.0; nodes.len()], half };
-            self.fine.push(Eight::of(std::slice::from_ref(&dark)));
-            intervals.push((0.0, dark));
-        }
-        for pair in temperatures_k.windows(2) {
-            crate::stop::check();
-            let [cold_k, hot_k] = [pair[0], pair[1]];
-            let end = |i: usize| {
-                if i == LANES { hot_k } else { cold_k + (hot_k - cold_k) * i as f64 / LANES as f64 }
-            };
-            let parts: Vec<Interval> = (0..LANES).map(|i| interval([end(i), end(i + 1)])).collect();
-            self.fine.push(Eight::of(&parts));
-            intervals.push((cold_k, interval([cold_k, hot_k])));
-        }
-        let whole: Vec<&Interval> = intervals.iter().map(|(_, interval)| interval).collect();
-        self.coarse = whole.chunks(LANES).map(Eight::of_all).collect();
-        let ends =
-            intervals.iter().map(|(cold_k, _)| *cold_k).chain([temperatures_k[temperatures_k.len() - 1]]);
-        let ends: Vec<Vec<f64>> =
-            ends.map(|t| if t > 0.0 { curve(t)[0].clone() } else { vec![0.0; nodes.len()] }).collect();
-        for emissivity in &self.emissivities {
-            self.sent.extend(ends.iter().map(|end| crate::sum::dot(end, emissivity)));
-        }
-        Some(())
+        let ends = || intervals.ends.iter();
+        let sent = emissivities.iter().flat_map(|e| ends().map(|end| crate::sum::dot(end, e))).collect();
+        Some(Self { emissivities, required, lighting, noise, own, lit, light, known, intervals, sent })
     }
 
     /// Whether each alternative is beyond reach of a target, whatever its state; false where that is not shown.
@@ -271,24 +141,25 @@ impl<'e> Beyond<'e> {
         seen.weight = (0..own.len()).map(|w| (2.0 * root(w) + reach).powi(-2)).collect();
         seen.rest = self.known.iter().zip(&counts).map(|(x, n)| x - n).collect();
         seen.fine.clear();
-        seen.fine.resize_with(self.fine.len(), || None);
+        seen.fine.resize_with(self.intervals.fine.len(), || None);
         let most: f64 = (0..own.len()).map(|w| counts[w] + reach * (2.0 * root(w) + reach)).sum();
-        let intervals = self.fine.len().max(1);
+        let Intervals { coarse, fine, ends, is_closed, count } = &self.intervals;
         let levels = self.emissivities.iter().enumerate().map(|(other, emissivity)| {
-            let sent = self.sent.chunks(intervals + 1).nth(other).unwrap_or_default();
             // The first interval of which even the cold end sends too much.
+            let sent = &self.sent[other * ends.len()..][..ends.len()];
             let bright = sent.iter().position(|sent| *sent * (1.0 - SURELY) > most);
-            let until = bright.map_or(intervals, |first| first.min(intervals));
+            let until = bright.map_or(*count, |first| first.min(*count));
             let [light, slope, rest] = lit_sums(&seen.weight, &seen.rest, &self.light, emissivity);
-            (Level { light, slope, rest, lighting: self.lighting }, until, bright.is_some() || self.is_closed)
+            (Level { light, slope, rest, lighting: self.lighting }, until, bright.is_some() || *is_closed)
         });
         let levels: Vec<(Level, usize, bool)> = levels.collect();
         let mut beyond: Vec<bool> = levels.iter().map(|(_, _, is_closed)| *is_closed).collect();
         beyond[target] = false;
         // Eight by eight, so that its products stay in the nearest cache.
-        for (eight, coarse) in self.coarse.iter().enumerate() {
+        let of_target = [&*seen.weight, &seen.rest, &self.light, &self.known];
+        for (eight, intervals) in coarse.iter().enumerate() {
             let first = eight * LANES;
-            let columns = coarse.products([&seen.weight, &seen.rest, &self.light, &self.known]);
+            let columns = intervals.products(of_target);
             for ((emissivity, (level, until, _)), beyond) in
                 self.emissivities.iter().zip(&levels).zip(&mut beyond)
             {
@@ -298,10 +169,8 @@ impl<'e> Beyond<'e> {
                 let found = lengths(&columns, emissivity, *level);
                 let near = (0..LANES.min(until - first)).filter(|lane| !is_enough(&found[*lane]));
                 *beyond = near.map(|lane| first + lane).all(|place| {
-                    let Some(parts) = self.fine.get(place) else { return false };
-                    let columns = seen.fine[place].get_or_insert_with(|| {
-                        parts.products([&seen.weight, &seen.rest, &self.light, &self.known])
-                    });
+                    let Some(parts) = fine.get(place) else { return false };
+                    let columns = seen.fine[place].get_or_insert_with(|| parts.products(of_target));
                     lengths(columns, emissivity, *level).iter().all(is_enough)
                 });
             }

@@ -18,7 +18,7 @@
 //! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart. Priors have no part in
 //! a proof: with them the search has the last word.
 
-use super::beyond::{Beyond, Seeing, Seen};
+use super::beyond::{Beyond, Seen};
 use super::{LibraryScene, Progress};
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
@@ -139,7 +139,7 @@ impl LibraryScene<'_> {
             // A pair that is looked at makes sure of these itself.
             self.range.check()?;
             counting.check(self.bands.len())?;
-            question.bound_all();
+            question.bound_all()?;
         }
         let all = count * count.saturating_sub(1) / 2;
         let is_open = |(a, b): &(usize, usize)| !(question.is_beyond(*a, *b) && question.is_beyond(*b, *a));
@@ -240,22 +240,22 @@ impl<'q> Question<'q> {
     }
 
     /// Bounds the distances of all pairs, target by target.
-    fn bound_all(&mut self) {
-        let all = Seeing::of(self.scene, self.counting);
-        let (seeing, emissivities) = match self.few {
+    fn bound_all(&mut self) -> Result<()> {
+        let beyond = match self.few {
             Some(few) => {
-                let own: Vec<&[f64]> = few.emissivities.iter().map(Vec::as_slice).collect();
-                let (bands, surroundings, counting) = (&few.bands, &few.surroundings, &few.counting);
-                (Seeing { bands, surroundings, counting, ..all }, own)
+                let own = few.emissivities.iter().map(Vec::as_slice).collect();
+                let scene =
+                    LibraryScene { bands: &few.bands, surroundings: &few.surroundings, ..*self.scene };
+                Beyond::new(&scene, &few.counting, own, self.required)
             }
-            None => (all, self.emissivities.to_vec()),
+            None => Beyond::new(self.scene, self.counting, self.emissivities.to_vec(), self.required),
         };
-        let count = emissivities.len();
-        if let Some(beyond) = Beyond::new(seeing, emissivities, self.required) {
+        if let Some(beyond) = beyond {
+            let count = self.emissivities.len();
             let of_target = |seen: &mut Seen, target| Ok(beyond.of_target(target, seen));
-            let rows: Result<Vec<Vec<bool>>> = parallel::booked_with(count, Seen::default, of_target);
-            self.beyond = rows.map(|rows| rows.concat()).unwrap_or_default();
+            self.beyond = parallel::booked_with(count, Seen::default, of_target)?.concat();
         }
+        Ok(())
     }
 
     pub(super) fn solvers(&self) -> Solvers<'q> {

@@ -6,9 +6,9 @@
 //!
 //!   4d² = Σ m Δ² − Σᵢ (Σ kᵢ Δ)²,   m = u c²,  kᵢ = u c q̂ᵢ
 //!
-//! is one pass over the bands with 2 + n multiplications each, of a few targets with a few alternatives at a time ([`lent`]). The subtraction loses u·(none/d)² of d, none the
-//! distance with no nuisance; where it would lose too much, the residual is formed
-//! band by band in a second pass, and where that is not enough the pair goes to [`LocalSolver`], which judges rank
+//! is one pass over the bands with 2 + n multiplications each, of a few targets with a few alternatives at a time ([`lent`]).
+//! The subtraction loses u·(none/d)² of d, none the distance with no nuisance; where it would lose too much, the residual is
+//! formed band by band in a second pass, and where that is not enough the pair goes to [`LocalSolver`], which judges rank
 //! and rounding. So do targets with a nuisance that is dependent, or nearly, and those whose contrast nearly vanishes at
 //! a node. Results agree with those of [`LocalSolver`] to 1e-14·none/d, or by as much as rounding may have turned the
 //! directions of the nuisances: [`LocalMatrix::relative_errors`].
@@ -287,7 +287,6 @@ impl<'a> LocalMatrix<'a> {
                         self.alone(emissivities[target], emissivities[alternative], state, weights)?;
                     *lost = -error;
                     passes.alone += 1;
-                    passes.two_passes = passes.two_passes.saturating_sub(1);
                 }
             }
         }

@@ -82,7 +82,8 @@ impl Lent {
         }
     }
 
-    /// Distances to up to [`TOGETHER`] alternatives, NaN where the pair must be judged on its own; how many took a second pass.
+    /// Distances to up to [`TOGETHER`] alternatives, NaN where the pair must be judged on its own; for how many
+    /// others a second pass was needed.
     pub(super) fn distances(
         &self,
         own: &[f64],
@@ -106,9 +107,9 @@ impl Lent {
             } else if left * (ONE_PASS * ONE_PASS) >= squares[i] {
                 self.half * left.sqrt()
             } else {
-                second += 1;
                 let left = self.residual(own, other, dots);
                 let good = left * (TWO_PASSES * TWO_PASSES) >= squares[i];
+                second += usize::from(good);
                 if good { self.half * left.sqrt() } else { f64::NAN }
             };
         }
