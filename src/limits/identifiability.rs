@@ -27,6 +27,7 @@ pub mod mixture;
 pub mod multi;
 pub mod nearest;
 pub mod ratio;
+mod rectangle;
 pub mod selection;
 mod space;
 

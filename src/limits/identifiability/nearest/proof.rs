@@ -23,11 +23,13 @@ mod prover;
 mod sources;
 mod vectors;
 mod view;
+mod wings;
 
 use self::about::Closed;
 pub(super) use self::prover::Memory;
 use self::prover::{Goal, Prover};
 pub(in crate::limits::identifiability) use self::sources::{Chord, chord};
+use self::wings::Wings;
 use super::refine::{NearestDistance, refine};
 use super::residual::{Comparison, Target};
 use crate::best_first::BestFirst;
@@ -138,7 +140,9 @@ impl Prover<'_, '_> {
     ) -> Outcome {
         let Goal { limit, enough, rounding, boxes } = goal;
         let mut queue = BestFirst::new(boxes);
-        let faces = match best.map(|best| self.close_about(comparison, target, best, goal)) {
+        let minimum = best.map(|best| self.minimum(comparison, target, &best.state));
+        let closed = minimum.as_ref().map(|minimum| self.close_about(comparison, target, minimum, goal));
+        let faces = match closed {
             Some(Closed::Nearer(state)) => return Outcome::Nearer(state),
             // Its bound is that distance, and errs as that does; what bounds the others counts its own rounding.
             Some(Closed::Box(lower, faces)) => {
@@ -152,6 +156,9 @@ impl Prover<'_, '_> {
             if faces.is_none() {
                 queue.push(0.0, 0, Region { ends: Vec::new(), axis: None });
             }
+        } else if let Some(Wings { lower, left }) = self.wings(minimum.as_ref(), faces.as_deref(), enough) {
+            queue.leave(lower);
+            left.into_iter().for_each(|region| queue.push(0.0, 0, region));
         } else {
             let warmest = best.map_or(target.state, |best| &best.state);
             self.around(faces.as_deref(), warmest).into_iter().for_each(|region| queue.push(0.0, 0, region));

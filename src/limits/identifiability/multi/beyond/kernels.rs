@@ -1,5 +1,6 @@
 //! Sums over the bands of eight intervals side by side, and what they bound. Symbols as in [`super`].
 
+use crate::identifiability::rectangle::OverRectangle;
 use crate::simd::{Chunk, LANES, dispatched, fold, fused, padded};
 
 /// Sums: four with e′² (r d², r d P, r P², r h²), two with e′(1 − e′) (r d a, r a P), two with e′ (r d (x − N), 2 r P (x − N)).
@@ -51,19 +52,6 @@ dispatched! {
     }
 }
 
-/// The smaller one.
-#[inline(always)]
-fn less(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// What is nearest to x between a and b.
-#[inline(always)]
-fn within(x: f64, [a, b]: [f64; 2]) -> f64 {
-    let above = if x > a { x } else { a };
-    less(above, b)
-}
-
 dispatched! {
     /// A lower bound of √(Σ r (N′ − N)²) in each of eight intervals.
     pub(super) fn lengths<'a>(columns: &'a [Products], emissivity: &'a [f64], level: Level) -> Chunk {
@@ -74,33 +62,10 @@ dispatched! {
             let (ss, sv, hh) = (sums[0][k], sums[4][k], sums[3][k]);
             let (s, v) = (sums[1][k] + sums[6][k], sums[5][k] + slope);
             let c = sums[2][k] + sums[7][k] + rest;
-            let value = |x: f64, y: f64| {
-                x * (ss * x + 2.0 * (sv * y + s)) + y * (vv * y + 2.0 * v) + c
-            };
-            let (per_s, per_v) = (1.0 / if ss > 0.0 { ss } else { 1.0 }, 1.0 / if vv > 0.0 { vv } else { 1.0 });
-            let along = |y: f64| within(-(sv * y + s) * per_s, [0.0, 1.0]);
-            let lit = |x: f64| within(-(sv * x + v) * per_v, lighting);
-            // The least of the plane, if it is within; the least of each edge.
-            let flat = ss * vv - sv * sv;
-            let per_flat = 1.0 / if flat > 0.0 { flat } else { 1.0 };
-            let inner = [within((sv * v - vv * s) * per_flat, [0.0, 1.0]), within((sv * s - ss * v) * per_flat, lighting)];
-            let edges = [[0.0, lit(0.0)], [1.0, lit(1.0)], [along(lighting[0]), lighting[0]], [along(lighting[1]), lighting[1]]];
-            let (mut x, mut y) = (inner[0], inner[1]);
-            let mut least = value(x, y);
-            for edge in edges {
-                let there = value(edge[0], edge[1]);
-                let lower = there < least;
-                x = if lower { edge[0] } else { x };
-                y = if lower { edge[1] } else { y };
-                least = if lower { there } else { least };
-            }
-            // Whatever the point is: the plane that touches there lies below.
-            let (by_x, by_y) = (2.0 * (ss * x + sv * y + s), 2.0 * (sv * x + vv * y + v));
-            let fall_x = less(by_x * (0.0 - x), by_x * (1.0 - x));
-            let fall_y = less(by_y * (lighting[0] - y), by_y * (lighting[1] - y));
+            let quadratic = OverRectangle { xx: ss, xy: sv, yy: vv, x: s, y: v, range: lighting };
             // What the sums are made of: each product is at most the squares of its factors.
             let size = sums[2][k] + rest + ss + lighting[1] * lighting[1] * vv;
-            let square = least + fall_x + fall_y - SUMS * size;
+            let square = c + quadratic.least() - SUMS * size;
             let square = if square > 0.0 { square } else { 0.0 };
             lengths[k] = square.sqrt() - hh.sqrt() * (1.0 + GRAIN) - GRAIN * size.sqrt();
         }

@@ -4,7 +4,6 @@ use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
-use crate::identifiability::nearest::refine::NearestDistance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
 use crate::sum::dot;
@@ -23,23 +22,21 @@ pub(super) enum Closed {
 }
 
 impl Prover<'_, '_> {
-    /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
-    pub(super) fn close_about(
-        &mut self,
+    /// The best state as a minimum in the bands.
+    pub(super) fn minimum(
+        &self,
         comparison: &mut Comparison<'_>,
         target: &Target<'_>,
-        best: &NearestDistance,
-        goal: Goal,
-    ) -> Closed {
+        state: &State,
+    ) -> Minimum {
         crate::stop::check();
-        let (state, enough) = (&best.state, goal.enough);
         let (residual, other) = comparison.residual(target, state);
         let count = self.all.sources.list.len();
-        let temperature_k: Vec<f64> = (0..count).map(|s| temperature_of(state, s)).collect();
         let gain = if self.all.allowed.gain_free { state.gain } else { 1.0 };
         let amplitudes: Vec<f64> =
             (0..count).map(|s| if s == 0 { gain } else { gain * state.lighting[s - 1] }).collect();
-        let spectra: Vec<Spectrum> = (0..count).map(|s| self.all.spectrum(s, temperature_k[s])).collect();
+        let spectra: Vec<Spectrum> =
+            (0..count).map(|s| self.all.spectrum(s, temperature_of(state, s))).collect();
         let bands = self.all.root.len();
         let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
         for (w, (residual, other)) in residual.into_iter().zip(other).enumerate() {
@@ -47,17 +44,22 @@ impl Prover<'_, '_> {
                 (pull[w], seen[w], kept[w]) = (-residual / other, other, residual);
             }
         }
-        let cost = dot(&kept, &kept);
-        let root = self.all.root.clone();
-        let minimum = Minimum {
-            amplitudes: &amplitudes,
-            spectra: &spectra,
-            pull: &pull,
-            root: &root,
-            other: &seen,
-            reach: self.all.reach,
-            cost,
-        };
+        let (cost, root, reach) = (dot(&kept, &kept), self.all.root.clone(), self.all.reach);
+        Minimum { amplitudes, spectra, pull, root, other: seen, reach, cost }
+    }
+
+    /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
+    pub(super) fn close_about(
+        &mut self,
+        comparison: &mut Comparison<'_>,
+        target: &Target<'_>,
+        minimum: &Minimum,
+        goal: Goal,
+    ) -> Closed {
+        crate::stop::check();
+        let Minimum { amplitudes, spectra, cost, .. } = minimum;
+        let temperature_k: Vec<f64> = spectra.iter().map(|spectrum| spectrum.temperature_k).collect();
+        let (count, cost, enough) = (spectra.len(), *cost, goal.enough);
         let nu = self.all.sources.bands.range_cm1();
         for width in WIDTHS {
             let reach: Vec<Option<Reach>> = (0..count)
@@ -71,7 +73,7 @@ impl Prover<'_, '_> {
                     self.all.sources.list[s].free().then_some(Reach { down_k, up_k, least })
                 })
                 .collect();
-            let Some(closed) = close(&self.all.sources, &minimum, &reach, &self.all.allowed, enough) else {
+            let Some(closed) = close(&self.all.sources, minimum, &reach, &self.all.allowed, enough) else {
                 continue;
             };
             if closed.lower.is_nan() {
@@ -88,7 +90,7 @@ impl Prover<'_, '_> {
                     Some([temperature_k[s] - down_k, temperature_k[s] + up_k])
                 })
                 .collect();
-            if lower >= enough && self.dim_ones_are_farther(&faces, &amplitudes, enough) {
+            if lower >= enough && self.dim_ones_are_farther(&faces, amplitudes, enough) {
                 return Closed::Box(lower, faces);
             }
             if let Some(state) = self.nearer(comparison, target, goal.limit, &mixture) {

@@ -27,7 +27,7 @@ const WORTH: f64 = 0.03;
 /// From how much more radiance at the hot end on a box is wide.
 const WIDE: f64 = 2.0;
 /// How many times the rounding of counts a distance must be to be seen in them.
-const CLEAR: f64 = 4.0;
+pub(super) const CLEAR: f64 = 4.0;
 /// Attempts with products of columns; after that their digits are all kept.
 const PLAIN: usize = 2;
 

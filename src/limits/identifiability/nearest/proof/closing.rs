@@ -35,29 +35,29 @@ const KEPT: f64 = 1e-6;
 const NEAR: f64 = 1e-6;
 
 /// A minimum in the bands.
-pub(super) struct Minimum<'m> {
+pub(super) struct Minimum {
     /// Amplitude and spectrum of every source.
-    pub(super) amplitudes: &'m [f64],
-    pub(super) spectra: &'m [Spectrum],
+    pub(super) amplitudes: Vec<f64>,
+    pub(super) spectra: Vec<Spectrum>,
     /// −r/s.
-    pub(super) pull: &'m [f64],
+    pub(super) pull: Vec<f64>,
     /// y and s of every band; 0 for both where a band is left out.
-    pub(super) root: &'m [f64],
-    pub(super) other: &'m [f64],
+    pub(super) root: Vec<f64>,
+    pub(super) other: Vec<f64>,
     /// The distance within which everything is.
     pub(super) reach: f64,
     /// d².
     pub(super) cost: f64,
 }
 
-impl Minimum<'_> {
+impl Minimum {
     /// √(y/s)/(s + y + reach) of every band.
-    fn weight(&self) -> Vec<f64> {
+    pub(super) fn weight(&self) -> Vec<f64> {
         crate::stop::check();
         let mut weight = vec![0.0; self.root.len()];
         weights_into(Weights {
-            root: self.root,
-            other: self.other,
+            root: &self.root,
+            other: &self.other,
             reach: self.reach,
             most: None,
             weight: &mut weight,
@@ -82,7 +82,7 @@ pub(super) struct Reach {
 
 /// Columns of the quadratic: amplitudes that may change, then sources of unknown temperature.
 struct Columns<'m> {
-    minimum: &'m Minimum<'m>,
+    minimum: &'m Minimum,
     lit: Vec<usize>,
     axes: Vec<(usize, Reach)>,
     /// p·column, with ½‖W⁻¹p‖, and R of the weighted columns.
@@ -107,7 +107,7 @@ pub(super) struct Closed {
 /// Closes a box; `None` if the quadratic is not convex in it.
 pub(super) fn close(
     sources: &Sources<'_>,
-    minimum: &Minimum<'_>,
+    minimum: &Minimum,
     reach: &[Option<Reach>],
     allowed: &Amplitudes,
     enough: f64,
@@ -122,7 +122,7 @@ pub(super) fn close(
         .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
         .collect();
     let pull_sizes: Vec<f64> = minimum.pull.iter().map(|p| p.abs()).collect();
-    let linear: Vec<f64> = raw.iter().map(|column| dot(minimum.pull, column)).collect();
+    let linear: Vec<f64> = raw.iter().map(|column| dot(&minimum.pull, column)).collect();
     let bends: Vec<[Vec<f64>; 2]> = axes
         .iter()
         .map(|&(s, Reach { down_k, up_k, .. })| {
@@ -131,7 +131,7 @@ pub(super) fn close(
         })
         .collect();
     let pulled: Vec<[f64; 2]> =
-        bends.iter().map(|[bend, third]| [dot(minimum.pull, bend), dot(&pull_sizes, third)]).collect();
+        bends.iter().map(|[bend, third]| [dot(&minimum.pull, bend), dot(&pull_sizes, third)]).collect();
     let mut weight = minimum.weight();
     let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
     let parts = minimum.pull.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
@@ -218,7 +218,8 @@ impl Columns<'_> {
     /// band can have more of that than its share in these.
     fn weighed(&self, weight: &[f64], basis: &[Vec<f64>], turns: &[[Vec<f64>; 2]]) -> Option<Vec<f64>> {
         crate::stop::check();
-        let Minimum { root, other, reach, cost, .. } = *self.minimum;
+        let Minimum { root, other, reach, cost, .. } = self.minimum;
+        let (reach, cost) = (*reach, *cost);
         let bands = root.iter().zip(other).filter(|(_, s)| **s > 0.0);
         let largest = bands.map(|(y, s)| y / s).fold(0.0, f64::max).sqrt();
         let all = largest * (cost.sqrt() + reach);
@@ -292,7 +293,7 @@ impl Columns<'_> {
     /// The limits of amplitudes and temperatures that the minimum is near to.
     fn limits(&self, allowed: &Amplitudes) -> Vec<Limit> {
         let size = self.lit.len() + self.axes.len();
-        let amplitudes = self.minimum.amplitudes;
+        let amplitudes = &self.minimum.amplitudes;
         let place = |s: usize| self.lit.iter().position(|&lit| lit == s);
         let mut limits = Vec::new();
         // Σ value·c ≥ 0 over sources, with changes of those that may change.
@@ -380,7 +381,7 @@ impl Columns<'_> {
             let later: f64 = (k + 1..z.len()).map(|j| factor[j][k] * z[j]).sum();
             z[k] = (z[k] - later) / factor[k][k];
         }
-        let mut amplitudes = self.minimum.amplitudes.to_vec();
+        let mut amplitudes = self.minimum.amplitudes.clone();
         for (&s, change) in self.lit.iter().zip(&z) {
             amplitudes[s] += if change.is_finite() { *change } else { 0.0 };
         }
@@ -395,7 +396,7 @@ impl Columns<'_> {
     /// The least over all amplitudes, by search: where no temperature is unknown and columns may depend on each other.
     fn searched(&self, allowed: &Amplitudes, enough: f64) -> Closed {
         crate::stop::check();
-        let Minimum { amplitudes, spectra, cost, .. } = *self.minimum;
+        let Minimum { amplitudes, spectra, cost, .. } = self.minimum;
         let mut pieces = Pieces::default();
         let (n, lit) = (spectra.len(), self.lit.len());
         let mut linear = vec![0.0; n];
@@ -411,7 +412,7 @@ impl Columns<'_> {
             linear,
             factor,
             excess: vec![0.0; n],
-            origin: amplitudes.to_vec(),
+            origin: amplitudes.clone(),
             most: (0..n).map(|i| allowed.most(&pieces, i)).collect(),
             length: self.length,
         };

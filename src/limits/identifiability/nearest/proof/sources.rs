@@ -329,15 +329,21 @@ dispatched! {
         let ends = cold[0].iter().zip(cold[1]).zip(hot[0].iter().zip(hot[1]));
         let out = low.iter_mut().zip(rise).zip(half);
         for (((a, slope_a), (b, slope_b)), ((low, rise), half)) in ends.zip(out) {
-            let chord = (b - a) * per_unit;
-            let (above, rest, turn) = ((chord - slope_a).max(0.0), (slope_b - chord).max(0.0), slope_b - slope_a);
-            let sag = if turn > 0.0 { width * above * rest / turn } else { 0.0 };
-            let missed = 0.5 * sag.min(b - a).max(0.0);
+            let missed = half_sag([width, per_unit], [*a, *slope_a], [*b, *slope_b]);
             *half = missed + more * b;
             *low = a - missed;
             *rise = b - a;
         }
     }
+}
+
+/// ρ/2 of one band: between ends so far apart (and one over that), from counts and slopes at both.
+#[inline(always)]
+pub(super) fn half_sag([width, per_unit]: [f64; 2], [a, slope_a]: [f64; 2], [b, slope_b]: [f64; 2]) -> f64 {
+    let chord = (b - a) * per_unit;
+    let (above, rest, turn) = ((chord - slope_a).max(0.0), (slope_b - chord).max(0.0), slope_b - slope_a);
+    let sag = if turn > 0.0 { width * above * rest / turn } else { 0.0 };
+    0.5 * sag.min(b - a).max(0.0)
 }
 
 /// How many values whole chunks take for so many bands: those beyond are 0 everywhere.
