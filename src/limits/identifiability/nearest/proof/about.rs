@@ -61,7 +61,9 @@ impl Prover<'_, '_> {
         let temperature_k: Vec<f64> = spectra.iter().map(|spectrum| spectrum.temperature_k).collect();
         let (count, cost, enough) = (spectra.len(), *cost, goal.enough);
         let nu = self.all.sources.bands.range_cm1();
-        for width in WIDTHS {
+        // Beside one unknown temperature the intervals that follow are cheaper than a second attempt.
+        let skipped = usize::from(self.all.axes.len() == 1);
+        for width in &WIDTHS[skipped..] {
             let reach: Vec<Option<Reach>> = (0..count)
                 .map(|s| {
                     let [low, high] = self.all.sources.list[s].temperature_k;

@@ -16,7 +16,7 @@
 
 use super::amplitudes::{Amplitudes, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
-use super::orthogonal::{add, back_substitute, inner, reduce};
+use super::orthogonal::{add, back_substitute, inner, orthonormalise, reduce, reduced};
 use super::sources::{Sources, Spectrum};
 use super::vectors::{Weights, add_root_into, add_size_into, add_square_into, product_into, weights_into};
 use crate::sum::dot;
@@ -148,11 +148,16 @@ pub(super) fn close(
         pairs.for_each(|(spectrum, out)| product_into(spectrum, &weight, out));
         columns.lengths = basis.iter().map(|column| dot(column, column).sqrt()).collect();
         let bent: Vec<&[f64]> = turns.iter().map(|[bend, _]| &bend[..]).collect();
-        (columns.triangle, columns.bent) = reduce(&mut basis, &bent);
+        let by_products = reduced(&basis, &bent);
+        let is_orthonormal = by_products.is_none();
+        (columns.triangle, columns.bent) = by_products.unwrap_or_else(|| reduce(&mut basis, &bent));
         columns.third = turns.iter().map(|[_, third]| dot(third, third).sqrt()).collect();
         closed = columns.closed(&pulled, allowed, enough).or(closed);
         if round == rounds || closed.as_ref().is_some_and(|closed| closed.lower >= enough) {
             break;
+        }
+        if !is_orthonormal {
+            orthonormalise(&mut basis, &columns.triangle);
         }
         let Some(better) = columns.weighed(&weight, &basis, &turns) else { break };
         weight = better;

@@ -8,6 +8,11 @@ const DEPENDENT: f64 = 1e-15;
 /// Share of a column that must be left after one pass for it to be orthogonal to rounding without another one.
 const ENOUGH: f64 = 0.5;
 
+/// What must be left of the square of a length for products to keep nine digits of it.
+const CANCELLED: f64 = 1e-6;
+/// Rounding of such a square, as a share of what it is left of.
+const ROUNDING: f64 = 1e-14;
+
 /// Σ aᵢbᵢ of a few numbers.
 pub(super) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
@@ -58,6 +63,54 @@ pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> (Vec<Vec<f6
     });
     let reduced = reduced.collect();
     (triangle, reduced)
+}
+
+/// What [`reduce`] finds, by products of the columns, which stay as they are; `None` where too many digits would cancel.
+pub(super) fn reduced(columns: &[Vec<f64>], others: &[&[f64]]) -> Option<(Vec<Vec<f64>>, Vec<Vec<f64>>)> {
+    let size = columns.len();
+    // Cholesky's factor, column by column; of the others the same column without its end.
+    let along = |column: &[f64], triangle: &[Vec<f64>], count: usize| -> Vec<f64> {
+        let mut above = vec![0.0; size + 1];
+        for j in 0..count {
+            let rest = dot(&columns[j], column) - inner(&triangle[j][..j], &above[..j]);
+            above[j] = rest / triangle[j][j];
+        }
+        above
+    };
+    let left = |column: &[f64], above: &[f64]| {
+        let square = dot(column, column);
+        let rest = square - inner(above, above);
+        (rest, square)
+    };
+    let mut triangle: Vec<Vec<f64>> = Vec::with_capacity(size);
+    for (k, column) in columns.iter().enumerate() {
+        let mut above = along(column, &triangle, k);
+        let (rest, square) = left(column, &above);
+        if !(rest > CANCELLED * square && rest.is_finite()) {
+            return None;
+        }
+        above[k] = rest.sqrt();
+        above.truncate(size);
+        triangle.push(above);
+    }
+    let others = others.iter().map(|other| {
+        let mut above = along(other, &triangle, size);
+        let (rest, square) = left(other, &above);
+        // No less than it is.
+        above[size] = (rest.max(0.0) + ROUNDING * square).sqrt();
+        above
+    });
+    let others = others.collect();
+    Some((triangle, others))
+}
+
+/// Makes columns orthonormal by their triangle.
+pub(super) fn orthonormalise(columns: &mut [Vec<f64>], triangle: &[Vec<f64>]) {
+    for (k, above) in triangle.iter().enumerate() {
+        let (done, rest) = columns.split_at_mut(k);
+        done.iter().zip(above).for_each(|(column, part)| add_into(-part, column, &mut rest[0]));
+        rest[0].iter_mut().for_each(|x| *x /= above[k]);
+    }
 }
 
 /// Takes what lies along orthonormal columns out of another one of length `before`; what is left of its length.

@@ -38,7 +38,10 @@ pub(in super::super) struct Memory {
 
 /// What a proof works with.
 pub(super) struct Prover<'a, 'm> {
-    merged: Option<(View<'a>, &'m mut Bounder)>,
+    /// How many neighbouring bands count as one for a first look, if any, and the pair in these once it was looked at.
+    merging: Option<usize>,
+    merged: Option<View<'a>>,
+    few: &'m mut Bounder,
     pub(super) all: View<'a>,
     pub(super) bounder: &'m mut Bounder,
     /// Ends of intervals, by axis.
@@ -80,17 +83,10 @@ impl<'a, 'm> Prover<'a, 'm> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let merged = merging.map(|count| {
-            let [counts, noise] = [&bands[1], &bands[2]].map(|x| neighbours_summed(x, count));
-            let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
-            (
-                View::new(sources.merged(count), allowed.clone(), [root, counts, noise], reach),
-                &mut memory.merged,
-            )
-        });
         let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
-        Self { merged, all, bounder: &mut memory.all, temperature_k }
+        let Memory { merged: few, all: bounder } = memory;
+        Self { merging, merged: None, few, all, bounder, temperature_k }
     }
 
     /// The state of a mixture, if its cost is below the limit.
@@ -157,9 +153,9 @@ impl<'a, 'm> Prover<'a, 'm> {
             }
         };
         let mut least = 0.0;
-        if let Some((merged, bounder)) = &mut self.merged {
+        if let Some(merged) = merged_into(&mut self.merged, &self.all, self.merging) {
             know(merged);
-            let found = bounder.bound(merged, ends, narrower, enough, None, QUADRATICS);
+            let found = self.few.bound(merged, ends, narrower, enough, None, QUADRATICS);
             // Where they are far from it all bands would hardly do either.
             let wide = || ends.iter().zip(known).any(|([a, b], known)| known[*b] > WIDE * known[*a]);
             let hopeless = found.lower < if found.coarse { enough } else { HOPE * enough };
@@ -169,7 +165,7 @@ impl<'a, 'm> Prover<'a, 'm> {
             least = found.lower;
         }
         know(&mut self.all);
-        let start = self.merged.as_ref().map(|(_, bounder)| bounder.point());
+        let start = self.merged.as_ref().map(|_| self.few.point());
         let found = self.bounder.bound(&mut self.all, ends, narrower, enough, start, QUADRATICS);
         (found.lower.max(least), found.axis, true)
     }
@@ -185,8 +181,8 @@ impl<'a, 'm> Prover<'a, 'm> {
         while t < high {
             let end = self.end(axis, t);
             // What is too bright in bands counted together is so in all of them.
-            let too_bright = match &mut self.merged {
-                Some((merged, _)) => merged.too_bright(axis, end, t, amplitude),
+            let too_bright = match merged_into(&mut self.merged, &self.all, self.merging) {
+                Some(merged) => merged.too_bright(axis, end, t, amplitude),
                 None => self.all.too_bright(axis, end, t, amplitude),
             };
             if too_bright {
@@ -196,6 +192,21 @@ impl<'a, 'm> Prover<'a, 'm> {
         }
         [low, high]
     }
+}
+
+/// The pair with so many neighbouring bands counted as one, where any are.
+fn merged_into<'v, 'a>(
+    merged: &'v mut Option<View<'a>>,
+    all: &View<'a>,
+    merging: Option<usize>,
+) -> Option<&'v mut View<'a>> {
+    let count = merging?;
+    Some(merged.get_or_insert_with(|| {
+        let bands = all.sources.bands.len();
+        let [counts, noise] = [&all.counts, &all.noise].map(|x| neighbours_summed(&x[..bands], count));
+        let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
+        View::new(all.sources.merged(count), all.allowed.clone(), [root, counts, noise], all.reach)
+    }))
 }
 
 pub(super) fn temperature_of(state: &State, s: usize) -> f64 {

@@ -14,7 +14,7 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
-use super::vectors::{multiply, product_into};
+use super::vectors::multiply;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::planck;
@@ -163,10 +163,9 @@ impl<'a> Sources<'a> {
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
         crate::stop::check();
         let nodes = self.bands.nodes_cm1();
-        let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+        let [mut value, mut slope] = [(); 2].map(|()| self.room());
         planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
-        let counts = self.counted(s, &mut value);
-        let slope = self.counted(s, &mut slope);
+        let [counts, slope] = [value, slope].map(|spectrum| self.counted(s, spectrum));
         let (length, slope_length) = (crate::sum::sum(&counts), crate::sum::sum(&slope));
         Spectrum { temperature_k, along: temperature_k, counts, slope, length, slope_length }
     }
@@ -226,16 +225,26 @@ impl<'a> Sources<'a> {
         if self.merged > 1 { f64::EPSILON * self.merged as f64 } else { 0.0 }
     }
 
-    fn counted(&self, s: usize, radiance: &mut [f64]) -> Vec<f64> {
+    /// Room for a spectrum at the nodes that becomes one of the bands in whole chunks.
+    fn room(&self) -> Vec<f64> {
+        let nodes = self.bands.nodes_cm1().len();
+        let mut room = Vec::with_capacity(whole(nodes));
+        room.resize(nodes, 0.0);
+        room
+    }
+
+    fn counted(&self, s: usize, mut radiance: Vec<f64>) -> Vec<f64> {
         crate::stop::check();
         let (bands, strength) = (self.bands.len(), &self.list[s].strength);
-        let mut counts = vec![0.0; whole(bands)];
-        if self.bands.one_node_per_band() {
-            product_into(radiance, strength, &mut counts);
+        multiply(&mut radiance, strength);
+        let counts = if self.bands.one_node_per_band() {
+            radiance.resize(whole(bands), 0.0);
+            radiance
         } else {
-            multiply(radiance, strength);
-            self.bands.weigh_into(radiance, &mut counts[..bands]);
-        }
+            let mut counts = vec![0.0; whole(bands)];
+            self.bands.weigh_into(&radiance, &mut counts[..bands]);
+            counts
+        };
         if self.merged > 1 { neighbours_summed(&counts[..bands], self.merged) } else { counts }
     }
 
@@ -246,12 +255,12 @@ impl<'a> Sources<'a> {
     pub(super) fn bend(&self, s: usize, temperature_k: f64, [low, high]: [f64; 2]) -> [Vec<f64>; 2] {
         crate::stop::check();
         let nodes = self.bands.nodes_cm1();
-        let [mut bend, mut third, mut hot] = [(); 3].map(|()| vec![0.0; nodes.len()]);
+        let [mut bend, mut third, mut hot] = [(); 3].map(|()| self.room());
         planck::photon_radiance_into(nodes, temperature_k, &mut bend);
         planck::photon_radiance_into(nodes, low, &mut third);
         planck::photon_radiance_into(nodes, high, &mut hot);
         bends(Bends { nodes, temperature_k, low_k: low, bend: &mut bend, third: &mut third, hot: &hot });
-        [bend, third].map(|mut spectrum| self.counted(s, &mut spectrum))
+        [bend, third].map(|spectrum| self.counted(s, spectrum))
     }
 }
 
