@@ -53,29 +53,22 @@ pub(super) fn refine(
     known: Option<&NearestDistance>,
     enough: f64,
 ) -> NearestDistance {
-    let (mut found, mut is_there) = newton(comparison, target, start, known, enough);
+    let mut found = newton(comparison, target, start, known, enough);
     // Each time one more source is lit.
     for _ in 0..=found.state.lighting.len() {
-        let Some(lit) = lit(comparison, target, &found, is_there) else { break };
-        let (next, next_is_there) = newton(comparison, target, lit, known, enough);
+        let Some(lit) = lit(comparison, target, &found) else { break };
+        let next = newton(comparison, target, lit, known, enough);
         if next.distance >= found.distance {
             break;
         }
         found = NearestDistance { iterations: found.iterations + next.iterations, ..next };
-        is_there = next_is_there;
     }
     found
 }
 
-/// A state nearer than `found` with more light in bands that are as good as dark there, if there is one. `is_there`: the state was the
-/// last one that was compared.
-fn lit(
-    comparison: &mut Comparison<'_>,
-    target: &Target<'_>,
-    found: &NearestDistance,
-    is_there: bool,
-) -> Option<State> {
-    let dark = comparison.dark(target, &found.state, is_there);
+/// A state nearer than `found` with more light in bands that are as good as dark there, if there is one.
+fn lit(comparison: &mut Comparison<'_>, target: &Target<'_>, found: &NearestDistance) -> Option<State> {
+    let dark = comparison.dark(target, &found.state);
     if dark.is_empty() {
         return None;
     }
@@ -101,15 +94,14 @@ fn lit(
     best
 }
 
-/// Newton's method, damped as by Levenberg and Marquardt; and whether the state was the last one that was compared.
+/// Newton's method, damped as by Levenberg and Marquardt.
 fn newton(
     comparison: &mut Comparison<'_>,
     target: &Target<'_>,
     start: State,
     known: Option<&NearestDistance>,
     enough: f64,
-) -> (NearestDistance, bool) {
-    let mut is_there = true;
+) -> NearestDistance {
     let mut state = comparison.space.within_range(&start);
     let mut at = comparison.linearise(target, &state);
     let (mut damping, mut converged, mut iterations) = (1e-7, comparison.space.parameters.is_empty(), 0);
@@ -129,8 +121,7 @@ fn newton(
         if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {
             // The last step, whether it is taken or only rounding: the cost tells.
             let cost = comparison.cost(target, &moved);
-            is_there = cost <= at.cost;
-            if is_there {
+            if cost <= at.cost {
                 (state, at.cost) = (moved, cost);
             }
             converged = true;
@@ -143,8 +134,7 @@ fn newton(
             break;
         }
         let next = comparison.linearise(target, &moved);
-        is_there = next.cost <= at.cost;
-        if is_there {
+        if next.cost <= at.cost {
             (state, at) = (moved, next);
             damping = (damping * 0.05).max(1e-15);
         } else {
@@ -157,7 +147,7 @@ fn newton(
         }
     }
     let at_edge = comparison.space.edges(&state);
-    let found = NearestDistance {
+    NearestDistance {
         distance: at.cost.sqrt(),
         lower: 0.0,
         relative_error: 0.0,
@@ -165,6 +155,5 @@ fn newton(
         at_edge,
         iterations,
         converged,
-    };
-    (found, is_there)
+    }
 }

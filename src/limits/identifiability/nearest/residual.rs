@@ -100,6 +100,8 @@ pub(super) struct Comparison<'a> {
     surface: Jacobian<'a>,
     pub(super) target: Jacobian<'a>,
     work: Workspace,
+    /// The state that was compared last, and whether with columns.
+    compared: Option<(State, bool)>,
 }
 
 impl<'a> Comparison<'a> {
@@ -114,6 +116,7 @@ impl<'a> Comparison<'a> {
             surface: Jacobian::new(bands, surroundings),
             target: Jacobian::new(bands, surroundings),
             work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
+            compared: None,
         }
     }
 
@@ -132,6 +135,7 @@ impl<'a> Comparison<'a> {
         if let Metric::Counting(counting) = metric {
             counting.check(self.target.bands().len())?;
         }
+        self.compared = None;
         self.target.evaluate(emissivity, alternative, state, &[], false);
         let total = crate::sum::sum(self.target.signal());
         // Per photon there must be some; counts may be none.
@@ -209,18 +213,15 @@ impl<'a> Comparison<'a> {
         self.separate(target, state, false);
         let mut other = vec![0.0; self.work.root.len()];
         roots_into(target.counts, self.surface.signal(), &self.work.noise, &mut other);
-        let sums = self.work.root.iter().zip(&other).map(|(a, b)| a + b);
-        let quotient =
-            |(separation, sum): (&f64, f64)| if sum > 0.0 { target.counts * separation / sum } else { 0.0 };
-        (self.work.separation.iter().zip(sums).map(quotient).collect(), other)
+        let mut residual = vec![0.0; other.len()];
+        quotients_into(target.counts, &self.work.separation, [&self.work.root, &other], &mut residual);
+        (residual, other)
     }
 
-    /// Bands of the target in which a state counts as good as nothing; `is_there`: it was the last one that was compared.
-    pub(super) fn dark(&mut self, target: &Target<'_>, state: &State, is_there: bool) -> Vec<usize> {
+    /// Bands of the target in which a state counts as good as nothing.
+    pub(super) fn dark(&mut self, target: &Target<'_>, state: &State) -> Vec<usize> {
         crate::stop::check();
-        if !is_there {
-            self.separate(target, state, false);
-        }
+        self.separate(target, state, false);
         let lines = self.lines(target);
         let is_dark = |&w: &usize| {
             let other = lines.counts.mul_add(lines.signal[w], lines.noise[w]);
@@ -279,8 +280,16 @@ impl<'a> Comparison<'a> {
     }
 
     /// Evaluates the alternative, with its columns or without, and the band integrals of S − S′ from differences that
-    /// lose no digits.
+    /// lose no digits. Nothing is done where they stand there from the last comparison.
     fn separate(&mut self, target: &Target<'_>, state: &State, columns: bool) {
+        match &mut self.compared {
+            Some((last, with_columns)) if last == state && (*with_columns || !columns) => return,
+            Some(last) => {
+                last.0.clone_from(state);
+                last.1 = columns;
+            }
+            none => *none = Some((state.clone(), columns)),
+        }
         let (own, work) = (target.state, &mut self.work);
         let total_known = self.space.unknowns.known_lighting_total().is_some();
         let parameters = if columns { &self.space.parameters[..] } else { &[] };
@@ -324,6 +333,17 @@ dispatched! {
     fn roots_into<'a>(counts: f64, signal: &'a [f64], noise: &'a [f64], out: &'a mut [f64]) {
         for ((root, signal), noise) in out.iter_mut().zip(signal).zip(noise) {
             *root = (counts * signal + noise).sqrt();
+        }
+    }
+}
+
+dispatched! {
+    /// κ(S − S′) over the sum of both roots, 0 where that is.
+    fn quotients_into<'a>(counts: f64, separation: &'a [f64], roots: [&'a [f64]; 2], out: &'a mut [f64]) {
+        let [own, other] = roots;
+        for ((out, separation), (own, other)) in out.iter_mut().zip(separation).zip(own.iter().zip(other)) {
+            let sum = own + other;
+            *out = if sum > 0.0 { counts * separation / sum } else { 0.0 };
         }
     }
 }

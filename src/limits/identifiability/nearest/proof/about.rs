@@ -4,6 +4,7 @@ use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
+use super::vectors::pulls_into;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
 use crate::sum::dot;
@@ -39,11 +40,7 @@ impl Prover<'_, '_> {
             (0..count).map(|s| self.all.spectrum(s, temperature_of(state, s))).collect();
         let bands = self.all.root.len();
         let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
-        for (w, (residual, other)) in residual.into_iter().zip(other).enumerate() {
-            if other > 1e-150 && self.all.root[w] > 0.0 {
-                (pull[w], seen[w], kept[w]) = (-residual / other, other, residual);
-            }
-        }
+        pulls_into(&residual, &other, &self.all.root, [&mut pull, &mut seen, &mut kept]);
         let (cost, root, reach) = (dot(&kept, &kept), self.all.root.clone(), self.all.reach);
         Minimum { amplitudes, spectra, pull, root, other: seen, reach, cost }
     }

@@ -18,7 +18,9 @@ use super::amplitudes::{Amplitudes, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
 use super::orthogonal::{add, back_substitute, inner, orthonormalise, reduce, reduced};
 use super::sources::{Sources, Spectrum};
-use super::vectors::{Weights, add_root_into, add_size_into, add_square_into, product_into, weights_into};
+use super::vectors::{
+    Weights, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient, weights_into,
+};
 use crate::sum::dot;
 
 /// η at most.
@@ -134,8 +136,7 @@ pub(super) fn close(
         bends.iter().map(|[bend, third]| [dot(&minimum.pull, bend), dot(&pull_sizes, third)]).collect();
     let mut weight = minimum.weight();
     let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
-    let parts = minimum.pull.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
-    let length = 0.5 * parts.map(|(p, w)| (p / w) * (p / w)).sum::<f64>().sqrt();
+    let length = 0.5 * square_of_quotient(&minimum.pull, &weight).sqrt();
     let (triangle, lengths, bent, third) = Default::default();
     let mut columns = Columns { minimum, lit, axes, linear, length, triangle, lengths, bent, third };
     let bands = weight.len();

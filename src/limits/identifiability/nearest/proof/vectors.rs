@@ -1,6 +1,6 @@
 //! Loops over the bands that a proof spends its time in.
 
-use crate::simd::{LANES, added, dispatched, fold, padded, product};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, padded, product};
 
 dispatched! {
     /// a·b, element by element.
@@ -44,15 +44,57 @@ dispatched! {
 }
 
 dispatched! {
-    /// The least limit/(value + width · slope), none below 0.
+    /// The least limit/(value + width · slope), none below 0; of whole chunks.
     pub(super) fn largest_share<'a>(limit: &'a [f64], value: &'a [f64], slope: &'a [f64], width: f64) -> f64 {
         let mut least = [f64::INFINITY; LANES];
-        for (place, ((limit, value), slope)) in limit.iter().zip(value).zip(slope).enumerate() {
-            let share = limit / width.mul_add(*slope, *value);
-            let least = &mut least[place % LANES];
-            *least = if share < *least { share } else { *least };
+        let [limit, value, slope] = [limit, value, slope].map(|x| -> &'a [Chunk] { x.as_chunks().0 });
+        for ((limit, value), slope) in limit.iter().zip(value).zip(slope) {
+            for k in 0..LANES {
+                let share = limit[k] / width.mul_add(slope[k], value[k]);
+                least[k] = if share < least[k] { share } else { least[k] };
+            }
         }
         least.iter().copied().fold(f64::INFINITY, f64::min).max(0.0)
+    }
+}
+
+dispatched! {
+    /// Σ (a/b)² over bands in which b is above 0.
+    pub(super) fn square_of_quotient<'a>(a: &'a [f64], b: &'a [f64]) -> f64 {
+        let mut lanes = [0.0; LANES];
+        let ((a, a_rest), (b, b_rest)) = (a.as_chunks(), b.as_chunks());
+        let rest = [(&padded(a_rest), &padded(b_rest))];
+        for (a, b) in a.iter().zip(b).chain(rest) {
+            for k in 0..LANES {
+                let quotient = if b[k] > 0.0 { a[k] / b[k] } else { 0.0 };
+                lanes[k] = quotient.mul_add(quotient, lanes[k]);
+            }
+        }
+        fold(&lanes)
+    }
+}
+
+dispatched! {
+    /// s² − v, none below 0.
+    pub(super) fn counts_into<'a>(root: &'a [f64], noise: &'a [f64], out: &'a mut [f64]) {
+        for ((out, s), v) in out.iter_mut().zip(root).zip(noise) {
+            let counts = s * s - v;
+            *out = if counts > 0.0 { counts } else { 0.0 };
+        }
+    }
+}
+
+dispatched! {
+    /// −r/s, s and r of every band, 0 where y or s is.
+    pub(super) fn pulls_into<'a>(residual: &'a [f64], other: &'a [f64], root: &'a [f64], out: [&'a mut [f64]; 3]) {
+        let [pull, seen, kept] = out;
+        let out = pull.iter_mut().zip(seen).zip(kept);
+        for ((r, s), (y, ((pull, seen), kept))) in residual.iter().zip(other).zip(root.iter().zip(out)) {
+            let counts = *s > 1e-150 && *y > 0.0;
+            *pull = if counts { -r / s } else { 0.0 };
+            *seen = if counts { *s } else { 0.0 };
+            *kept = if counts { *r } else { 0.0 };
+        }
     }
 }
 

@@ -19,15 +19,18 @@ use super::bound::CLEAR;
 use super::closing::Minimum;
 use super::prover::Prover;
 use super::sources::{Spectrum, half_sag};
-use super::vectors::{largest_share, product_into, square_of_product};
+use super::vectors::{counts_into, largest_share, product_into, square_of_product, square_of_quotient};
 use crate::identifiability::rectangle::OverRectangle;
 use crate::simd::{Chunk, LANES, dispatched, fold};
 use crate::sum::dot;
 
 /// Width of the first interval where none is closed about the best state, as a share of T/x, x = hcν/kT in the middle of the bands.
 const NARROW: f64 = 1e-3;
-/// By what the width grows from one interval to the next, and falls where one does not suffice.
+/// By what the width grows from one interval to the next, also where so many times what is enough was found, and falls where one does
+/// not suffice.
 const GROWS: f64 = 2.0;
+const GROWS_FAST: f64 = 4.0;
+const AMPLE: f64 = 1.5;
 const FALLS: f64 = 0.3;
 /// How often one is tried narrower.
 const NARROWER: usize = 3;
@@ -125,7 +128,7 @@ impl Prover<'_, '_> {
                     left.push(between(to));
                 }
                 narrower = 0;
-                width = GROWS * (to - from).abs();
+                width = if lower > AMPLE * enough { GROWS_FAST } else { GROWS } * (to - from).abs();
                 near = far;
             }
         }
@@ -153,7 +156,8 @@ impl Prover<'_, '_> {
             _ => return None,
         };
         let pull_lit = light.map_or(0.0, |light| dot(&minimum.pull, light));
-        let seen = minimum.other.iter().zip(&self.all.noise).map(|(s, v)| (s * s - v).max(0.0)).collect();
+        let mut seen = vec![0.0; minimum.other.len()];
+        counts_into(&minimum.other, &self.all.noise, &mut seen);
         let (own, counts, rounding) =
             (&minimum.spectra[s].counts[..], &self.all.counts[..], self.all.rounding);
         Some(About { minimum, own, amplitude, light, pull_lit, range, counts, seen, rounding })
@@ -166,8 +170,7 @@ impl About<'_> {
         if let Some(light) = self.light {
             product_into(light, &weight, &mut lit);
         }
-        let halves = self.minimum.pull.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
-        let shift = halves.map(|(p, w)| (0.5 * p / w) * (0.5 * p / w)).sum();
+        let shift = 0.25 * square_of_quotient(&self.minimum.pull, &weight);
         let length = |x: &[f64]| square_of_product(x, &weight).sqrt();
         let grain = self.rounding * (length(self.counts) + length(&self.seen));
         let lit_lit = dot(&lit, &lit);

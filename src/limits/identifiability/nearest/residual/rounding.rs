@@ -5,7 +5,7 @@
 
 use super::{Comparison, NO_GAIN, Separation, Target, is_other_scale};
 use crate::scene::State;
-use crate::simd::dispatched;
+use crate::simd::{LANES, dispatched, fold, padded};
 use crate::units::SECOND_RADIATION_CM_K;
 
 /// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
@@ -36,11 +36,11 @@ impl Comparison<'_> {
         crate::stop::check();
         self.separate(target, state, false);
         if is_other_scale(target.state.gain, state.gain) {
-            return self.size_of_terms(target, |own, other| own + other);
+            return self.size_of_terms(target, self.target.signal(), 1.0);
         }
         let (own, work, surface) = (target.state, &mut self.work, &self.surface);
         self.target.lighting_terms_into(own, surface, state, &mut work.lighting);
-        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
+        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.curvature, |out| {
             terms_into(
                 Separation {
                     gain: own.gain,
@@ -55,25 +55,32 @@ impl Comparison<'_> {
             );
         });
         let gain = (state.gain - own.gain).abs() / state.gain;
-        let terms = std::mem::take(&mut self.work.separation);
-        let mut band = terms.iter();
-        let size = self.size_of_terms(target, |_, other| band.next().unwrap_or(&0.0) + gain * other);
-        self.work.separation = terms;
-        size
+        self.size_of_terms(target, &self.work.curvature, gain)
     }
 
-    /// The separation by terms in the signals of target and candidate, band by band.
-    fn size_of_terms(&self, target: &Target<'_>, mut terms: impl FnMut(f64, f64) -> f64) -> f64 {
-        let mut total = crate::sum::Compensated::default();
-        let signals = self.target.signal().iter().zip(self.surface.signal());
-        for ((own, other), (root, noise)) in signals.zip(self.work.root.iter().zip(self.work.noise.iter())) {
-            let (sum, terms) = (root + (target.counts * other + noise).sqrt(), terms(*own, *other));
-            if sum > 0.0 {
-                let term = target.counts * terms / sum;
-                total.add(term * term);
+    /// The separation by terms of the band and `more` times the signal of the candidate.
+    fn size_of_terms(&self, target: &Target<'_>, terms: &[f64], more: f64) -> f64 {
+        let Self { surface, work, .. } = self;
+        square_of_terms(target.counts, [terms, surface.signal(), &work.root, &work.noise], more).sqrt()
+    }
+}
+
+dispatched! {
+    /// Σ (κ(term + more · S′)/(√(N + σ²) + √(N′ + σ²)))², over bands in which there is any.
+    fn square_of_terms<'a>(counts: f64, bands: [&'a [f64]; 4], more: f64) -> f64 {
+        let [terms, signal, root, noise] = bands;
+        let mut lanes = [0.0; LANES];
+        let chunks = |x: &'a [f64]| x.chunks(LANES).map(padded);
+        let bands = chunks(terms).zip(chunks(signal)).zip(chunks(root).zip(chunks(noise)));
+        for ((terms, signal), (root, noise)) in bands {
+            for k in 0..LANES {
+                let sum = root[k] + counts.mul_add(signal[k], noise[k]).sqrt();
+                let term = counts * more.mul_add(signal[k], terms[k]) / sum;
+                let term = if sum > 0.0 { term } else { 0.0 };
+                lanes[k] = term.mul_add(term, lanes[k]);
             }
         }
-        total.value().sqrt()
+        fold(&lanes)
     }
 }
 
