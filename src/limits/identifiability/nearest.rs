@@ -19,6 +19,7 @@
 //!
 //! Source: design of the project; Algorithm 1 of the paper is its exact counterpart on a lattice.
 
+mod blackbodies;
 mod proof;
 mod refine;
 mod residual;

@@ -10,6 +10,7 @@ mod rounding;
 mod sums;
 
 use self::sums::{Lines, Sums};
+use super::blackbodies::Blackbodies;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::curvature::{Curvature, curvature_into};
@@ -17,6 +18,7 @@ use crate::identifiability::space::{Quadratic, StateRange, StateSpace, value};
 use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
 use crate::simd::{Aligned, dispatched};
 use crate::spectrum::Bands;
+use std::sync::Arc;
 
 /// What a step may promise, as a share of the cost, for the search to end before it.
 pub(super) const NO_GAIN: f64 = 2e-15;
@@ -100,6 +102,7 @@ pub(super) struct Comparison<'a> {
     surface: Jacobian<'a>,
     pub(super) target: Jacobian<'a>,
     work: Workspace,
+    pub(super) blackbodies: Arc<Blackbodies>,
     /// The state that was compared last, and whether with columns.
     compared: Option<(State, bool)>,
 }
@@ -116,6 +119,7 @@ impl<'a> Comparison<'a> {
             surface: Jacobian::new(bands, surroundings),
             target: Jacobian::new(bands, surroundings),
             work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
+            blackbodies: Arc::default(),
             compared: None,
         }
     }

@@ -5,6 +5,7 @@ use super::closing::{Minimum, Reach, close};
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
 use super::vectors::pulls_into;
+use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
 use crate::sum::dot;
@@ -68,8 +69,10 @@ impl Prover<'_, '_> {
                     let x = crate::units::SECOND_RADIATION_CM_K * 0.5 * (nu.0 + nu.1) / t;
                     let half = width * t / x.max(2.0);
                     let least = if self.all.held(s).is_some() { amplitudes[s] } else { 0.25 * amplitudes[s] };
-                    let (down_k, up_k) = (half.min(t - low).max(0.0), half.min(high - t).max(0.0));
-                    self.all.sources.list[s].free().then_some(Reach { down_k, up_k, least })
+                    let [cold, hot] = [t - half, t + half].map(|face| rounded(face, t));
+                    let faces = [cold.max(low).min(t), hot.min(high).max(t)];
+                    let (down_k, up_k) = (t - faces[0], faces[1] - t);
+                    self.all.sources.list[s].free().then_some(Reach { faces, down_k, up_k, least })
                 })
                 .collect();
             let Some(closed) = close(&self.all.sources, minimum, &reach, &self.all.allowed, enough) else {
@@ -80,15 +83,7 @@ impl Prover<'_, '_> {
             }
             let lower = closed.lower.min(cost);
             let mixture = Mixture { amplitudes: closed.amplitudes, temperature_k: closed.temperature_k };
-            let faces: Vec<[f64; 2]> = self
-                .all
-                .axes
-                .iter()
-                .filter_map(|&s| {
-                    let Reach { down_k, up_k, .. } = reach[s]?;
-                    Some([temperature_k[s] - down_k, temperature_k[s] + up_k])
-                })
-                .collect();
+            let faces: Vec<[f64; 2]> = self.all.axes.iter().filter_map(|&s| Some(reach[s]?.faces)).collect();
             if lower >= enough && self.dim_ones_are_farther(&faces, amplitudes, enough) {
                 return Closed::Box(lower, faces);
             }

@@ -53,7 +53,7 @@ impl Pieces {
 
     /// The spectrum of a source as it is.
     pub(super) fn put_known(&mut self, source: usize, spectrum: &Spectrum) {
-        let &Spectrum { length, temperature_k, .. } = spectrum;
+        let (temperature_k, [length, _]) = (spectrum.temperature_k, spectrum.lengths());
         self.put(Piece { source, length, cap: f64::INFINITY, temperature_k, unit: [1.0; 2] });
     }
 

@@ -226,7 +226,8 @@ impl Bounder {
                     let bent = (x - least_x) * (x - least_x) * (-least_x).exp() / 24.0;
                     lay([dim, bright], rounding + 2.0 * bent);
                     let all = (cold.most * cold_scale).min(view.most(s) * hot_scale);
-                    (lengths, caps, unit) = ([dim.length; 2], [all; 2], [1.0 / hot_scale, 1.0 / cold_scale]);
+                    (lengths, caps, unit) =
+                        ([dim.lengths()[0]; 2], [all; 2], [1.0 / hot_scale, 1.0 / cold_scale]);
                 }
                 _ => {
                     let (dim, bright) = (&cold.spectrum, &hot.spectrum);
@@ -238,7 +239,8 @@ impl Bounder {
                     } else {
                         f64::INFINITY
                     };
-                    lengths = [dim.length, dim.length + width_k * dim.slope_length];
+                    let [length, slope_length] = dim.lengths();
+                    lengths = [length, length + width_k * slope_length];
                     (caps, unit) = ([cold.most.min(view.most(s)), cap], [1.0; 2]);
                 }
             }

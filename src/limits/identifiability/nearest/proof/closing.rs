@@ -74,9 +74,10 @@ impl Minimum {
     }
 }
 
-/// The two ends of a box along one source, relative to T*, and the least amplitude in it.
+/// The two ends of a box along one source, also relative to T*, and the least amplitude in it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
+    pub(super) faces: [f64; 2],
     pub(super) down_k: f64,
     pub(super) up_k: f64,
     pub(super) least: f64,
@@ -127,10 +128,7 @@ pub(super) fn close(
     let linear: Vec<f64> = raw.iter().map(|column| dot(&minimum.pull, column)).collect();
     let bends: Vec<[Vec<f64>; 2]> = axes
         .iter()
-        .map(|&(s, Reach { down_k, up_k, .. })| {
-            let t = minimum.spectra[s].temperature_k;
-            sources.bend(s, t, [t - down_k, t + up_k])
-        })
+        .map(|&(s, Reach { faces, .. })| sources.bend(s, minimum.spectra[s].temperature_k, faces))
         .collect();
     let pulled: Vec<[f64; 2]> =
         bends.iter().map(|[bend, third]| [dot(&minimum.pull, bend), dot(&pull_sizes, third)]).collect();

@@ -14,13 +14,15 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
-use super::vectors::multiply;
+use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
+use crate::identifiability::nearest::blackbodies::Blackbodies;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::planck;
 use crate::simd::{Chunk, LANES, dispatched, fold, padded};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// One source: what B(T) is multiplied by at the nodes (with the weight of the band where that is its only node), and where its
@@ -47,9 +49,18 @@ pub(super) struct Spectrum {
     pub(super) counts: Vec<f64>,
     /// ∂/∂along.
     pub(super) slope: Vec<f64>,
+    lengths: OnceCell<[f64; 2]>,
+}
+
+impl Spectrum {
+    fn of(temperature_k: f64, along: f64, [counts, slope]: [Vec<f64>; 2]) -> Self {
+        Self { temperature_k, along, counts, slope, lengths: OnceCell::new() }
+    }
+
     /// Sum of the counts, and of their slopes.
-    pub(super) length: f64,
-    pub(super) slope_length: f64,
+    pub(super) fn lengths(&self) -> [f64; 2] {
+        *self.lengths.get_or_init(|| [&self.counts, &self.slope].map(|x| crate::sum::sum(x)))
+    }
 }
 
 /// All sources of an alternative.
@@ -57,6 +68,7 @@ pub(super) struct Spectrum {
 pub(super) struct Sources<'a> {
     pub(super) bands: &'a Bands,
     pub(super) list: Arc<[Source]>,
+    blackbodies: Arc<Blackbodies>,
     /// Every so many neighbouring bands are counted as one.
     merged: usize,
     /// Rounding of the target's own counts, as a share of them.
@@ -118,8 +130,15 @@ impl<'a> Sources<'a> {
             }
         });
         let list = std::iter::once(surface).chain(lights).collect();
-        let mut sources =
-            Self { bands, list, merged: 1, own_rounding: 0.0, lowest_cm1: lowest(bands.nodes_cm1()) };
+        let blackbodies = Arc::clone(&comparison.blackbodies);
+        let mut sources = Self {
+            bands,
+            list,
+            blackbodies,
+            merged: 1,
+            own_rounding: 0.0,
+            lowest_cm1: lowest(bands.nodes_cm1()),
+        };
         sources.own_rounding = sources.rounding_of(comparison, target);
         sources
     }
@@ -156,18 +175,26 @@ impl<'a> Sources<'a> {
 
     /// The same with neighbouring bands counted as one.
     pub(super) fn merged(&self, merged: usize) -> Self {
-        Self { list: Arc::clone(&self.list), merged, ..*self }
+        Self { merged, ..self.clone() }
     }
 
-    /// Source `s` at a temperature.
+    /// Source `s` at a temperature that other pairs look at, too.
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
+        self.of(s, temperature_k, &self.blackbodies.at(self.bands.nodes_cm1(), temperature_k))
+    }
+
+    /// The same at one that is the pair's own.
+    pub(super) fn own_spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
+        self.of(s, temperature_k, &Blackbodies::once(self.bands.nodes_cm1(), temperature_k))
+    }
+
+    fn of(&self, s: usize, temperature_k: f64, blackbody: &[Vec<f64>; 2]) -> Spectrum {
         crate::stop::check();
-        let nodes = self.bands.nodes_cm1();
-        let [mut value, mut slope] = [(); 2].map(|()| self.room());
-        planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
-        let [counts, slope] = [value, slope].map(|spectrum| self.counted(s, spectrum));
-        let (length, slope_length) = (crate::sum::sum(&counts), crate::sum::sum(&slope));
-        Spectrum { temperature_k, along: temperature_k, counts, slope, length, slope_length }
+        Spectrum::of(
+            temperature_k,
+            temperature_k,
+            blackbody.each_ref().map(|radiance| self.counted(s, radiance)),
+        )
     }
 
     /// The shape of a spectrum, and β; `None` where there is next to nothing.
@@ -182,8 +209,7 @@ impl<'a> Sources<'a> {
         let slopes = spectrum.slope.iter().zip(&spectrum.counts);
         let slope: Vec<f64> =
             slopes.map(|(slope, counts)| t * t * ((slope - counts * bend) / scale)).collect();
-        let (length, slope_length) = (crate::sum::sum(&counts), crate::sum::sum(&slope));
-        Some((Spectrum { temperature_k: t, along: -1.0 / t, counts, slope, length, slope_length }, scale))
+        Some((Spectrum::of(t, -1.0 / t, [counts, slope]), scale))
     }
 
     /// β at a temperature.
@@ -225,26 +251,16 @@ impl<'a> Sources<'a> {
         if self.merged > 1 { f64::EPSILON * self.merged as f64 } else { 0.0 }
     }
 
-    /// Room for a spectrum at the nodes that becomes one of the bands in whole chunks.
-    fn room(&self) -> Vec<f64> {
-        let nodes = self.bands.nodes_cm1().len();
-        let mut room = Vec::with_capacity(whole(nodes));
-        room.resize(nodes, 0.0);
-        room
-    }
-
-    fn counted(&self, s: usize, mut radiance: Vec<f64>) -> Vec<f64> {
-        crate::stop::check();
+    fn counted(&self, s: usize, radiance: &[f64]) -> Vec<f64> {
         let (bands, strength) = (self.bands.len(), &self.list[s].strength);
-        multiply(&mut radiance, strength);
-        let counts = if self.bands.one_node_per_band() {
-            radiance.resize(whole(bands), 0.0);
-            radiance
+        let mut counts = vec![0.0; whole(bands)];
+        if self.bands.one_node_per_band() {
+            product_into(radiance, strength, &mut counts);
         } else {
-            let mut counts = vec![0.0; whole(bands)];
+            let mut radiance = radiance.to_vec();
+            multiply(&mut radiance, strength);
             self.bands.weigh_into(&radiance, &mut counts[..bands]);
-            counts
-        };
+        }
         if self.merged > 1 { neighbours_summed(&counts[..bands], self.merged) } else { counts }
     }
 
@@ -255,65 +271,51 @@ impl<'a> Sources<'a> {
     pub(super) fn bend(&self, s: usize, temperature_k: f64, [low, high]: [f64; 2]) -> [Vec<f64>; 2] {
         crate::stop::check();
         let nodes = self.bands.nodes_cm1();
-        let [mut bend, mut third, mut hot] = [(); 3].map(|()| self.room());
+        let [mut bend, mut third] = [(); 2].map(|()| vec![0.0; nodes.len()]);
         planck::photon_radiance_into(nodes, temperature_k, &mut bend);
-        planck::photon_radiance_into(nodes, low, &mut third);
-        planck::photon_radiance_into(nodes, high, &mut hot);
-        bends(Bends { nodes, temperature_k, low_k: low, bend: &mut bend, third: &mut third, hot: &hot });
-        [bend, third].map(|spectrum| self.counted(s, spectrum))
+        let ends = [low, high].map(|end| self.blackbodies.at(nodes, end));
+        let [cold, hot] = ends.each_ref().map(|end| &end[0][..]);
+        bends(Bends { nodes, temperature_k, low_k: low, bend: &mut bend, third: &mut third, cold, hot });
+        [bend, third].map(|spectrum| self.counted(s, &spectrum))
     }
 }
 
-/// What [`bends`] reads and writes: B at the temperature itself becomes B″, at the cold end the bound of |B‴|.
+/// What [`bends`] reads and writes: B at the temperature itself becomes B″; the bound of |B‴| comes of B at both ends.
 struct Bends<'a> {
     nodes: &'a [f64],
     temperature_k: f64,
     low_k: f64,
     bend: &'a mut [f64],
     third: &'a mut [f64],
+    cold: &'a [f64],
     hot: &'a [f64],
 }
 
 dispatched! {
     fn bends<'a>(bends: Bends<'a>) -> () {
-        let Bends { nodes, temperature_k, low_k, bend, third, hot } = bends;
-        let len = nodes.len();
-        let (whole, rest) = (len / LANES, len % LANES);
-        let ([nu, n_hot], [bend, third]) = ([nodes, hot].map(|x| &x[..len]), [bend, third].map(|x| &mut x[..len]));
-        for c in (0..whole).map(|c| c * LANES) {
-            let chunk = |x: &[f64]| -> Chunk { std::array::from_fn(|i| x[c + i]) };
-            let (second, most) = bent(chunk(nu), [chunk(bend), chunk(third), chunk(n_hot)], temperature_k, low_k);
-            bend[c..c + LANES].copy_from_slice(&second);
-            third[c..c + LANES].copy_from_slice(&most);
+        let Bends { nodes, temperature_k, low_k, bend, third, cold, hot } = bends;
+        let ends = nodes.iter().zip(cold.iter().zip(hot));
+        for ((nu, (cold, hot)), (bend, third)) in ends.zip(bend.iter_mut().zip(third)) {
+            (*bend, *third) = bent(*nu, [*bend, *cold, *hot], temperature_k, low_k);
         }
-        let [x, a, b, h] = [nu, bend, third, n_hot].map(|x| padded(&x[len - rest..]));
-        let (second, most) = bent(x, [a, b, h], temperature_k, low_k);
-        bend[len - rest..].copy_from_slice(&second[..rest]);
-        third[len - rest..].copy_from_slice(&most[..rest]);
     }
 }
 
-/// B″ and the bound of |B‴| of a chunk of nodes, from B at the temperature itself, at the cold end and at the hot one.
+/// B″ and the bound of |B‴| at a node, from B at the temperature itself, at the cold end and at the hot one.
 #[inline(always)]
-fn bent(nu: Chunk, [own, cold, hot]: [Chunk; 3], temperature_k: f64, low_k: f64) -> (Chunk, Chunk) {
-    let one = planck::mode_density(1.0);
-    let density: Chunk = std::array::from_fn(|i| one * nu[i] * nu[i]);
-    let second = std::array::from_fn(|i| {
-        let (x, n) = (SECOND_RADIATION_CM_K * nu[i] / temperature_k, own[i] / density[i]);
-        // w − 2 = x²/6 − x⁴/360 + … cancels where x is small.
-        let small = x * x / 6.0 * (1.0 - x * x / 60.0);
-        let large = x * (1.0 + 2.0 * n) - 2.0;
-        let beyond = if x < 0.1 { small } else { large };
-        own[i] * x * (1.0 + n) * beyond / (temperature_k * temperature_k)
-    });
-    let third = std::array::from_fn(|i| {
-        let (x, n, hot) = (SECOND_RADIATION_CM_K * nu[i] / low_k, cold[i] / density[i], hot[i] / density[i]);
-        let w = x * (1.0 + 2.0 * n);
-        // At the hot end x is no more than at the cold one.
-        let m = x * hot * (1.0 + hot);
-        density[i] * m * (w * w + 2.0 * x * m) / (low_k * low_k * low_k)
-    });
-    (second, third)
+fn bent(nu: f64, [own, cold, hot]: [f64; 3], temperature_k: f64, low_k: f64) -> (f64, f64) {
+    let density = planck::mode_density(1.0) * nu * nu;
+    let (x, n) = (SECOND_RADIATION_CM_K * nu / temperature_k, own / density);
+    // w − 2 = x²/6 − x⁴/360 + … cancels where x is small.
+    let small = x * x / 6.0 * (1.0 - x * x / 60.0);
+    let large = x * (1.0 + 2.0 * n) - 2.0;
+    let beyond = if x < 0.1 { small } else { large };
+    let second = own * x * (1.0 + n) * beyond / (temperature_k * temperature_k);
+    let (x, n, hot) = (SECOND_RADIATION_CM_K * nu / low_k, cold / density, hot / density);
+    let w = x * (1.0 + 2.0 * n);
+    // At the hot end x is no more than at the cold one.
+    let m = x * hot * (1.0 + hot);
+    (second, density * m * (w * w + 2.0 * x * m) / (low_k * low_k * low_k))
 }
 
 /// What [`chord`] reads and writes.

@@ -177,11 +177,11 @@ impl<'a> View<'a> {
         self.ends[axis].get(place)?.as_ref()
     }
 
-    /// The spectrum of a source at a temperature.
+    /// The spectrum of a source at a temperature of the pair's own.
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
         match self.later.fixed.get(s) {
             Some(Some(spectrum)) => spectrum.clone(),
-            _ => self.sources.spectrum(s, temperature_k),
+            _ => self.sources.own_spectrum(s, temperature_k),
         }
     }
 

@@ -20,6 +20,7 @@ use super::closing::Minimum;
 use super::prover::Prover;
 use super::sources::{Spectrum, half_sag};
 use super::vectors::{counts_into, largest_share, product_into, square_of_product, square_of_quotient};
+use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::rectangle::OverRectangle;
 use crate::simd::{Chunk, LANES, dispatched, fold};
 use crate::sum::dot;
@@ -94,7 +95,7 @@ impl Prover<'_, '_> {
         let first = NARROW * own_k / self.all.sources.middle_x(own_k).max(1.0);
         for (side, limit) in self.all.sources.list[s].temperature_k.into_iter().enumerate() {
             let mut width = if faces.is_some() { (face[side] - own_k).abs() } else { first };
-            let mut near = self.all.spectrum(s, face[side]);
+            let mut near = self.all.sources.spectrum(s, face[side]);
             let (mut narrower, mut looked_at) = (0, 0);
             while near.temperature_k != limit {
                 let from = near.temperature_k;
@@ -111,10 +112,10 @@ impl Prover<'_, '_> {
                 looked_at += 1;
                 let to = match side {
                     0 if from - width <= COLD * from => limit,
-                    0 => (from - width).max(limit),
-                    _ => (from + width).min(limit),
+                    0 => rounded(from - width, from).max(limit),
+                    _ => rounded(from + width, from).min(limit),
                 };
-                let far = self.all.spectrum(s, to);
+                let far = self.all.sources.spectrum(s, to);
                 let ends = if side == 0 { [&far, &near] } else { [&near, &far] };
                 let lower =
                     about.bound(&with, ends, self.all.sources.rounding(ends[0].temperature_k), enough);
