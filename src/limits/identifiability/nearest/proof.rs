@@ -27,7 +27,7 @@ mod wings;
 
 use self::about::Closed;
 pub(super) use self::prover::Memory;
-use self::prover::{Goal, Prover};
+use self::prover::{Goal, Looked, Prover};
 pub(in crate::limits::identifiability) use self::sources::{Chord, chord};
 use self::wings::Wings;
 use super::refine::{NearestDistance, refine};
@@ -70,7 +70,14 @@ enum Outcome {
 #[derive(Debug, Clone)]
 struct Region {
     ends: Vec<[usize; 2]>,
+    /// Along which it is best halved, once that is known.
     axis: Option<usize>,
+}
+
+impl Region {
+    fn of(ends: Vec<[usize; 2]>) -> Self {
+        Self { ends, axis: None }
+    }
 }
 
 /// Whether any state is nearer than `limit`: none is where that can be proved of `reach`, a little more. `known` is the nearest
@@ -154,7 +161,7 @@ impl Prover<'_, '_> {
         };
         if self.all.axes.is_empty() {
             if faces.is_none() {
-                queue.push(0.0, 0, Region { ends: Vec::new(), axis: None });
+                queue.push(0.0, 0, Region::of(Vec::new()));
             }
         } else if let Some(Wings { lower, left }) = self.wings(minimum.as_ref(), faces.as_deref(), enough) {
             queue.leave(lower);
@@ -175,8 +182,8 @@ impl Prover<'_, '_> {
             }
             for mut part in parts {
                 let looked_at = queue.look();
-                let (bound, axis, in_all) = self.bound(&part.ends, None, enough);
-                let bound = bound.max(lowest);
+                let Looked { lower, axis, in_all } = self.bound(&part.ends, None, enough);
+                let bound = lower.max(lowest);
                 if bound < enough && in_all {
                     let (state, cost) = self.candidate(comparison, target, &self.bounder.mixture(&self.all));
                     if cost < limit * (1.0 - 1e-12) {
@@ -214,8 +221,7 @@ impl Prover<'_, '_> {
             let ends = [self.end(axis, range[0]), self.end(axis, range[1])];
             rest.push(ends);
         }
-        let region = |ends: Vec<[usize; 2]>| Region { ends, axis: None };
-        let Some(faces) = faces else { return vec![region(rest)] };
+        let Some(faces) = faces else { return vec![Region::of(rest)] };
         let mut regions = Vec::new();
         for (axis, (face, range)) in faces.iter().zip(&ranges).enumerate() {
             let mut inner = rest[axis];
@@ -227,7 +233,7 @@ impl Prover<'_, '_> {
                 let mut outer = rest.clone();
                 outer[axis][1 - side] = cut;
                 inner[side] = cut;
-                regions.push(region(outer));
+                regions.push(Region::of(outer));
             }
             rest[axis] = inner;
         }

@@ -123,7 +123,7 @@ impl Prover<'_, '_> {
                     allowed.ranges[k][1] = share;
                 }
             }
-            self.bound(&ends, Some(&allowed), enough).0 >= enough
+            self.bound(&ends, Some(&allowed), enough).lower >= enough
         })
     }
 }

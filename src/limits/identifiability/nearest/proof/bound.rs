@@ -6,18 +6,19 @@
 //!
 //! d² ≥ cost − ‖h‖² + (√(‖h‖² + φ) − m)²,
 //!
-//! 0 in place of the bracket where that is negative. Where it comes out least is where the next quadratic is written about.
+//! 0 in place of the bracket where that is negative; or, as m is in proportion to the amplitudes, with the least of the convex
+//! √(‖h‖² + φ) − m(z) in its place. Where it comes out least is where the next quadratic is written about.
 //!
 //! What the amplitudes may be: a curve lies above its cold end and above its tangent there, so that c(1 − λ) of the one and cλ
 //! of the other never are more than a band can have within reach, nor all bands together.
 
 use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
-use super::metric::Metric;
+use super::metric::{Ellipsoid, Metric};
 use super::orthogonal::reduce;
 use super::sources::{Chord, Spectrum, chord};
 use super::vectors::{add_into, largest_share, product_into, square_of_product};
-use super::view::{Shaped, View};
+use super::view::View;
 use crate::sum::dot;
 
 /// Share of the bound wanted, or of the quadratic's least, beyond which what chords miss makes better quadratics useless.
@@ -28,6 +29,8 @@ const WORTH: f64 = 0.03;
 const WIDE: f64 = 2.0;
 /// How many times the rounding of counts a distance must be to be seen in them.
 pub(super) const CLEAR: f64 = 4.0;
+/// Rounding of the square of a length that is divided in two, as a share of it.
+const ROUNDING: f64 = 1e-13;
 /// Attempts with products of columns; after that their digits are all kept.
 const PLAIN: usize = 2;
 
@@ -60,8 +63,14 @@ pub(super) struct Bounder {
     most: Vec<f64>,
     /// Columns times the weights.
     whitened: Vec<Vec<f64>>,
+    /// How bright the root of every band can be in the box.
+    brightest: Vec<f64>,
     counts: Vec<f64>,
     metric: Metric,
+    /// What the chord of a piece of amplitude 1 misses, as a length: 0 but at cold ends.
+    missed: Vec<f64>,
+    /// Whether the last quadratic was about the target itself.
+    is_about_target: bool,
     square: Vec<f64>,
     quadratic: Quadratic,
     hull: Hull,
@@ -116,6 +125,8 @@ impl Bounder {
         let allowed = narrower.as_ref().unwrap_or(&view.allowed);
         self.hull.point.clear();
         self.hull.point.extend_from_slice(start.unwrap_or_default());
+        self.brightest.clear();
+        self.brightest.extend(view.root.iter().map(|y| y + view.reach));
         let mut both = vec![0.0; self.places.len()];
         let mut found = Bound { lower: 0.0, axis: 0, coarse: false };
         for attempt in 0..quadratics {
@@ -126,10 +137,10 @@ impl Bounder {
             let rounding = 1e-15 * (cost + shift);
             let rest = cost - shift - rounding;
             let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - shift;
-            let Self { hull, quadratic, places, pieces, ray, .. } = self;
+            let Self { hull, quadratic, places, pieces, ray, missed: each, .. } = self;
             quadratic.most.clear();
             quadratic.most.extend((0..places.len()).map(|i| allowed.most(pieces, i)));
-            let cheapest = |costs: &[f64], vertex: &mut [f64]| {
+            let mut cheapest = |costs: &[f64], vertex: &mut [f64]| {
                 both.copy_from_slice(costs);
                 rises(places).for_each(|i| both[i] += costs[i - 1]);
                 allowed.least(pieces, &both, vertex, ray);
@@ -137,13 +148,21 @@ impl Bounder {
                 rises(places).for_each(|i| vertex[i - 1] += vertex[i]);
                 rounding
             };
-            let fall = hull.least(quadratic, cheapest, wanted);
+            let fall = hull.least(quadratic, &mut cheapest, wanted);
             let left = (shift + fall).max(0.0).sqrt();
             // (left − missed)² without the difference of squares that may be nearly equal; nothing of what is hardly more than
             // the rounding of the counts that are compared.
             let seen = left > missed && left > CLEAR * grain;
             let apart = cost - rounding + fall + missed * (missed - 2.0 * left);
-            let lower = if seen { apart } else { rest.min(0.0) };
+            let mut lower = if seen { apart } else { rest.min(0.0) };
+            if lower < enough && missed > grain {
+                // What chords miss is in proportion to the amplitudes, of which the least may need next to nothing.
+                let length = hull.length_less(quadratic, &mut cheapest, each) - grain;
+                if length > CLEAR * grain {
+                    lower = lower
+                        .max(cost - rounding + (length - quadratic.length) * (length + quadratic.length));
+                }
+            }
             // Without its rounding, which another origin makes small.
             let there = shift + fall + hull.rounding;
             found.coarse = missed * missed > COARSE * enough.max(there);
@@ -156,8 +175,28 @@ impl Bounder {
             if attempt > 0 && gained < WORTH * wanting && hull.rounding < WORTH * wanting {
                 break;
             }
+            if attempt + 1 < quadratics {
+                self.narrow(view, rest, missed);
+            }
         }
         found
+    }
+
+    /// How bright bands can be by the last quadratic: states within reach have √(‖h‖² + φ) ≤ m + √(reach² − rest).
+    fn narrow(&mut self, view: &View<'_>, rest: f64, missed: f64) {
+        let Self { places, half, most, whitened, counts, metric, brightest, is_about_target, .. } = self;
+        let metric = if *is_about_target { &view.later.about_target } else { &*metric };
+        let basis = &mut whitened[..places.len()];
+        let (_, along) = reduce(basis, &[&metric.shift]);
+        let [along] = &along[..] else { return };
+        let across = along[places.len()];
+        let within = missed + (view.reach * view.reach - rest).max(0.0).sqrt();
+        let shift = metric.length * metric.length;
+        let radius = ((within - across) * (within + across) + ROUNDING * shift).max(0.0).sqrt();
+        let mut off = vec![0.0; view.root.len()];
+        half.iter().zip(&*most).for_each(|(half, most)| add_into(*most, half, &mut off));
+        let ellipsoid = Ellipsoid { basis, along, radius, counts, missed: &off };
+        ellipsoid.lower(&metric.weight, &view.noise, brightest);
     }
 
     /// Where the last bound was least: an amplitude for every piece.
@@ -219,9 +258,7 @@ impl Bounder {
             };
             let (lengths, caps, unit);
             match (&cold.shape, &hot.shape) {
-                (Some((dim, cold_scale)), Some((bright, hot_scale)))
-                    if view.shaped[axis] == Shaped::Always || *hot_scale > WIDE * cold_scale =>
-                {
+                (Some((dim, cold_scale)), Some((bright, hot_scale))) if *hot_scale > WIDE * cold_scale => {
                     let [x, least_x] = temperature_k.map(|t| view.sources.lowest_x(t));
                     let bent = (x - least_x) * (x - least_x) * (-least_x).exp() / 24.0;
                     lay([dim, bright], rounding + 2.0 * bent);
@@ -256,8 +293,8 @@ impl Bounder {
     /// Writes the quadratic about the last point, or about the target where there is none; with all `digits` of columns that
     /// their products cannot tell apart.
     fn write(&mut self, view: &View<'_>, digits: bool) -> Written {
-        let Self { places, low, rise, half, most, whitened, counts, metric, square, quadratic, hull, .. } =
-            self;
+        let Self { places, low, rise, half, most, whitened, counts, metric, .. } = self;
+        let Self { square, quadratic, hull, brightest, is_about_target, missed: each, .. } = self;
         let column = |place: Place| -> &[f64] {
             match place {
                 Place::Fixed(s) => view.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
@@ -274,10 +311,12 @@ impl Bounder {
                 add_into(*amount, column(*place), counts);
             }
             quadratic.origin.extend_from_slice(&hull.point);
-            metric.put_about(counts, [&view.root, &view.counts, &view.noise], view.reach);
+            metric.put_about(counts, [&view.root, &view.counts, &view.noise], brightest);
+            *is_about_target = false;
             &*metric
         } else {
             quadratic.origin.resize(m, 0.0);
+            *is_about_target = true;
             &view.later.about_target
         };
         whitened.resize_with(whitened.len().max(m), Vec::new);
@@ -306,8 +345,16 @@ impl Bounder {
         let length = |x: &[f64]| square_of_product(x, &metric.weight).sqrt();
         let grain = view.rounding * (length(&view.counts) + length(counts));
         let (mut missed, mut largest, mut most_missed) = (grain, -1.0, 0);
+        each.clear();
+        each.resize(m, 0.0);
         for (axis, (half, most)) in half.iter().zip(&*most).enumerate() {
-            let part = most * length(half);
+            let of_unit = length(half);
+            if let Some(place) =
+                places.iter().position(|place| matches!(place, Place::Low(own) if *own == axis))
+            {
+                each[place] = of_unit;
+            }
+            let part = most * of_unit;
             missed += part;
             if part > largest {
                 (largest, most_missed) = (part, axis);

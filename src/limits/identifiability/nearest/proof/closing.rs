@@ -25,8 +25,9 @@ use crate::sum::dot;
 
 /// η at most.
 const SHARE: f64 = 0.6;
-/// How often the weights are made better.
+/// How often the weights are made better, and each time how often what is within reach is narrowed down.
 const WEIGHTS: usize = 2;
+const CLOSER: usize = 8;
 /// Share of y within which d is too small to matter for the weights.
 const SMALL: f64 = 0.01;
 /// What must be left of a direction of temperature, as a share, once all amplitudes have been fitted to it.
@@ -218,15 +219,15 @@ impl Columns<'_> {
         Some((if self.axes.is_empty() { 0.0 } else { share }, loss.collect::<Option<_>>()?))
     }
 
-    /// Better weights: a state nearer than the reach has ‖WΔN‖ ≤ D = (d + reach)·max√(y/s), and as ΔN is of few columns, no single
-    /// band can have more of that than its share in these.
+    /// Better weights: a state nearer than the reach has ‖WΔN‖ ≤ D = (d + reach)·max√(y/s), and by the quadratic
+    /// ‖QᵀWΔN + Qᵀh‖² ≤ reach² − d² + ‖Qᵀh‖² + 2τ‖h‖, τ what of WΔN is not along the columns; as these are few, no single band can
+    /// have more of that than its share in them.
     fn weighed(&self, weight: &[f64], basis: &[Vec<f64>], turns: &[[Vec<f64>; 2]]) -> Option<Vec<f64>> {
         crate::stop::check();
-        let Minimum { root, other, reach, cost, .. } = self.minimum;
+        let Minimum { root, other, reach, cost, pull, .. } = self.minimum;
         let (reach, cost) = (*reach, *cost);
         let bands = root.iter().zip(other).filter(|(_, s)| **s > 0.0);
         let largest = bands.map(|(y, s)| y / s).fold(0.0, f64::max).sqrt();
-        let all = largest * (cost.sqrt() + reach);
         let (n, amplitudes) = (self.axes.len(), self.lit.len());
         // Lengths of the rows of R⁻¹ of the slopes: |y_j| is no more than that times what is along all slopes.
         let mut rows = vec![0.0; n];
@@ -242,6 +243,14 @@ impl Columns<'_> {
         let turned: f64 = rows.iter().enumerate().map(|(j, row)| row.sqrt() * self.turned(j)).sum();
         if turned.is_nan() || turned >= 0.5 {
             return None;
+        }
+        let shift = 0.5 * square_of_quotient(pull, weight).sqrt();
+        let shift_along = self.pulled_along();
+        let mut all = largest * (cost.sqrt() + reach);
+        for _ in 0..CLOSER {
+            let across = 2.0 * turned * all / (1.0 - turned) * shift;
+            let square = (reach * reach - cost).max(0.0) + shift_along * shift_along + across;
+            all = all.min(square.sqrt() + shift_along + turned * all / (1.0 - turned));
         }
         let along = all / (1.0 - turned);
         let changes: Vec<f64> = rows.iter().map(|row| row.sqrt() * along).collect();
@@ -259,6 +268,16 @@ impl Columns<'_> {
         let mut better = weight.to_vec();
         weights_into(Weights { root, other, reach, most: Some(&most), weight: &mut better });
         Some(better)
+    }
+
+    /// ‖Qᵀh‖, Rᵀ Qᵀh = ½ p·columns.
+    fn pulled_along(&self) -> f64 {
+        let mut along: Vec<f64> = Vec::with_capacity(self.linear.len());
+        for (linear, above) in self.linear.iter().zip(&self.triangle) {
+            let k = along.len();
+            along.push((0.5 * linear - inner(&above[..k], &along)) / above[k]);
+        }
+        inner(&along, &along).sqrt()
     }
 
     /// F of (1 − η)RᵀR − K, column by column, if that is positive semidefinite: K stands at the slopes alone, so that of R only

@@ -80,7 +80,7 @@ impl Hull {
         mut cheapest: impl FnMut(&[f64], &mut [f64]) -> f64,
         enough: f64,
     ) -> f64 {
-        let Quadratic { linear, factor, excess, origin, most, length } = quadratic;
+        let Quadratic { linear, excess, origin, .. } = quadratic;
         let n = linear.len();
         for list in [&mut self.vertex, &mut self.image, &mut self.point, &mut self.change] {
             clear(list, n);
@@ -92,45 +92,25 @@ impl Hull {
         cheapest(&self.gradient, &mut self.vertex);
         self.join(quadratic);
         self.shares[0] = 1.0;
-        let unit = ROUNDING + ROUNDING_EACH * n as f64;
         let (mut lower, mut stale) = (f64::NEG_INFINITY, 0);
         for _ in 0..JOINS {
             self.change.fill(0.0);
-            self.image.fill(0.0);
             for (share, vertex) in self.shares.iter().zip(self.vertices.chunks(n)) {
                 add(&mut self.change, *share, vertex);
             }
-            // Not of the images of vertices, whose rounding is by how far these are.
-            for (change, column) in self.change.iter().zip(factor.chunks(n)) {
-                add(&mut self.image, *change, column);
-            }
-            let mut value = inner(linear, &self.change) + inner(&self.image, &self.image);
-            for (i, (gradient, g)) in self.gradient.iter_mut().zip(linear).enumerate() {
-                // Without what F holds more: the tangent is that of φ itself, wherever its cheapest vertex is.
-                let more = excess[i] * self.change[i];
-                *gradient = g + 2.0 * (inner(&factor[i * n..(i + 1) * n], &self.image) - more);
-                value -= more * self.change[i];
-            }
+            let value = self.evaluate(quadratic);
             let lifted = cheapest(&self.gradient, &mut self.vertex);
-            let (mut gap, mut near, mut far, mut repair) = (0.0, 0.0, 0.0, 0.0);
+            let (mut gap, mut repair) = (0.0, 0.0);
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
                 gap += self.gradient[i] * side;
                 repair += excess[i] * self.change[i].abs() * (self.change[i].abs() + 2.0 * side.abs());
-                let column = &factor[i * n..(i + 1) * n];
-                let size = inner(column, column).sqrt();
-                near += self.change[i].abs() * size;
-                if size == 0.0 {
-                    continue;
-                }
-                // Wherever the least may be, not only where rounding has put it.
-                far += side.abs().max(most[i] + (origin[i] + self.change[i]).abs()) * size;
             }
             if gap.is_nan() {
                 // No cheapest vertex is known.
                 break;
             }
-            let rounding = lifted + unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
+            let rounding = lifted + self.rounding_of_tangent(quadratic);
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {
                 (lower, stale, self.rounding) = (bound, 0, rounding + repair);
@@ -148,6 +128,73 @@ impl Hull {
             }
         }
         lower
+    }
+
+    /// A lower bound of √(ℓ₀² + φ) − `less`·z, by its tangent at the lowest point found: a length less what is linear is convex.
+    pub(super) fn length_less(
+        &mut self,
+        quadratic: &Quadratic,
+        mut cheapest: impl FnMut(&[f64], &mut [f64]) -> f64,
+        less: &[f64],
+    ) -> f64 {
+        let n = self.point.len();
+        clear(&mut self.vertex, n);
+        clear(&mut self.change, n);
+        self.change
+            .iter_mut()
+            .zip(self.point.iter().zip(&quadratic.origin))
+            .for_each(|(d, (p, o))| *d = p - o);
+        let there = (quadratic.length * quadratic.length + self.evaluate(quadratic)).sqrt();
+        self.gradient
+            .iter_mut()
+            .zip(less)
+            .for_each(|(gradient, less)| *gradient = 0.5 * *gradient / there - less);
+        let lifted = cheapest(&self.gradient, &mut self.vertex);
+        let lists = self.gradient.iter().zip(&self.point).zip(&self.vertex);
+        let gap: f64 = lists.map(|((gradient, p), v)| gradient * (p - v)).sum();
+        let rounding = lifted + 0.5 * self.rounding_of_tangent(quadratic) / there;
+        if gap.is_nan() {
+            f64::NEG_INFINITY
+        } else {
+            there - inner(less, &self.point) - gap.max(0.0) - rounding
+        }
+    }
+
+    /// φ at δ; puts Fδ and ∇φ. Not of the images of vertices, whose rounding is by how far these are.
+    fn evaluate(&mut self, quadratic: &Quadratic) -> f64 {
+        let Quadratic { linear, factor, excess, .. } = quadratic;
+        let n = linear.len();
+        clear(&mut self.image, n);
+        for (change, column) in self.change.iter().zip(factor.chunks(n)) {
+            add(&mut self.image, *change, column);
+        }
+        let mut value = inner(linear, &self.change) + inner(&self.image, &self.image);
+        for (i, (gradient, g)) in self.gradient.iter_mut().zip(linear).enumerate() {
+            // Without what F holds more: the tangent is that of φ itself, wherever its cheapest vertex is.
+            let more = excess[i] * self.change[i];
+            *gradient = g + 2.0 * (inner(&factor[i * n..(i + 1) * n], &self.image) - more);
+            value -= more * self.change[i];
+        }
+        value
+    }
+
+    /// What the tangent at δ may be off, wherever the least may be, not only where rounding has put it.
+    fn rounding_of_tangent(&self, quadratic: &Quadratic) -> f64 {
+        let Quadratic { factor, origin, most, length, .. } = quadratic;
+        let n = origin.len();
+        let unit = ROUNDING + ROUNDING_EACH * n as f64;
+        let (mut near, mut far) = (0.0, 0.0);
+        for i in 0..n {
+            let column = &factor[i * n..(i + 1) * n];
+            let size = inner(column, column).sqrt();
+            near += self.change[i].abs() * size;
+            if size == 0.0 {
+                continue;
+            }
+            let side = self.change[i] - (self.vertex[i] - origin[i]);
+            far += side.abs().max(most[i] + (origin[i] + self.change[i]).abs()) * size;
+        }
+        unit * (near * (2.0 * length + near) + 2.0 * far * (length + near))
     }
 
     /// The cheapest vertex joins, without a share, unless it is there already.

@@ -16,6 +16,17 @@ const QUADRATICS: usize = 5;
 const HOPE: f64 = 0.7;
 const WIDE: f64 = 1.05;
 
+/// What is found of a box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Looked {
+    /// No d² in it is below.
+    pub(super) lower: f64,
+    /// The axis along which it is best halved.
+    pub(super) axis: usize,
+    /// Whether all bands were looked at.
+    pub(super) in_all: bool,
+}
+
 /// What is to be shown.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Goal {
@@ -137,14 +148,13 @@ impl<'a, 'm> Prover<'a, 'm> {
         })
     }
 
-    /// A lower bound of d² in a box, the axis along which it is best halved, and whether it was found in all bands: these
-    /// are looked at together first.
+    /// What is found of a box: bands are looked at together first.
     pub(super) fn bound(
         &mut self,
         ends: &[[usize; 2]],
         narrower: Option<&Amplitudes>,
         enough: f64,
-    ) -> (f64, usize, bool) {
+    ) -> Looked {
         crate::stop::check();
         let known = &self.temperature_k;
         let know = |view: &mut View<'_>| {
@@ -160,14 +170,14 @@ impl<'a, 'm> Prover<'a, 'm> {
             let wide = || ends.iter().zip(known).any(|([a, b], known)| known[*b] > WIDE * known[*a]);
             let hopeless = found.lower < if found.coarse { enough } else { HOPE * enough };
             if found.lower >= enough || (hopeless && (found.coarse || wide())) {
-                return (found.lower, found.axis, false);
+                return Looked { lower: found.lower, axis: found.axis, in_all: false };
             }
             least = found.lower;
         }
         know(&mut self.all);
         let start = self.merged.as_ref().map(|_| self.few.point());
         let found = self.bounder.bound(&mut self.all, ends, narrower, enough, start, QUADRATICS);
-        (found.lower.max(least), found.axis, true)
+        Looked { lower: found.lower.max(least), axis: found.axis, in_all: true }
     }
 
     /// The range of an unknown temperature, cut off where a known amplitude is too bright in some band.

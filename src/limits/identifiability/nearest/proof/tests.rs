@@ -249,7 +249,8 @@ fn no_state_within_reach_is_below_a_quadratic() {
         };
         let about = |centre: &[f64]| {
             let mut metric = Metric::default();
-            metric.put_about(centre, [&root, &counts, &noise], reach);
+            let brightest: Vec<f64> = root.iter().map(|y| y + reach).collect();
+            metric.put_about(centre, [&root, &counts, &noise], &brightest);
             value(&metric, centre)
         };
         for below in [value(&Metric::about_target(&root, &counts, reach), &[0.0; 8]), about(&centre)] {

@@ -40,7 +40,8 @@ pub(super) struct View<'a> {
     ends: Vec<Vec<Option<End>>>,
     /// Rounding of the counts that are compared, as a share of them.
     pub(super) rounding: f64,
-    pub(super) shaped: Vec<Shaped>,
+    /// Whether in wide intervals the shape of an axis is taken instead of itself: its amplitude is free.
+    shaped: Vec<bool>,
     /// Temperatures below which the axes send next to nothing.
     dark_k: Vec<f64>,
     pub(super) later: Later,
@@ -56,17 +57,6 @@ pub(super) struct Later {
     pub(super) about_target: Metric,
 }
 
-/// Whether the shape of a source is taken instead of itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shaped {
-    /// Its amplitude is free.
-    Always,
-    /// Its amplitude hangs on another one's, which a wide box hardly tells of.
-    Wide,
-    /// Its amplitude is known.
-    Never,
-}
-
 impl<'a> View<'a> {
     pub(super) fn new(sources: Sources<'a>, allowed: Amplitudes, bands: [Vec<f64>; 3], reach: f64) -> Self {
         let [root, counts, noise] = bands.map(|mut x| {
@@ -80,23 +70,12 @@ impl<'a> View<'a> {
         let axes: Vec<usize> = (0..sources.list.len()).filter(|&s| sources.list[s].free()).collect();
         let ends = axes.iter().map(|_| Vec::new()).collect();
         let mut dark_k = vec![0.0; axes.len()];
-        let open = |range: &[f64; 2]| range[0] < range[1];
         let shaped = axes.iter().zip(&mut dark_k).map(|(&s, dark_k)| {
-            let shaped = match s.checked_sub(1) {
-                None if !allowed.gain_free => Shaped::Never,
-                None if allowed.ranges.iter().all(open) => Shaped::Always,
-                Some(k) if open(&allowed.ranges[k]) => Shaped::Always,
-                Some(_) if !allowed.gain_free => Shaped::Never,
-                _ => Shaped::Wide,
-            };
-            let brightest = s.checked_sub(1).map_or(1.0, |k| allowed.ranges[k][1].min(allowed.sum));
-            match (shaped, sources.dark_k(s, sent, brightest)) {
-                (Shaped::Never, _) | (_, None) => Shaped::Never,
-                (shaped, Some(k)) => {
-                    *dark_k = k;
-                    shaped
-                }
-            }
+            let range = s.checked_sub(1).map_or([1.0; 2], |k| allowed.ranges[k]);
+            let is_known = !allowed.gain_free && range[0] >= range[1];
+            let dark = sources.dark_k(s, sent, range[1].min(allowed.sum)).filter(|_| !is_known);
+            *dark_k = dark.unwrap_or(0.0);
+            dark.is_some()
         });
         let shaped = shaped.collect();
         let rounding = ROUNDING + 2.0 * sources.rounding_of_target();
@@ -136,7 +115,7 @@ impl<'a> View<'a> {
         }
         let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
         let most = largest_share(&self.later.brightest, &spectrum.counts, &spectrum.slope, 0.0);
-        let shape = if self.shaped[axis] == Shaped::Never { None } else { self.sources.shape(&spectrum) };
+        let shape = if self.shaped[axis] { self.sources.shape(&spectrum) } else { None };
         self.ends[axis][place] = Some(End { spectrum, shape, most });
     }
 
@@ -152,7 +131,7 @@ impl<'a> View<'a> {
             return 0.5 * (cold_k + hot_k);
         }
         let mean = (cold_k * hot_k).sqrt();
-        if self.shaped[axis] != Shaped::Never {
+        if self.shaped[axis] {
             return mean;
         }
         // Far below its peak a source sends next to nothing all along: there is nothing to be cut off.

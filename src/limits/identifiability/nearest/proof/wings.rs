@@ -133,9 +133,7 @@ impl Prover<'_, '_> {
                 near = far;
             }
         }
-        let left = left
-            .into_iter()
-            .map(|ends: [f64; 2]| Region { ends: vec![ends.map(|end| self.end(0, end))], axis: None });
+        let left = left.into_iter().map(|ends: [f64; 2]| Region::of(vec![ends.map(|end| self.end(0, end))]));
         Some(Wings { lower: lowest, left: left.collect() })
     }
 
