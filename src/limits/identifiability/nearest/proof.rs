@@ -163,7 +163,11 @@ impl Prover<'_, '_> {
             if faces.is_none() {
                 queue.push(0.0, 0, Region::of(Vec::new()));
             }
-        } else if let Some(Wings { lower, left }) = self.wings(minimum.as_ref(), faces.as_deref(), enough) {
+        } else if let Some(Wings { lower, left }) = minimum
+            .as_ref()
+            .zip(best)
+            .and_then(|(minimum, best)| self.wings(minimum, faces.as_deref(), &best.state, enough))
+        {
             queue.leave(lower);
             left.into_iter().for_each(|region| queue.push(0.0, 0, region));
         } else {

@@ -97,6 +97,12 @@ pub(super) struct Ray {
 }
 
 impl Amplitudes {
+    /// The factor of an object where it is known.
+    pub(super) fn tied(&self, k: usize) -> Option<f64> {
+        let [low, high] = self.ranges[k];
+        (low >= high).then_some(low)
+    }
+
     /// Least Σ cost · amplitude, and where it is.
     pub(super) fn least(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64], ray: &mut Ray) -> f64 {
         ray.lifted = 0.0;

@@ -25,8 +25,6 @@ use crate::sum::dot;
 const COARSE: f64 = 0.25;
 /// Share of what is wanting that a better quadratic must have brought for another one to be tried.
 const WORTH: f64 = 0.03;
-/// From how much more radiance at the hot end on a box is wide.
-const WIDE: f64 = 2.0;
 /// How many times the rounding of counts a distance must be to be seen in them.
 pub(super) const CLEAR: f64 = 4.0;
 /// Rounding of the square of a length that is divided in two, as a share of it.
@@ -257,8 +255,8 @@ impl Bounder {
                 });
             };
             let (lengths, caps, unit);
-            match (&cold.shape, &hot.shape) {
-                (Some((dim, cold_scale)), Some((bright, hot_scale))) if *hot_scale > WIDE * cold_scale => {
+            match view.shapes(axis, ends[axis]) {
+                Some([(dim, cold_scale), (bright, hot_scale)]) => {
                     let [x, least_x] = temperature_k.map(|t| view.sources.lowest_x(t));
                     let bent = (x - least_x) * (x - least_x) * (-least_x).exp() / 24.0;
                     lay([dim, bright], rounding + 2.0 * bent);
@@ -266,7 +264,7 @@ impl Bounder {
                     (lengths, caps, unit) =
                         ([dim.lengths()[0]; 2], [all; 2], [1.0 / hot_scale, 1.0 / cold_scale]);
                 }
-                _ => {
+                None => {
                     let (dim, bright) = (&cold.spectrum, &hot.spectrum);
                     lay([dim, bright], rounding);
                     let width_k = bright.along - dim.along;

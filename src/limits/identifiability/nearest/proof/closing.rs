@@ -19,7 +19,8 @@ use super::hull::{Hull, Quadratic};
 use super::orthogonal::{add, back_substitute, inner, orthonormalise, reduce, reduced};
 use super::sources::{Sources, Spectrum};
 use super::vectors::{
-    Weights, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient, weights_into,
+    Weights, add_into, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient,
+    weights_into,
 };
 use crate::sum::dot;
 
@@ -117,14 +118,20 @@ pub(super) fn close(
     enough: f64,
 ) -> Option<Closed> {
     let count = minimum.spectra.len();
-    let varies = |s: usize| {
-        allowed.gain_free || s.checked_sub(1).is_some_and(|k| allowed.ranges[k][0] < allowed.ranges[k][1])
-    };
+    // Light of a known factor changes with the gain alone: it is part of the first column.
+    let varies = |s: usize| s.checked_sub(1).map_or(allowed.gain_free, |k| allowed.tied(k).is_none());
     let lit: Vec<usize> = (0..count).filter(|&s| varies(s)).collect();
     let axes: Vec<(usize, Reach)> = (0..count).filter_map(|s| Some((s, reach[s]?))).collect();
-    let raw: Vec<&[f64]> = (lit.iter().map(|&s| &minimum.spectra[s].counts[..]))
-        .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
-        .collect();
+    let mut first = minimum.spectra[0].counts.clone();
+    for (k, spectrum) in minimum.spectra[1..].iter().enumerate() {
+        if let Some(factor) = allowed.tied(k) {
+            add_into(factor, &spectrum.counts, &mut first);
+        }
+    }
+    let raw: Vec<&[f64]> =
+        (lit.iter().map(|&s| if s == 0 { &first[..] } else { &minimum.spectra[s].counts }))
+            .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
+            .collect();
     let pull_sizes: Vec<f64> = minimum.pull.iter().map(|p| p.abs()).collect();
     let linear: Vec<f64> = raw.iter().map(|column| dot(&minimum.pull, column)).collect();
     let bends: Vec<[Vec<f64>; 2]> = axes
@@ -325,6 +332,8 @@ impl Columns<'_> {
             let slack = if both { slack.abs() } else { slack.max(0.0) };
             let mut along = vec![0.0; size];
             for &(s, value) in terms {
+                let tied = s.checked_sub(1).and_then(|k| allowed.tied(k));
+                let (s, value) = tied.map_or((s, value), |factor| (0, factor * value));
                 if let Some(place) = place(s) {
                     along[place] += value;
                 }
@@ -333,11 +342,9 @@ impl Columns<'_> {
                 limits.push(Limit { along, slack, both });
             }
         };
-        for (k, [low, high]) in allowed.ranges.iter().enumerate() {
-            put(&[(k + 1, 1.0), (0, -low)], low == high);
-            if low < high {
-                put(&[(k + 1, -1.0), (0, *high)], false);
-            }
+        for (k, [low, high]) in allowed.ranges.iter().enumerate().filter(|(_, [low, high])| low < high) {
+            put(&[(k + 1, 1.0), (0, -low)], false);
+            put(&[(k + 1, -1.0), (0, *high)], false);
         }
         if allowed.sum.is_finite() {
             let objects = (1..amplitudes.len()).map(|s| (s, -1.0));
@@ -407,6 +414,11 @@ impl Columns<'_> {
         let mut amplitudes = self.minimum.amplitudes.clone();
         for (&s, change) in self.lit.iter().zip(&z) {
             amplitudes[s] += if change.is_finite() { *change } else { 0.0 };
+        }
+        for k in 1..amplitudes.len() {
+            if !self.lit.contains(&k) {
+                amplitudes[k] *= amplitudes[0] / self.minimum.amplitudes[0];
+            }
         }
         let mut temperature_k: Vec<f64> = self.minimum.spectra.iter().map(|own| own.temperature_k).collect();
         for ((s, reach), y) in self.axes.iter().zip(&z[self.lit.len()..]) {

@@ -180,6 +180,31 @@ impl<'a, 'm> Prover<'a, 'm> {
         Looked { lower: found.lower.max(least), axis: found.axis, in_all: true }
     }
 
+    /// A lower bound of d² in an interval of the one unknown temperature, that of source `s`, in all bands: the first quadratic is about
+    /// these amplitudes, with so much of the source's at the hot end.
+    pub(super) fn bound_from(
+        &mut self,
+        ends: &[[usize; 2]],
+        s: usize,
+        share: f64,
+        amplitudes: &[f64],
+        enough: f64,
+    ) -> f64 {
+        crate::stop::check();
+        let known = &self.temperature_k;
+        ends[0].iter().for_each(|&end| self.all.know(0, end, known[0][end]));
+        let unit = self.all.unit(0, ends[0], share);
+        let mut start = Vec::with_capacity(amplitudes.len() + 1);
+        for (source, amplitude) in amplitudes.iter().enumerate() {
+            if source == s {
+                start.extend([amplitude * unit, share * amplitude * unit]);
+            } else {
+                start.push(*amplitude);
+            }
+        }
+        self.bounder.bound(&mut self.all, ends, None, enough, Some(&start), QUADRATICS).lower
+    }
+
     /// The range of an unknown temperature, cut off where a known amplitude is too bright in some band.
     pub(super) fn range(&mut self, axis: usize, warm: &State) -> [f64; 2] {
         crate::stop::check();

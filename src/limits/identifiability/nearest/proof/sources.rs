@@ -240,6 +240,14 @@ impl<'a> Sources<'a> {
         SECOND_RADIATION_CM_K * 0.5 * (first + last) / temperature_k
     }
 
+    /// How many times as bright one temperature is as another one in the middle of the bands; 1 where that is no number.
+    pub(super) fn brightness(&self, temperature_k: f64, other_k: f64) -> f64 {
+        let (first, last) = self.bands.range_cm1();
+        let [own, other] = [temperature_k, other_k].map(|t| planck::photon_radiance(0.5 * (first + last), t));
+        let ratio = own / other;
+        if ratio > 0.0 && ratio.is_finite() { ratio } else { 1.0 }
+    }
+
     /// Rounding of spectra from this temperature on, as a share of them ([`crate::planck`]).
     pub(super) fn rounding(&self, temperature_k: f64) -> f64 {
         let (_, last) = self.bands.range_cm1();

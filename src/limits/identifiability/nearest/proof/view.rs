@@ -13,6 +13,8 @@ use crate::sum::dot;
 const ROUNDING: f64 = 1e-15;
 /// How many times as warm as its cold end an interval that is not narrow ends.
 const WIDE: f64 = 1.2;
+/// From how much more radiance at its hot end on an interval is so wide that shapes are taken.
+const WIDE_SHAPES: f64 = 2.0;
 /// How much more hcν/kT is of what a source sends a twentieth.
 const DIM: f64 = 3.0;
 
@@ -154,6 +156,17 @@ impl<'a> View<'a> {
     /// What is known of an end of an interval.
     pub(super) fn end(&self, axis: usize, place: usize) -> Option<&End> {
         self.ends[axis].get(place)?.as_ref()
+    }
+
+    /// The shapes at both ends of an interval, where it is so wide that these are taken.
+    pub(super) fn shapes(&self, axis: usize, ends: [usize; 2]) -> Option<[&(Spectrum, f64); 2]> {
+        let [cold, hot] = ends.map(|end| self.end(axis, end)?.shape.as_ref());
+        cold.zip(hot).filter(|(cold, hot)| hot.1 > WIDE_SHAPES * cold.1).map(|(cold, hot)| [cold, hot])
+    }
+
+    /// How much of the pieces an amplitude of 1 is, at one end of an interval or the other.
+    pub(super) fn unit(&self, axis: usize, ends: [usize; 2], share: f64) -> f64 {
+        self.shapes(axis, ends).map_or(1.0, |[cold, hot]| if share > 0.5 { hot.1 } else { cold.1 })
     }
 
     /// The spectrum of a source at a temperature of the pair's own.

@@ -15,24 +15,26 @@
 //! interval could be closed it begins at T* itself, and what a chord may miss of the cost there sets the width.
 
 use super::Region;
-use super::bound::CLEAR;
+use super::bound::{CLEAR, Mixture};
 use super::closing::Minimum;
 use super::prover::Prover;
 use super::sources::{Spectrum, half_sag};
 use super::vectors::{counts_into, largest_share, product_into, square_of_product, square_of_quotient};
 use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::rectangle::OverRectangle;
+use crate::scene::State;
 use crate::simd::{Chunk, LANES, dispatched, fold};
 use crate::sum::dot;
 
 /// Width of the first interval where none is closed about the best state, as a share of T/x, x = hcν/kT in the middle of the bands.
 const NARROW: f64 = 1e-3;
-/// By what the width grows from one interval to the next, also where so many times what is enough was found, and falls where one does
-/// not suffice.
+/// By what the width grows from one interval to the next, times how much more than enough was found, and at most; and by what it falls
+/// where one does not suffice.
 const GROWS: f64 = 2.0;
-const GROWS_FAST: f64 = 4.0;
-const AMPLE: f64 = 1.5;
+const GROWS_AT_MOST: f64 = 30.0;
 const FALLS: f64 = 0.3;
+/// How much more than enough is ample.
+const AMPLE: f64 = 1.5;
 /// How often one is tried narrower.
 const NARROWER: usize = 3;
 /// Intervals looked at most on a side.
@@ -48,6 +50,49 @@ const WORTH: f64 = 0.1;
 pub(super) struct Wings {
     pub(super) lower: f64,
     pub(super) left: Vec<Region>,
+}
+
+/// One side: where it begins and ends, and the width of the first interval.
+struct Side {
+    from_k: f64,
+    to_k: f64,
+    width_k: f64,
+}
+
+impl Side {
+    /// Goes outwards; `bound` is told the ends, the nearer one first, and says nothing where all beyond the nearer one is out of reach.
+    /// Returned are the least bound of those that suffice, and what is left.
+    fn walk(self, enough: f64, mut bound: impl FnMut([f64; 2]) -> Option<f64>) -> (f64, Vec<[f64; 2]>) {
+        let Self { from_k: mut from, to_k: limit, width_k: mut width } = self;
+        let (mut lowest, mut left) = (f64::INFINITY, Vec::new());
+        let (mut narrower, mut looked_at) = (0, 0);
+        while from != limit {
+            if looked_at == MOST {
+                left.push([from, limit]);
+                break;
+            }
+            looked_at += 1;
+            let to = match limit < from {
+                true if from - width <= COLD * from => limit,
+                true => rounded(from - width, from).max(limit),
+                false => rounded(from + width, from).min(limit),
+            };
+            let Some(lower) = bound([from, to]) else { break };
+            if lower >= enough {
+                lowest = lowest.min(lower);
+            } else if narrower < NARROWER {
+                narrower += 1;
+                width = FALLS * (to - from).abs();
+                continue;
+            } else {
+                left.push([from, to]);
+            }
+            narrower = 0;
+            width = (GROWS * lower / enough).clamp(GROWS, GROWS_AT_MOST) * (to - from).abs();
+            from = to;
+        }
+        (lowest, left)
+    }
 }
 
 /// The quadratic about the best state, but for what hangs on the interval.
@@ -78,63 +123,96 @@ struct Weighed {
 }
 
 impl Prover<'_, '_> {
-    /// What lies beyond the faces; `None` where it is not of this kind.
+    /// What lies beyond the faces; `None` where more temperatures than one are unknown, or none.
     pub(super) fn wings(
         &mut self,
-        minimum: Option<&Minimum>,
+        minimum: &Minimum,
         faces: Option<&[[f64; 2]]>,
+        warm: &State,
         enough: f64,
     ) -> Option<Wings> {
-        let (&[s], Some(minimum)) = (&self.all.axes[..], minimum) else { return None };
+        let &[s] = &self.all.axes[..] else { return None };
         self.all.look();
-        let about = self.quadratic(minimum, s)?;
-        let (amplitude, with) = (about.amplitude, about.weighed(minimum.weight()));
-        let (mut lowest, mut left) = (f64::INFINITY, Vec::new());
         let own_k = minimum.spectra[s].temperature_k;
         let face = faces.map_or([own_k; 2], |faces| faces[0]);
         let first = NARROW * own_k / self.all.sources.middle_x(own_k).max(1.0);
-        for (side, limit) in self.all.sources.list[s].temperature_k.into_iter().enumerate() {
-            let mut width = if faces.is_some() { (face[side] - own_k).abs() } else { first };
-            let mut near = self.all.sources.spectrum(s, face[side]);
-            let (mut narrower, mut looked_at) = (0, 0);
-            while near.temperature_k != limit {
-                let from = near.temperature_k;
-                let bright =
-                    || largest_share(&self.all.later.brightest, &near.counts, &near.slope, 0.0) < amplitude;
-                if side == 1 && bright() {
-                    break;
-                }
-                let between = |to: f64| if side == 0 { [to, from] } else { [from, to] };
-                if looked_at == MOST {
-                    left.push(between(limit));
-                    break;
-                }
-                looked_at += 1;
-                let to = match side {
-                    0 if from - width <= COLD * from => limit,
-                    0 => rounded(from - width, from).max(limit),
-                    _ => rounded(from + width, from).min(limit),
-                };
-                let far = self.all.sources.spectrum(s, to);
-                let ends = if side == 0 { [&far, &near] } else { [&near, &far] };
-                let lower =
-                    about.bound(&with, ends, self.all.sources.rounding(ends[0].temperature_k), enough);
-                if lower >= enough {
-                    lowest = lowest.min(lower);
-                } else if narrower < NARROWER {
-                    narrower += 1;
-                    width = FALLS * (to - from).abs();
-                    continue;
-                } else {
-                    left.push(between(to));
-                }
-                narrower = 0;
-                width = if lower > AMPLE * enough { GROWS_FAST } else { GROWS } * (to - from).abs();
-                near = far;
+        let mut wings = Wings { lower: f64::INFINITY, left: Vec::new() };
+        let range = match self.all.held(s) {
+            Some(_) => self.all.sources.list[s].temperature_k,
+            None => self.range(0, warm),
+        };
+        let sides = [(face[0], range[0].min(face[0])), (face[1], range[1].max(face[1]))];
+        for (from_k, to_k) in sides {
+            let width_k = if faces.is_some() { (from_k - own_k).abs() } else { first };
+            let side = Side { from_k, to_k, width_k };
+            let (lower, left) = match self.quadratic(minimum, s) {
+                Some(about) => side.walk(enough, self.alone(&about, s, enough)),
+                None => side.walk(enough, self.mixed(minimum, s, enough)),
+            };
+            wings.lower = wings.lower.min(lower);
+            for ends in left {
+                let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                wings.left.push(Region::of(vec![ends.map(|end| self.end(0, end))]));
             }
         }
-        let left = left.into_iter().map(|ends: [f64; 2]| Region::of(vec![ends.map(|end| self.end(0, end))]));
-        Some(Wings { lower: lowest, left: left.collect() })
+        Some(wings)
+    }
+
+    /// Bounds of intervals by the quadratic about the best state.
+    fn alone<'s>(
+        &'s self,
+        about: &'s About<'s>,
+        s: usize,
+        enough: f64,
+    ) -> impl FnMut([f64; 2]) -> Option<f64> {
+        let with = about.weighed(about.minimum.weight());
+        let sources = &self.all.sources;
+        let mut known: Option<Spectrum> = None;
+        move |[from, to]| {
+            let near = known.take().filter(|known| known.temperature_k == from);
+            let near = near.unwrap_or_else(|| sources.spectrum(s, from));
+            let bright = || largest_share(&self.all.later.brightest, &near.counts, &near.slope, 0.0);
+            if to > from && bright() < about.amplitude {
+                return None;
+            }
+            let far = sources.spectrum(s, to);
+            let ends = if to < from { [&far, &near] } else { [&near, &far] };
+            let lower = about.bound(&with, ends, sources.rounding(ends[0].temperature_k), enough);
+            known = Some(if lower >= enough { far } else { near });
+            Some(lower)
+        }
+    }
+
+    /// Bounds of intervals over all amplitudes: in all bands from the best ones on, and where there was enough to spare first in bands
+    /// counted together.
+    fn mixed<'s>(
+        &'s mut self,
+        minimum: &'s Minimum,
+        s: usize,
+        enough: f64,
+    ) -> impl FnMut([f64; 2]) -> Option<f64> {
+        let mut is_ample = false;
+        let mut best = Mixture {
+            amplitudes: minimum.amplitudes.clone(),
+            temperature_k: minimum.spectra.iter().map(|spectrum| spectrum.temperature_k).collect(),
+        };
+        move |[from, to]| {
+            let ends = [[from.min(to), from.max(to)].map(|end| self.end(0, end))];
+            if is_ample {
+                let lower = self.bound(&ends, None, enough).lower;
+                is_ample = lower > AMPLE * enough;
+                return Some(lower);
+            }
+            // As bright as before at the nearer end.
+            let mut start = best.amplitudes.clone();
+            start[s] *= self.all.sources.brightness(best.temperature_k[s], from);
+            let lower = self.bound_from(&ends, s, f64::from(u8::from(to < from)), &start, enough);
+            if lower >= enough {
+                is_ample = lower > AMPLE * enough;
+                best = self.bounder.mixture(&self.all);
+            }
+            Some(lower)
+        }
     }
 
     /// The quadratic about a minimum; `None` where more amplitudes are free.
