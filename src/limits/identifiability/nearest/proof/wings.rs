@@ -33,6 +33,8 @@ const NARROW: f64 = 1e-3;
 const GROWS: f64 = 2.0;
 const GROWS_AT_MOST: f64 = 30.0;
 const FALLS: f64 = 0.3;
+/// After so many that sufficed each one grows by as much again.
+const STEADY: i32 = 3;
 /// How much more than enough is ample.
 const AMPLE: f64 = 1.5;
 /// How often one is tried narrower.
@@ -65,7 +67,7 @@ impl Side {
     fn walk(self, enough: f64, mut bound: impl FnMut([f64; 2]) -> Option<f64>) -> (f64, Vec<[f64; 2]>) {
         let Self { from_k: mut from, to_k: limit, width_k: mut width } = self;
         let (mut lowest, mut left) = (f64::INFINITY, Vec::new());
-        let (mut narrower, mut looked_at) = (0, 0);
+        let (mut narrower, mut looked_at, mut sufficed) = (0, 0, 0);
         while from != limit {
             if looked_at == MOST {
                 left.push([from, limit]);
@@ -81,14 +83,16 @@ impl Side {
             if lower >= enough {
                 lowest = lowest.min(lower);
             } else if narrower < NARROWER {
-                narrower += 1;
+                (narrower, sufficed) = (narrower + 1, 0);
                 width = FALLS * (to - from).abs();
                 continue;
             } else {
                 left.push([from, to]);
             }
             narrower = 0;
-            width = (GROWS * lower / enough).clamp(GROWS, GROWS_AT_MOST) * (to - from).abs();
+            sufficed += 1;
+            let grows = GROWS * f64::max(lower / enough, f64::from(1 + sufficed / STEADY));
+            width = grows.clamp(GROWS, GROWS_AT_MOST) * (to - from).abs();
             from = to;
         }
         (lowest, left)
