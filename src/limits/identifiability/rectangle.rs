@@ -94,3 +94,52 @@ fn within(x: f64, [a, b]: [f64; 2]) -> f64 {
     let above = if x > a { x } else { a };
     less(above, b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::generator;
+    use rand::RngExt;
+
+    /// Against the value everywhere on a fine lattice of the rectangle, round and all but flat ones.
+    #[test]
+    fn nothing_on_the_rectangle_is_below_or_higher() {
+        let mut random = generator(41, 0);
+        let (mut tight, mut reached) = (0, 0);
+        for trial in 0..2000 {
+            let mut draw = || 2.0 * random.random::<f64>() - 1.0;
+            let rows: [[f64; 2]; 3] = [[draw(), draw()], [draw(), draw()], [draw(), draw()]];
+            // The second column nearly along the first one in every other trial.
+            let flat = if trial % 2 == 0 { 1.0 } else { 1e-3 };
+            let columns = rows.map(|[a, b]| [a, a + flat * b]);
+            let sum = |f: &dyn Fn([f64; 2]) -> f64| columns.iter().map(|row| f(*row)).sum::<f64>();
+            let range = [-1.5 * draw().abs(), 1.5 * draw().abs()];
+            let of = OverRectangle {
+                xx: sum(&|[a, _]| a * a),
+                xy: sum(&|[a, b]| a * b),
+                yy: sum(&|[_, b]| b * b),
+                x: draw(),
+                y: draw(),
+                range,
+            };
+            let value = |x: f64, y: f64| {
+                of.xx * x * x + 2.0 * of.xy * x * y + of.yy * y * y + 2.0 * of.x * x + 2.0 * of.y * y
+            };
+            let points =
+                (0..=60).flat_map(|i| (0..=60).map(move |j| (f64::from(i) / 60.0, f64::from(j) / 60.0)));
+            let points: Vec<(f64, f64)> =
+                points.map(|(x, share)| (x, range[0] + share * (range[1] - range[0]))).collect();
+            let lowest = points.iter().map(|(x, y)| value(*x, *y)).fold(f64::INFINITY, f64::min);
+            let least = of.least();
+            assert!(least <= lowest + 1e-12, "{trial}: {least} {lowest}");
+            tight += usize::from(lowest - least < 0.01 * (1.0 + lowest.abs()));
+            let limit = lowest + 0.3 * draw().abs();
+            let highest = points.iter().filter(|(x, y)| value(*x, *y) <= limit).map(|(_, y)| *y);
+            let highest = highest.fold(f64::NEG_INFINITY, f64::max);
+            let told = of.highest(limit);
+            assert!(told >= highest - 1e-9 && told <= range[1], "{trial}: {told} {highest}");
+            reached += usize::from(told < range[1] && told - highest < 0.05 * (range[1] - range[0]));
+        }
+        assert!(tight > 1900 && reached > 500, "{tight} {reached}");
+    }
+}

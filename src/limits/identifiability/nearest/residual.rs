@@ -284,16 +284,20 @@ impl<'a> Comparison<'a> {
     }
 
     /// Evaluates the alternative, with its columns or without, and the band integrals of S − S′ from differences that
-    /// lose no digits. Nothing is done where they stand there from the last comparison.
+    /// lose no digits; nothing is done where they stand there from the last comparison.
     fn separate(&mut self, target: &Target<'_>, state: &State, columns: bool) {
-        match &mut self.compared {
-            Some((last, with_columns)) if last == state && (*with_columns || !columns) => return,
-            Some(last) => {
-                last.0.clone_from(state);
-                last.1 = columns;
-            }
-            none => *none = Some((state.clone(), columns)),
+        let last = self.compared.take();
+        if last.as_ref().is_some_and(|(last, had)| last == state && (*had || !columns)) {
+            self.compared = last;
+            return;
         }
+        self.separate_anew(target, state, columns);
+        let mut compared = last.map_or_else(|| state.clone(), |(last, _)| last);
+        compared.clone_from(state);
+        self.compared = Some((compared, columns));
+    }
+
+    fn separate_anew(&mut self, target: &Target<'_>, state: &State, columns: bool) {
         let (own, work) = (target.state, &mut self.work);
         let total_known = self.space.unknowns.known_lighting_total().is_some();
         let parameters = if columns { &self.space.parameters[..] } else { &[] };

@@ -32,11 +32,14 @@ pub(super) fn back_substitute(entry: impl Fn(usize, usize) -> f64, x: &mut [f64]
     }
 }
 
+/// R column by column, and of each other column what lies along the basis, followed by what is left of its length.
+type Reduced = (Vec<Vec<f64>>, Vec<Vec<f64>>);
+
 /// Makes columns orthonormal (Gram and Schmidt, again where much cancels) and gives the triangle R of columns = QR, column by
 /// column, what depends on earlier columns left out, and for each of `others` Qᵀother followed by what is left of its length.
 ///
 /// Source: L. Giraud et al., Numerische Mathematik 101, 87 (2005), doi:10.1007/s00211-005-0615-4: twice is enough.
-pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> Reduced {
     let size = columns.len();
     let mut triangle = vec![vec![0.0; size]; size];
     for (k, above) in triangle.iter_mut().enumerate() {
@@ -66,7 +69,7 @@ pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> (Vec<Vec<f6
 }
 
 /// What [`reduce`] finds, by products of the columns, which stay as they are; `None` where too many digits would cancel.
-pub(super) fn reduced(columns: &[Vec<f64>], others: &[&[f64]]) -> Option<(Vec<Vec<f64>>, Vec<Vec<f64>>)> {
+pub(super) fn reduced(columns: &[Vec<f64>], others: &[&[f64]]) -> Option<Reduced> {
     let size = columns.len();
     // Cholesky's factor, column by column; of the others the same column without its end.
     let along = |column: &[f64], triangle: &[Vec<f64>], count: usize| -> Vec<f64> {

@@ -141,7 +141,7 @@ impl Prover<'_, '_> {
         let face = faces.map_or([own_k; 2], |faces| faces[0]);
         let first = NARROW * own_k / self.all.sources.middle_x(own_k).max(1.0);
         let mut wings = Wings { lower: f64::INFINITY, left: Vec::new() };
-        let range = match self.all.held(s) {
+        let range = match self.quadratic(minimum, s) {
             Some(_) => self.all.sources.list[s].temperature_k,
             None => self.range(0, warm),
         };
@@ -398,3 +398,6 @@ dispatched! {
         sums.map(|sum| fold(&sum))
     }
 }
+
+#[cfg(test)]
+mod tests;
