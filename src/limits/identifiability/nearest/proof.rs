@@ -5,7 +5,8 @@
 //! few. A box of them is bounded by quadratics that lie below the cost wherever it could be nearer than the best state known
 //! (`metric`), over amplitudes and the chord of each source's spectrum (`sources`), less what the chord misses; the least
 //! value of a quadratic is bounded by its slope (`hull`). About the best state a box is closed at once by convexity
-//! (`closing`); the others are halved until none could be nearer, the lowest first. A state that turns out to be nearer on
+//! (`closing`). Beside it one unknown temperature is walked through outwards (`wings`); what that leaves, and boxes of several, are halved
+//! until none could be nearer, the lowest first. A state that turns out to be nearer on
 //! the way becomes the best one, and all begins again.
 //!
 //! Rounding: lengths are lowered by a stated share of what they are made of, spectra are taken to be as exact as
@@ -20,6 +21,7 @@ mod hull;
 mod metric;
 mod orthogonal;
 mod prover;
+mod region;
 mod sources;
 mod vectors;
 mod view;
@@ -28,6 +30,7 @@ mod wings;
 use self::about::Closed;
 pub(super) use self::prover::Memory;
 use self::prover::{Goal, Looked, Prover};
+use self::region::Region;
 pub(in crate::limits::identifiability) use self::sources::{Chord, chord};
 use self::wings::Wings;
 use super::refine::{NearestDistance, refine};
@@ -64,20 +67,6 @@ enum Outcome {
     Bound(f64),
     /// A nearer state.
     Nearer(State),
-}
-
-/// Intervals of the unknown temperatures: places of their ends among the spectra known.
-#[derive(Debug, Clone)]
-struct Region {
-    ends: Vec<[usize; 2]>,
-    /// Along which it is best halved, once that is known.
-    axis: Option<usize>,
-}
-
-impl Region {
-    fn of(ends: Vec<[usize; 2]>) -> Self {
-        Self { ends, axis: None }
-    }
 }
 
 /// Whether any state is nearer than `limit`: none is where that can be proved of `reach`, a little more. `known` is the nearest
@@ -148,6 +137,9 @@ impl Prover<'_, '_> {
         let Goal { limit, enough, rounding, boxes } = goal;
         let mut queue = BestFirst::new(boxes);
         let minimum = best.map(|best| self.minimum(comparison, target, &best.state));
+        if minimum.as_ref().is_some_and(|minimum| self.all.allowed.at_limit(&minimum.amplitudes)) {
+            self.all.at_limit();
+        }
         let closed = minimum.as_ref().map(|minimum| self.close_about(comparison, target, minimum, goal));
         let faces = match closed {
             Some(Closed::Nearer(state)) => return Outcome::Nearer(state),

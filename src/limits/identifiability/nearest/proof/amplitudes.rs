@@ -18,6 +18,9 @@ use super::sources::Spectrum;
 /// Steps of Dinkelbach's method; each one strictly betters the ray, and there are few.
 const STEPS: usize = 50;
 
+/// Share of a limit within which an amplitude stands at it.
+const NEAR: f64 = 1e-6;
+
 /// Rounding of a cost, of amplitudes and of what is chosen by them, as a share of the cost: two costs within it are the same.
 const LAST_DIGITS: f64 = 4e-15;
 
@@ -97,6 +100,14 @@ pub(super) struct Ray {
 }
 
 impl Amplitudes {
+    /// Whether amplitudes stand at the upper limit of an object's factor that is free, or of their sum.
+    pub(super) fn at_limit(&self, amplitudes: &[f64]) -> bool {
+        let Some((surface, lights)) = amplitudes.split_first() else { return false };
+        let nearly = |value: f64, limit: f64| value >= limit * surface * (1.0 - NEAR);
+        let full = |(k, light): (usize, &f64)| self.tied(k).is_none() && nearly(*light, self.ranges[k][1]);
+        lights.iter().enumerate().any(full) || nearly(lights.iter().sum(), self.sum)
+    }
+
     /// The factor of an object where it is known.
     pub(super) fn tied(&self, k: usize) -> Option<f64> {
         let [low, high] = self.ranges[k];

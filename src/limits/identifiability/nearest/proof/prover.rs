@@ -240,7 +240,10 @@ fn merged_into<'v, 'a>(
         let bands = all.sources.bands.len();
         let [counts, noise] = [&all.counts, &all.noise].map(|x| neighbours_summed(&x[..bands], count));
         let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
-        View::new(all.sources.merged(count), all.allowed.clone(), [root, counts, noise], all.reach)
+        let mut view =
+            View::new(all.sources.merged(count), all.allowed.clone(), [root, counts, noise], all.reach);
+        view.shaped.clone_from(&all.shaped);
+        view
     }))
 }
 

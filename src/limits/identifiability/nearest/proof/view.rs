@@ -13,8 +13,9 @@ use crate::sum::dot;
 const ROUNDING: f64 = 1e-15;
 /// How many times as warm as its cold end an interval that is not narrow ends.
 const WIDE: f64 = 1.2;
-/// From how much more radiance at its hot end on an interval is so wide that shapes are taken.
+/// From how many times the radiance at its hot end on an interval is so wide that shapes are taken in any case, and that all are.
 const WIDE_SHAPES: f64 = 2.0;
+const ALWAYS: f64 = 1.0;
 /// How much more hcν/kT is of what a source sends a twentieth.
 const DIM: f64 = 3.0;
 
@@ -42,8 +43,8 @@ pub(super) struct View<'a> {
     ends: Vec<Vec<Option<End>>>,
     /// Rounding of the counts that are compared, as a share of them.
     pub(super) rounding: f64,
-    /// Whether in wide intervals the shape of an axis is taken instead of itself: its amplitude is free.
-    shaped: Vec<bool>,
+    /// From how many times the radiance at the hot end on the shape of an axis is taken instead of itself, where its amplitude is free.
+    pub(super) shaped: Vec<Option<f64>>,
     /// Temperatures below which the axes send next to nothing.
     dark_k: Vec<f64>,
     pub(super) later: Later,
@@ -77,7 +78,12 @@ impl<'a> View<'a> {
             let is_known = !allowed.gain_free && range[0] >= range[1];
             let dark = sources.dark_k(s, sent, range[1].min(allowed.sum)).filter(|_| !is_known);
             *dark_k = dark.unwrap_or(0.0);
-            dark.is_some()
+            // Where the amplitude hangs on another one's, the shape hardly tells of that.
+            let own = match s {
+                0 => (0..allowed.ranges.len()).all(|k| allowed.tied(k).is_none()),
+                _ => range[0] < range[1],
+            };
+            dark.map(|_| if own { ALWAYS } else { WIDE_SHAPES })
         });
         let shaped = shaped.collect();
         let rounding = ROUNDING + 2.0 * sources.rounding_of_target();
@@ -117,7 +123,7 @@ impl<'a> View<'a> {
         }
         let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
         let most = largest_share(&self.later.brightest, &spectrum.counts, &spectrum.slope, 0.0);
-        let shape = if self.shaped[axis] { self.sources.shape(&spectrum) } else { None };
+        let shape = if self.shaped[axis].is_some() { self.sources.shape(&spectrum) } else { None };
         self.ends[axis][place] = Some(End { spectrum, shape, most });
     }
 
@@ -133,7 +139,7 @@ impl<'a> View<'a> {
             return 0.5 * (cold_k + hot_k);
         }
         let mean = (cold_k * hot_k).sqrt();
-        if self.shaped[axis] {
+        if self.shaped[axis].is_some() {
             return mean;
         }
         // Far below its peak a source sends next to nothing all along: there is nothing to be cut off.
@@ -161,7 +167,13 @@ impl<'a> View<'a> {
     /// The shapes at both ends of an interval, where it is so wide that these are taken.
     pub(super) fn shapes(&self, axis: usize, ends: [usize; 2]) -> Option<[&(Spectrum, f64); 2]> {
         let [cold, hot] = ends.map(|end| self.end(axis, end)?.shape.as_ref());
-        cold.zip(hot).filter(|(cold, hot)| hot.1 > WIDE_SHAPES * cold.1).map(|(cold, hot)| [cold, hot])
+        let from = self.shaped[axis]?;
+        cold.zip(hot).filter(|(cold, hot)| hot.1 > from * cold.1).map(|(cold, hot)| [cold, hot])
+    }
+
+    /// Takes shapes in wide intervals alone: of an amplitude that stands at its limit they know that only roughly.
+    pub(super) fn at_limit(&mut self) {
+        self.shaped.iter_mut().flatten().for_each(|from| *from = WIDE_SHAPES);
     }
 
     /// How much of the pieces an amplitude of 1 is, at one end of an interval or the other.
