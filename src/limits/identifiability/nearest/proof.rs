@@ -155,11 +155,14 @@ impl Prover<'_, '_> {
             if faces.is_none() {
                 queue.push(0.0, 0, Region::of(Vec::new()));
             }
-        } else if let Some(Wings { lower, left }) = minimum
-            .as_ref()
-            .zip(best)
-            .and_then(|(minimum, best)| self.wings(minimum, faces.as_deref(), &best.state, enough))
+        } else if let Some(Wings { lower, left, nearer }) =
+            minimum.as_ref().zip(best).and_then(|(minimum, best)| {
+                self.wings((&mut *comparison, target), (minimum, &best.state), faces.as_deref(), goal)
+            })
         {
+            if let Some(state) = nearer {
+                return Outcome::Nearer(state);
+            }
             queue.leave(lower);
             left.into_iter().for_each(|region| queue.push(0.0, 0, region));
         } else {

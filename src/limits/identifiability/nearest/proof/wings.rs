@@ -10,11 +10,12 @@ mod quadratic;
 use self::quadratic::About;
 use super::bound::Mixture;
 use super::closing::Minimum;
-use super::prover::Prover;
+use super::prover::{Goal, Prover};
 use super::region::Region;
 use super::sources::Spectrum;
 use super::vectors::largest_share;
 use crate::identifiability::nearest::blackbodies::rounded;
+use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
 
 /// Width of the first interval where none is closed about the best state, as a share of T/x, x = hcν/kT in the middle of the bands.
@@ -35,10 +36,11 @@ const MOST: usize = 40;
 /// Share of the temperature at its hot end from which on a cold interval goes down to the end of the range.
 const COLD: f64 = 0.4;
 
-/// What has come of it: no d² is below, but for what is left.
+/// What has come of it: no d² is below, but for what is left; or a nearer state.
 pub(super) struct Wings {
     pub(super) lower: f64,
     pub(super) left: Vec<Region>,
+    pub(super) nearer: Option<State>,
 }
 
 /// One side: where it begins and ends, and the width of the first interval.
@@ -90,17 +92,18 @@ impl Prover<'_, '_> {
     /// What lies beyond the faces; `None` where more temperatures than one are unknown, or none.
     pub(super) fn wings(
         &mut self,
-        minimum: &Minimum,
+        (comparison, target): (&mut Comparison<'_>, &Target<'_>),
+        (minimum, warm): (&Minimum, &State),
         faces: Option<&[[f64; 2]]>,
-        warm: &State,
-        enough: f64,
+        goal: Goal,
     ) -> Option<Wings> {
         let &[s] = &self.all.axes[..] else { return None };
         self.all.look();
         let own_k = minimum.spectra[s].temperature_k;
         let face = faces.map_or([own_k; 2], |faces| faces[0]);
         let first = NARROW * own_k / self.all.sources.middle_x(own_k).max(1.0);
-        let mut wings = Wings { lower: f64::INFINITY, left: Vec::new() };
+        let enough = goal.enough;
+        let mut wings = Wings { lower: f64::INFINITY, left: Vec::new(), nearer: None };
         let range = match self.quadratic(minimum, s) {
             Some(_) => self.all.sources.list[s].temperature_k,
             None => self.range(0, warm),
@@ -111,8 +114,17 @@ impl Prover<'_, '_> {
             let side = Side { from_k, to_k, width_k };
             let (lower, left) = match self.quadratic(minimum, s) {
                 Some(about) => side.walk(enough, self.alone(&about, s, enough)),
-                None => side.walk(enough, self.mixed(minimum, s, enough)),
+                None => {
+                    let is_nearer = |prover: &Self, mixture: &Mixture| {
+                        wings.nearer = prover.nearer(comparison, target, goal.limit, mixture);
+                        wings.nearer.is_some()
+                    };
+                    side.walk(enough, self.mixed(minimum, s, enough, is_nearer))
+                }
             };
+            if wings.nearer.is_some() {
+                break;
+            }
             wings.lower = wings.lower.min(lower);
             for ends in left {
                 let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
@@ -148,12 +160,13 @@ impl Prover<'_, '_> {
     }
 
     /// Bounds of intervals over all amplitudes: in all bands from the best ones on, and where there was enough to spare first in bands
-    /// counted together.
+    /// counted together. It ends where one shows a nearer state.
     fn mixed<'s>(
         &'s mut self,
         minimum: &'s Minimum,
         s: usize,
         enough: f64,
+        mut is_nearer: impl FnMut(&Self, &Mixture) -> bool,
     ) -> impl FnMut([f64; 2]) -> Option<f64> {
         let mut is_ample = false;
         let mut best = Mixture {
@@ -171,9 +184,12 @@ impl Prover<'_, '_> {
             let mut start = best.amplitudes.clone();
             start[s] *= self.all.sources.brightness(best.temperature_k[s], from);
             let lower = self.bound_from(&ends, s, f64::from(u8::from(to < from)), &start, enough);
+            let there = self.bounder.mixture(&self.all);
             if lower >= enough {
                 is_ample = lower > AMPLE * enough;
-                best = self.bounder.mixture(&self.all);
+                best = there;
+            } else if is_nearer(self, &there) {
+                return None;
             }
             Some(lower)
         }

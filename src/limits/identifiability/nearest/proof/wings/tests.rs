@@ -60,7 +60,7 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
             let enough = best.distance * best.distance;
             let lower = match prover.quadratic(&minimum, s) {
                 Some(about) => prover.alone(&about, s, enough)(ends),
-                None => prover.mixed(&minimum, s, enough)(ends),
+                None => prover.mixed(&minimum, s, enough, |_, _| false)(ends),
             };
             // Too bright already: no state beyond the nearer end is within reach.
             let lower = lower.unwrap_or(reach * reach);
