@@ -57,6 +57,7 @@ impl Side {
         let Self { from_k: mut from, to_k: limit, width_k: mut width } = self;
         let (mut lowest, mut left) = (f64::INFINITY, Vec::new());
         let (mut narrower, mut looked_at, mut sufficed) = (0, 0, 0);
+        let mut widest = from;
         while from != limit {
             if looked_at == MOST {
                 left.push([from, limit]);
@@ -69,15 +70,20 @@ impl Side {
                 false => rounded(from + width, from).min(limit),
             };
             let Some(lower) = bound([from, to]) else { break };
-            if lower >= enough {
-                lowest = lowest.min(lower);
-            } else if narrower < NARROWER {
+            if narrower == 0 {
+                widest = to;
+            }
+            if lower < enough || lower.is_nan() {
                 (narrower, sufficed) = (narrower + 1, 0);
                 width = FALLS * (to - from).abs();
+                if narrower > NARROWER {
+                    left.push([from, widest]);
+                    (narrower, width) = (0, GROWS * (widest - from).abs());
+                    from = widest;
+                }
                 continue;
-            } else {
-                left.push([from, to]);
             }
+            lowest = lowest.min(lower);
             narrower = 0;
             sufficed += 1;
             let grows = GROWS * f64::max(lower / enough, f64::from(1 + sufficed / STEADY));
