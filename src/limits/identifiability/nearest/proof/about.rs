@@ -4,7 +4,7 @@ use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
-use super::vectors::pulls_into;
+use super::vectors::{Weights, pulls_into, weights_into};
 use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
@@ -43,7 +43,9 @@ impl Prover<'_, '_> {
         let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
         pulls_into(&residual, &other, &self.all.root, [&mut pull, &mut seen, &mut kept]);
         let (cost, root, reach) = (dot(&kept, &kept), self.all.root.clone(), self.all.reach);
-        Minimum { amplitudes, spectra, pull, root, other: seen, reach, cost }
+        let mut weight = vec![0.0; bands];
+        weights_into(Weights { root: &root, other: &seen, reach, most: None, weight: &mut weight });
+        Minimum { amplitudes, spectra, pull, root, other: seen, weight, reach, cost }
     }
 
     /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.

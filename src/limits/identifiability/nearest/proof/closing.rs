@@ -35,6 +35,8 @@ const SMALL: f64 = 0.01;
 const LEFT: f64 = 1e-12;
 /// What the losses must leave of its square.
 const KEPT: f64 = 1e-6;
+/// Share of its terms below which a coefficient is nothing but their rounding.
+const CANCELLED: f64 = 1e-12;
 /// Share of c₀ within which an amplitude is near to a limit.
 const NEAR: f64 = 1e-6;
 
@@ -48,6 +50,8 @@ pub(super) struct Minimum {
     /// y and s of every band; 0 for both where a band is left out.
     pub(super) root: Vec<f64>,
     pub(super) other: Vec<f64>,
+    /// √(y/s)/(s + y + reach).
+    pub(super) weight: Vec<f64>,
     /// The distance within which everything is.
     pub(super) reach: f64,
     /// d².
@@ -55,20 +59,6 @@ pub(super) struct Minimum {
 }
 
 impl Minimum {
-    /// √(y/s)/(s + y + reach) of every band.
-    pub(super) fn weight(&self) -> Vec<f64> {
-        crate::stop::check();
-        let mut weight = vec![0.0; self.root.len()];
-        weights_into(Weights {
-            root: &self.root,
-            other: &self.other,
-            reach: self.reach,
-            most: None,
-            weight: &mut weight,
-        });
-        weight
-    }
-
     /// The least y.
     fn least_root(&self) -> f64 {
         crate::stop::check();
@@ -140,7 +130,7 @@ pub(super) fn close(
         .collect();
     let pulled: Vec<[f64; 2]> =
         bends.iter().map(|[bend, third]| [dot(&minimum.pull, bend), dot(&pull_sizes, third)]).collect();
-    let mut weight = minimum.weight();
+    let mut weight = minimum.weight.clone();
     let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
     let length = 0.5 * square_of_quotient(&minimum.pull, &weight).sqrt();
     let (triangle, lengths, bent, third) = Default::default();
@@ -330,14 +320,21 @@ impl Columns<'_> {
         let mut put = |terms: &[(usize, f64)], both: bool| {
             let slack = terms.iter().map(|&(s, value)| value * amplitudes[s]).sum::<f64>();
             let slack = if both { slack.abs() } else { slack.max(0.0) };
-            let mut along = vec![0.0; size];
+            let (mut along, mut terms_of) = (vec![0.0_f64; size], vec![0.0_f64; size]);
             for &(s, value) in terms {
                 let tied = s.checked_sub(1).and_then(|k| allowed.tied(k));
                 let (s, value) = tied.map_or((s, value), |factor| (0, factor * value));
                 if let Some(place) = place(s) {
                     along[place] += value;
+                    terms_of[place] += value.abs();
                 }
             }
+            // What cancels but for rounding is no limit.
+            along.iter_mut().zip(terms_of).for_each(|(along, of)| {
+                if along.abs() <= CANCELLED * of {
+                    *along = 0.0;
+                }
+            });
             if slack <= NEAR * amplitudes[0] && along.iter().any(|x| *x != 0.0) {
                 limits.push(Limit { along, slack, both });
             }

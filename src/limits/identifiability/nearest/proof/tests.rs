@@ -1,9 +1,9 @@
 //! What the proof rests on, piece by piece, against points drawn at random; whole proofs are held against a brute force that
 //! shares no code with them in `hadar accuracy brute-force`.
 
-use super::amplitudes::{Amplitudes, Pieces};
-use super::amplitudes::{Piece, Ray};
-use super::hull::{Hull, Quadratic, factor_of};
+mod amplitudes;
+
+use super::amplitudes::Ray;
 use super::metric::{Ellipsoid, Metric};
 use super::orthogonal::{inner, orthonormalise, reduce, reduced};
 use super::prover::{Memory, Prover};
@@ -20,173 +20,6 @@ fn draws(mut seed: u64) -> impl FnMut() -> f64 {
     move || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-/// Two pieces of the surface, two of object 0 and one of object 1.
-fn pieces() -> Pieces {
-    Pieces {
-        source: vec![0, 0, 1, 1, 2],
-        length: vec![1.0, 1.7, 0.4, 0.9, 0.6],
-        cap: vec![f64::INFINITY, f64::INFINITY, 0.3, f64::INFINITY, f64::INFINITY],
-        temperature_k: vec![0.0; 5],
-        unit: vec![[1.0; 2]; 5],
-    }
-}
-
-fn amplitudes(gain_free: bool, sum_known: bool) -> Amplitudes {
-    let ranges = vec![[0.1, 0.8], [0.0, 0.7]];
-    Amplitudes { gain_free, ranges, sum: 0.9, sum_known, total: 5.0, gain_cap: None }
-}
-
-/// Amplitudes that are allowed, drawn anyhow.
-fn allowed(draw: &mut impl FnMut() -> f64, of: &Amplitudes) -> Vec<f64> {
-    loop {
-        let v = [0.1 + 0.7 * draw(), if of.sum_known { 0.0 } else { 0.7 * draw() }];
-        let v = [v[0], if of.sum_known { of.sum - v[0] } else { v[1] }];
-        if v[0] + v[1] > of.sum + 1e-12 || v[1] > 0.7 || v[1] < 0.0 {
-            continue;
-        }
-        let (a, b) = (draw(), draw());
-        let mut z = vec![a, 1.0 - a, v[0] * b, v[0] * (1.0 - b), v[1]];
-        if of.gain_free {
-            let length = inner(&z, &pieces().length);
-            let scale = of.total / length * draw();
-            z.iter_mut().for_each(|z| *z *= scale);
-        } else if z[2] > 0.3 {
-            continue;
-        }
-        return z;
-    }
-}
-
-#[test]
-fn no_amplitudes_cost_less_than_the_cheapest() {
-    let mut draw = draws(3);
-    for (gain_free, sum_known) in [(false, false), (false, true), (true, false), (true, true)] {
-        let of = amplitudes(gain_free, sum_known);
-        for _ in 0..200 {
-            let cost: Vec<f64> = (0..5).map(|_| draw() - 0.6).collect();
-            let mut vertex = vec![0.0; 5];
-            let least = of.least(&pieces(), &cost, &mut vertex, &mut Ray::default());
-            assert!((inner(&cost, &vertex) - least).abs() < 1e-12 * (1.0 + least.abs()));
-            let mut lowest = f64::INFINITY;
-            for _ in 0..300 {
-                lowest = lowest.min(inner(&cost, &allowed(&mut draw, &of)));
-            }
-            assert!(least <= lowest + 1e-12, "{least} {lowest}");
-            // Caps aside it is reached, not only kept below.
-            if vertex[2] <= 0.3 || gain_free {
-                assert!(lowest - least < 0.8 * (1.0 + least.abs()), "{least} {lowest}");
-            }
-        }
-    }
-}
-
-/// Units of the sources may differ by any factor, and so the lengths of rays: a short one that is cheaper for its length is found
-/// beside a long one whose rounding is more than all of it.
-#[test]
-fn a_cheaper_ray_is_found_however_short() {
-    let mut draw = draws(17);
-    let of = Amplitudes { gain_free: true, ..amplitudes(true, false) };
-    let (mut short, mut known) = (0, 0);
-    for trial in 0..4000 {
-        let sum_known = trial % 2 == 1;
-        let of = Amplitudes { sum_known, ranges: vec![[0.0, 0.8], [0.0, 0.7]], ..of.clone() };
-        let scale = [0, 1, 2].map(|_| 10f64.powf(40.0 * draw() - 20.0));
-        let mut own = pieces();
-        let units = [0, 1, 2].map(|_| {
-            let least = 10f64.powf(40.0 * draw() - 20.0);
-            [least, least * 10f64.powf(25.0 * draw().powi(3))]
-        });
-        for (i, &source) in own.source.iter().enumerate() {
-            own.length[i] *= scale[source];
-            own.unit[i] = units[source];
-        }
-        let rate = 2.0 * draw() - 1.5;
-        // Costs of the objects for their length nearly alike, so that what joins hangs on their last digits.
-        let near = 10f64.powf(-18.0 * draw());
-        let cost: Vec<f64> = (0..5)
-            .map(|i| own.length[i] * (rate + if own.source[i] == 0 { 1.0 } else { near } * (draw() - 0.5)))
-            .collect();
-        let mut vertex = vec![0.0; 5];
-        let mut ray = Ray::default();
-        let least = of.least(&own, &cost, &mut vertex, &mut ray);
-        if least.is_nan() {
-            continue;
-        }
-        known += 1;
-        let rounding = of.rounding(&own, &cost, &vertex, &ray);
-        let longest = inner(&vertex, &own.length);
-        assert!(longest <= of.total * (1.0 + 1e-14), "{trial}: {longest}");
-        for end in 0..40 {
-            // Surface at either end, and the objects dark, full, or anyhow: with one of them dark as far as that is allowed.
-            let mut v = [0.8, 0.7].map(|most| most * [0.0, 1.0, draw()][end % 3]);
-            if sum_known {
-                v[0] = [0.2, 0.8, 0.2 + 0.6 * draw()][end % 3];
-                v[1] = 0.9 - v[0];
-            } else if v[0] + v[1] > 0.9 {
-                v[end / 3 % 2] = 0.0;
-            }
-            let [a, b] = [end / 6 % 2, end / 12 % 2].map(|side| side as f64);
-            let [at, first, second] = [0, 1, 2]
-                .map(|k| units[k][0] * (units[k][1] / units[k][0]).powf([0.0, 1.0, draw()][(end + k) % 3]));
-            let z = [a / at, (1.0 - a) / at, v[0] * b / first, v[0] * (1.0 - b) / first, v[1] / second];
-            let share = of.total / inner(&z, &own.length);
-            let value = share * inner(&cost, &z);
-            assert!(least - rounding <= value, "{trial}: {least:e} {rounding:e} {value:e}");
-            short += usize::from(value < 0.9 * least.min(0.0) && v[0] + v[1] == 0.0);
-        }
-    }
-    assert!(known > 3900 && short > 1000, "{known} {short}");
-}
-
-/// The bound of the hull against the same problem on a fine lattice of one amplitude.
-#[test]
-fn the_least_of_a_quadratic_is_bounded_tightly() {
-    let of = Amplitudes {
-        gain_free: false,
-        ranges: vec![[0.0, 1.0]],
-        sum: 1.0,
-        sum_known: false,
-        total: 0.0,
-        gain_cap: None,
-    };
-    let (mut pieces, mut ray) = (Pieces::default(), Ray::default());
-    (0..2).for_each(|source| {
-        let (cap, unit) = (f64::INFINITY, [1.0; 2]);
-        pieces.put(Piece { source, length: 1.0, cap, temperature_k: 0.0, unit });
-    });
-    let mut draw = draws(5);
-    for _ in 0..300 {
-        let mut vector = || (0..3).map(|_| draw() - 0.5).collect::<Vec<f64>>();
-        // φ = ‖F(z − z₀) + h‖² − ‖h‖².
-        let (columns, shift) = ([vector(), vector()], vector());
-        let product = |i: usize, j: usize| inner(&columns[i], &columns[j]);
-        let (mut factor, mut excess) = (Vec::new(), Vec::new());
-        factor_of(&[product(0, 0), product(0, 1), product(1, 0), product(1, 1)], &mut factor, &mut excess);
-        let quadratic = Quadratic {
-            linear: columns.iter().map(|column| 2.0 * inner(column, &shift)).collect(),
-            factor,
-            excess,
-            origin: vec![0.3, 0.1],
-            most: vec![1.0, 1.0],
-            length: inner(&shift, &shift).sqrt(),
-        };
-        let value = |v: f64| {
-            let change = [1.0 - 0.3, v - 0.1];
-            let image: Vec<f64> =
-                (0..3).map(|i| shift[i] + change[0] * columns[0][i] + change[1] * columns[1][i]).collect();
-            inner(&image, &image) - inner(&shift, &shift)
-        };
-        let cheapest = |cost: &[f64], vertex: &mut [f64]| {
-            of.least(&pieces, cost, vertex, &mut ray);
-            0.0
-        };
-        let lower = Hull::default().least(&quadratic, cheapest, f64::INFINITY);
-        let lowest = (0..=2000).map(|i| value(f64::from(i) / 2000.0)).fold(f64::INFINITY, f64::min);
-        assert!(lower <= lowest + 1e-13, "{lower} {lowest}");
-        assert!(lowest - lower < 1e-6, "{lower} {lowest}");
     }
 }
 
@@ -418,50 +251,6 @@ fn shapes_are_all_but_convex() {
         }
     }
     assert!(largest > 0.9, "{largest}");
-}
-
-/// A length less what is linear: below every mixture, and exact where the least needs nothing of the piece that takes away.
-#[test]
-fn lengths_less_what_is_linear_are_bounded() {
-    let of = amplitudes(false, false);
-    let mut draw = draws(23);
-    let (mut exact, mut close) = (0, 0);
-    for _ in 0..500 {
-        let columns: Vec<Vec<f64>> = (0..5).map(|_| (0..6).map(|_| draw() - 0.3).collect()).collect();
-        let shift: Vec<f64> = (0..6).map(|_| draw() - 0.3).collect();
-        let square: Vec<f64> = (0..25).map(|i| inner(&columns[i / 5], &columns[i % 5])).collect();
-        let (mut factor, mut excess) = (Vec::new(), Vec::new());
-        factor_of(&square, &mut factor, &mut excess);
-        let quadratic = Quadratic {
-            linear: columns.iter().map(|column| 2.0 * inner(column, &shift)).collect(),
-            factor,
-            excess,
-            origin: vec![0.0; 5],
-            most: vec![1.0; 5],
-            length: inner(&shift, &shift).sqrt(),
-        };
-        let less = [0.0, 0.0, 0.4 * draw(), 0.0, 0.4 * draw()];
-        let (own, mut ray, mut hull) = (pieces(), Ray::default(), Hull::default());
-        let mut cheapest = |cost: &[f64], vertex: &mut [f64]| {
-            of.least(&own, cost, vertex, &mut ray);
-            0.0
-        };
-        hull.least(&quadratic, &mut cheapest, f64::INFINITY);
-        let lower = hull.length_less(&quadratic, &mut cheapest, &less);
-        let length = |z: &[f64]| {
-            let image: Vec<f64> =
-                (0..6).map(|w| shift[w] + (0..5).map(|i| z[i] * columns[i][w]).sum::<f64>()).collect();
-            inner(&image, &image).sqrt() - inner(&less, z)
-        };
-        let mut lowest = length(&hull.point);
-        exact += usize::from(lower > lowest - 1e-9);
-        for _ in 0..200 {
-            lowest = lowest.min(length(&allowed(&mut draw, &of)));
-        }
-        assert!(lower <= lowest + 1e-12, "{lower} {lowest}");
-        close += usize::from(lowest - lower < 0.3);
-    }
-    assert!(exact > 20 && close > 400, "{exact} {close}");
 }
 
 /// By products or one after the other: the same triangle, and no less of what is left.

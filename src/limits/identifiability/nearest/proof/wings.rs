@@ -7,7 +7,7 @@
 
 mod quadratic;
 
-use self::quadratic::About;
+use self::quadratic::{About, Weighed};
 use super::bound::Mixture;
 use super::closing::Minimum;
 use super::prover::{Goal, Prover};
@@ -110,31 +110,35 @@ impl Prover<'_, '_> {
         let first = NARROW * own_k / self.all.sources.middle_x(own_k).max(1.0);
         let enough = goal.enough;
         let mut wings = Wings { lower: f64::INFINITY, left: Vec::new(), nearer: None };
-        let range = match self.quadratic(minimum, s) {
-            Some(_) => self.all.sources.list[s].temperature_k,
-            None => self.range(0, warm),
+        let sides = |[low, high]: [f64; 2]| {
+            let to = [low.min(face[0]), high.max(face[1])];
+            [0, 1].map(|side| {
+                let width_k = if faces.is_some() { (face[side] - own_k).abs() } else { first };
+                Side { from_k: face[side], to_k: to[side], width_k }
+            })
         };
-        let sides = [(face[0], range[0].min(face[0])), (face[1], range[1].max(face[1]))];
-        for (from_k, to_k) in sides {
-            let width_k = if faces.is_some() { (from_k - own_k).abs() } else { first };
-            let side = Side { from_k, to_k, width_k };
-            let (lower, left) = match self.quadratic(minimum, s) {
-                Some(about) => side.walk(enough, self.alone(&about, s, enough)),
-                None => {
-                    let is_nearer = |prover: &Self, mixture: &Mixture| {
-                        wings.nearer = prover.nearer(comparison, target, goal.limit, mixture);
-                        wings.nearer.is_some()
-                    };
-                    side.walk(enough, self.mixed(minimum, s, enough, is_nearer))
-                }
-            };
-            if wings.nearer.is_some() {
-                break;
+        let mut walked = Vec::new();
+        if let Some(about) = self.quadratic(minimum, s) {
+            let with = about.weighed(minimum.weight.clone());
+            for side in sides(self.all.sources.list[s].temperature_k) {
+                walked.push(side.walk(enough, self.alone(&about, &with, s, enough)));
             }
+        } else {
+            for side in sides(self.range(0, warm)) {
+                let is_nearer = |prover: &Self, mixture: &Mixture| {
+                    wings.nearer = prover.nearer(comparison, target, goal.limit, mixture);
+                    wings.nearer.is_some()
+                };
+                walked.push(side.walk(enough, self.mixed(minimum, s, enough, is_nearer)));
+                if wings.nearer.is_some() {
+                    return Some(wings);
+                }
+            }
+        }
+        for (lower, left) in walked {
             wings.lower = wings.lower.min(lower);
-            for ends in left {
-                let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                wings.left.push(Region::of(vec![ends.map(|end| self.end(0, end))]));
+            for [a, b] in left {
+                wings.left.push(Region::of(vec![[a.min(b), a.max(b)].map(|end| self.end(0, end))]));
             }
         }
         Some(wings)
@@ -144,10 +148,10 @@ impl Prover<'_, '_> {
     fn alone<'s>(
         &'s self,
         about: &'s About<'s>,
+        with: &'s Weighed,
         s: usize,
         enough: f64,
     ) -> impl FnMut([f64; 2]) -> Option<f64> {
-        let with = about.weighed(about.minimum.weight());
         let sources = &self.all.sources;
         let mut known: Option<Spectrum> = None;
         move |[from, to]| {
@@ -159,7 +163,7 @@ impl Prover<'_, '_> {
             }
             let far = sources.spectrum(s, to);
             let ends = if to < from { [&far, &near] } else { [&near, &far] };
-            let lower = about.bound(&with, ends, sources.rounding(ends[0].temperature_k), enough);
+            let lower = about.bound(with, ends, sources.rounding(ends[0].temperature_k), enough);
             known = Some(if lower >= enough { far } else { near });
             Some(lower)
         }

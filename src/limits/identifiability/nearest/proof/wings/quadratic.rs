@@ -27,7 +27,7 @@ const WORTH: f64 = 0.1;
 
 /// The quadratic about the best state, but for what hangs on the interval.
 pub(super) struct About<'m> {
-    pub(super) minimum: &'m Minimum,
+    minimum: &'m Minimum,
     /// A(T*), c.
     own: &'m [f64],
     pub(super) amplitude: f64,
@@ -57,8 +57,7 @@ impl Prover<'_, '_> {
     pub(super) fn quadratic<'m>(&'m self, minimum: &'m Minimum, s: usize) -> Option<About<'m>> {
         let amplitude = self.all.held(s)?;
         let allowed = &self.all.allowed;
-        let open: Vec<usize> =
-            (0..allowed.ranges.len()).filter(|&k| allowed.ranges[k][0] < allowed.ranges[k][1]).collect();
+        let open: Vec<usize> = (0..allowed.ranges.len()).filter(|&k| allowed.tied(k).is_none()).collect();
         let (light, range) = match open[..] {
             [] => (None, [0.0; 2]),
             // With a sum that is known the one light has what that says.

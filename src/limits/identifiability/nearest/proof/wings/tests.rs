@@ -59,7 +59,10 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
                 if draw() < 0.5 { ends } else { [ends[0], ends[0] * (1.0 + 0.2 * far * (draw() - 0.5))] };
             let enough = best.distance * best.distance;
             let lower = match prover.quadratic(&minimum, s) {
-                Some(about) => prover.alone(&about, s, enough)(ends),
+                Some(about) => {
+                    let with = about.weighed(minimum.weight.clone());
+                    prover.alone(&about, &with, s, enough)(ends)
+                }
                 None => prover.mixed(&minimum, s, enough, |_, _| false)(ends),
             };
             // Too bright already: no state beyond the nearer end is within reach.
