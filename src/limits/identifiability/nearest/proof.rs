@@ -97,29 +97,31 @@ pub(super) fn prove(
     mut best: NearestDistance,
     tolerance: f64,
 ) -> NearestDistance {
-    for _ in 0..RESTARTS {
-        if best.distance <= 0.0 {
-            break;
-        }
+    let (mut restarts, mut ends_at_nearer) = (0, true);
+    while best.distance > 0.0 {
         let cost = best.distance * best.distance;
         // A little more than asked for, so that a bound rounded down does not miss it.
         let (rounding, _) = comparison.rounding_at(target, &best.state, best.distance);
         let share = 1.0 - 0.9 * (tolerance - rounding).max(0.1 * tolerance);
         let prover = Prover::new(comparison, merging, memory, target, best.distance);
         let boxes = BOXES[prover.all.axes.len().min(BOXES.len() - 1)];
-        let goal = Goal { limit: cost, enough: share * share * cost, rounding, boxes };
+        let limit = if ends_at_nearer { cost } else { 0.0 };
+        let goal = Goal { limit, enough: share * share * cost, rounding, boxes };
         match prover.run(comparison, target, Some(&best), goal) {
             Outcome::Bound(lower) => {
                 best.lower = (lower * (1.0 - MARGIN)).max(0.0).min(best.distance);
                 break;
             }
             Outcome::Nearer(state) => {
+                restarts += 1;
                 let found = refine(comparison, target, state, None, 0.0);
                 let iterations = best.iterations + found.iterations;
-                if found.distance >= best.distance {
-                    break;
+                let is_nearer = found.distance < best.distance;
+                // Where nothing comes of it, or too many follow each other, what can be said of the best one is better than nothing.
+                ends_at_nearer = is_nearer && restarts < RESTARTS;
+                if is_nearer {
+                    best = NearestDistance { iterations, ..found };
                 }
-                best = NearestDistance { iterations, ..found };
             }
         }
     }
