@@ -246,20 +246,24 @@ impl Study {
             let required = self.camera.as_ref().map(|_| self.required_of_members(own));
             return classes.distances(countings.as_deref(), required, skipping, &|_, _| ());
         }
-        // Local distances take less time than bounds on them would; priors have no part in a proof.
+        // Local distances take less time than bounds on them would, and priors hang on the photons.
         let pair = |(study, alternative): (&Self, &Surface)| {
-            let (distance, relative_error) = match study.counting() {
+            let (distance, lower, relative_error) = match study.counting() {
                 Some(counting) => {
                     let found = study.statistical(kind, alternative, &counting)?;
-                    (found.distance, found.relative_error.unwrap_or(0.0))
+                    (found.distance, found.lower, found.relative_error.unwrap_or(0.0))
                 }
                 None if study.unknowns.has_priors() => {
                     let photons = study.photons_with_priors(kind, alternative)?;
-                    (photons.map_or(0.0, |photons| study.required / photons.sqrt()), 0.0)
+                    let distance = photons.map_or(0.0, |photons| study.required / photons.sqrt());
+                    (distance, distance, 0.0)
                 }
-                None => (study.distance_per_photon(kind, alternative, f64::INFINITY)?, 0.0),
+                None => {
+                    let distance = study.distance_per_photon(kind, alternative, f64::INFINITY)?;
+                    (distance, distance, 0.0)
+                }
             };
-            Ok(MemberPair { distance: Some(distance), lower: distance, relative_error })
+            Ok(MemberPair { distance: Some(distance), lower, relative_error })
         };
         let pairs =
             studies.iter().flat_map(|study| other.surfaces.iter().map(move |surface| (study, surface)));

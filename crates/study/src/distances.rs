@@ -209,11 +209,10 @@ impl Study {
         }
     }
 
-    /// What a verdict may rest on: the distance where it is proved, else what is proved of it. Priors have no part in a proof,
-    /// so that with them it is what the search found.
+    /// What a verdict may rest on: the distance where it is proved, else what is proved of it.
     pub(super) fn sure(&self, distance: f64, lower: f64) -> f64 {
         let proved = lower >= (1.0 - self.tolerance()) * distance;
-        if self.unknowns.has_priors() || proved { distance } else { lower }
+        if proved { distance } else { lower }
     }
 
     /// Distance per √photon of a kind, priors counting as among `photons` photons.

@@ -39,7 +39,7 @@ use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::Status;
 use hadar::identifiability::detection;
 use hadar::identifiability::multi;
-use hadar::identifiability::nearest::NearestDistance;
+use hadar::identifiability::nearest::{NearestDistance, leaves_priors_out};
 use hadar::instrument::Camera;
 use hadar::parallel;
 use hadar::policy;
@@ -263,9 +263,14 @@ impl Study {
             blind_direction: blind,
         };
         let mut warnings =
-            warn::of_pair(&result, &local, &nearest, kind, &self.range, self.unknowns.has_priors());
+            warn::of_pair(&result, &local, &nearest, kind, &self.range, self.proof_leaves_priors_out());
         warnings.extend(self.placeholders(alternative));
         Ok((result, warnings))
+    }
+
+    /// Whether there are priors that a proof leaves out.
+    pub(crate) fn proof_leaves_priors_out(&self) -> bool {
+        leaves_priors_out(&self.unknowns)
     }
 
     /// Whether a distance is proved as well as is asked for.

@@ -34,7 +34,7 @@ use self::residual::{Comparison, Metric, Target};
 use self::search::EmissionTable;
 pub use super::space::StateRange;
 use crate::error::{Error, Result};
-use crate::fisher::{Counting, Unknowns};
+use crate::fisher::{Counting, Nuisance, Unknowns};
 use crate::order;
 use crate::scene::{State, Surroundings};
 use crate::spectrum::Bands;
@@ -55,6 +55,15 @@ const NOTHING_OF_TERMS: f64 = 1e-14;
 /// How many times a distance its error is estimated to be where it is nothing but rounding: deep in the Wien tail
 /// the estimate is hundreds of times too large, and a distance called 0 is a claim.
 const NOTHING_BUT_ROUNDING: f64 = 1e3;
+
+/// Whether a proof may leave priors out, which makes its bounds too low to come near the distance: beside an unknown gain, and of
+/// surroundings' temperatures beside an unknown lighting, they are not convex in what it is over.
+#[must_use]
+pub fn leaves_priors_out(unknowns: &Unknowns) -> bool {
+    let unknown = |nuisance| unknowns.contains(nuisance);
+    let of_light = unknown(Nuisance::EnvironmentTemperature) && unknown(Nuisance::Lighting);
+    unknowns.has_priors() && (unknown(Nuisance::Gain) || of_light)
+}
 
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
@@ -164,10 +173,7 @@ impl<'a> NearestSolver<'a> {
         if found.distance < limit {
             return Ok(Nearer::Somewhere);
         }
-        let proved = self.proved_nearer(&target, limit, Some(&found), MOST_BOXES);
-        // Priors have no part in a proof: with them the search has the last word.
-        let searched = proved == Nearer::Undecided && self.comparison.space.unknowns.has_priors();
-        Ok(if searched { Nearer::Nowhere } else { proved })
+        Ok(self.proved_nearer(&target, limit, Some(&found), MOST_BOXES))
     }
 
     fn proved_nearer(

@@ -149,7 +149,7 @@ impl<'a> Reach<'a> {
         let (study, alternative) = (self.study, self.alternative);
         let found = self.with_solvers(trial, |solvers, bands, counting| {
             let by_nearest = study.scenario.requirement.by == DistanceKind::Nearest;
-            if !by_nearest || study.unknowns.has_priors() || !study.counts_are_many(bands, counting) {
+            if !by_nearest || !study.counts_are_many(bands, counting) {
                 return Ok(None);
             }
             demand::computed(Thing::NearestSearches, 1);

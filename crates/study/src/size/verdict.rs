@@ -153,7 +153,7 @@ impl Study {
         let spoiled = self.spoiled(result.as_ref());
         // Where it is no proof that ends the check, what is not told may be undecided.
         let by_proof = self.scenario.requirement.by == DistanceKind::Nearest
-            && !self.unknowns.has_priors()
+            && !self.proof_leaves_priors_out()
             && !self.is_unknown(Nuisance::EnvironmentTemperature);
         if spoiled.is_empty() && (check.identifiable || !by_proof) {
             return Ok(None);
@@ -263,7 +263,7 @@ impl Study {
         };
         let proved =
             pair.proof == NearestProof::Proved && self.scenario.requirement.by == DistanceKind::Nearest;
-        let found_by = if proved && !self.unknowns.has_priors() { Grade::Proved } else { Grade::Searched };
+        let found_by = if proved { Grade::Proved } else { Grade::Searched };
         let grade = answer.map(|_| found_by.under(&conditions));
         let sentence = Finding {
             camera: self.camera.as_ref().map_or_else(String::new, |camera| camera.name.clone()),

@@ -15,8 +15,7 @@
 //! nothing, and is only a guess at what will. Before 3 a descent in the few bands shows cheaply where they fail.
 //!
 //! One direction that fails decides the pair. That no state is nearer is proved by branch and bound (see
-//! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart. Priors have no part in
-//! a proof: with them the search has the last word.
+//! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart.
 
 use super::beyond::{Beyond, Seen};
 use super::{LibraryScene, Progress};

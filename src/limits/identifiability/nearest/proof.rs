@@ -10,8 +10,8 @@
 //! the way becomes the best one, and all begins again.
 //!
 //! Rounding: lengths are lowered by a stated share of what they are made of, spectra are taken to be as exact as
-//! [`crate::planck`] states, and the bound given is lowered by [`MARGIN`]. Priors only add to a distance; the bound leaves
-//! them out.
+//! [`crate::planck`] states, and the bound given is lowered by [`MARGIN`]. Priors that are linear in all this are rows of it
+//! (`priors`).
 
 mod about;
 mod amplitudes;
@@ -20,6 +20,7 @@ mod closing;
 mod hull;
 mod metric;
 mod orthogonal;
+mod priors;
 mod prover;
 mod region;
 mod sources;
@@ -42,6 +43,8 @@ use crate::scene::State;
 const MARGIN: f64 = 1e-12;
 /// Boxes looked at most, by the number of unknown temperatures.
 const BOXES: [u64; 4] = [1, 2_000, 6_000, 6_000];
+/// The same where the bound leaves a prior out: what is wanting then no box brings.
+const BOXES_WITHOUT_PRIORS: u64 = 60;
 /// Nearer states that are followed at most.
 const RESTARTS: usize = 30;
 /// Descents into valleys on the way, boxes before the first one (most proofs need no more), and boxes after which another one
@@ -137,6 +140,7 @@ impl Prover<'_, '_> {
         goal: Goal,
     ) -> Outcome {
         let Goal { limit, enough, rounding, boxes } = goal;
+        let boxes = if self.all.priors.are_rows() { boxes } else { boxes.min(BOXES_WITHOUT_PRIORS) };
         let mut queue = BestFirst::new(boxes);
         let minimum = best.map(|best| self.minimum(comparison, target, &best.state));
         if minimum.as_ref().is_some_and(|minimum| self.all.allowed.at_limit(&minimum.amplitudes)) {

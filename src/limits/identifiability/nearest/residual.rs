@@ -271,15 +271,23 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// Index, weight 1/(2σ_p) and row (θ′ − θ)/(2σ_p) of every parameter with a prior.
-    fn prior_rows(&self, target: &Target<'_>, state: &State) -> impl Iterator<Item = (usize, f64, f64)> {
+    /// Index and weight 1/(2σ_p) of every parameter with a prior.
+    pub(super) fn priors(&self, target: &Target<'_>) -> impl Iterator<Item = (usize, f64)> {
         self.space.parameters.iter().enumerate().filter_map(move |(i, &parameter)| {
             let sigma = self.space.unknowns.sigma_prior(parameter)?;
             let weight = match target.metric {
                 Metric::PerPhoton { photons } => 0.5 / (sigma * photons.sqrt()),
                 Metric::Counting(_) => 0.5 / sigma,
             };
-            Some((i, weight, weight * (value(state, parameter) - value(target.state, parameter))))
+            Some((i, weight))
+        })
+    }
+
+    /// The same with the row (θ′ − θ)/(2σ_p) of a state.
+    fn prior_rows(&self, target: &Target<'_>, state: &State) -> impl Iterator<Item = (usize, f64, f64)> {
+        self.priors(target).map(move |(i, weight)| {
+            let parameter = self.space.parameters[i];
+            (i, weight, weight * (value(state, parameter) - value(target.state, parameter)))
         })
     }
 

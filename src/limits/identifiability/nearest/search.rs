@@ -7,7 +7,8 @@
 //! are thinned for this: it only says where to start.
 //!
 //! Unknown gain keeps the problem linear, in G′ and G′V′; unknown environment temperatures are tried at a few
-//! values. With priors or a known total of the lighting the full linearised problem is used instead.
+//! values. Priors add their squares, but those of the gain and of lighting beside it, which are not quadratic in that. With a known total
+//! of the lighting the full linearised problem is used instead.
 
 mod fit;
 mod table;
@@ -20,6 +21,7 @@ use self::table::{Emission, Thinned, step_at};
 use self::whitened::Whitened;
 use super::residual::{Comparison, Target};
 use crate::fisher::Nuisance;
+use crate::identifiability::space::value;
 use crate::order;
 use crate::scene::{Parameter, State};
 use crate::units::SECOND_RADIATION_CM_K;
@@ -70,7 +72,7 @@ impl Comparison<'_> {
     fn minima(&mut self, table: &mut EmissionTable, target: &Target<'_>, own: &State) -> Vec<Start> {
         let whitened = Whitened::new(self, &table.thinned, target);
         let unknowns = &self.space.unknowns;
-        let linear = !unknowns.has_priors() && unknowns.known_lighting_total().is_none();
+        let linear = unknowns.known_lighting_total().is_none();
         let unknown_surroundings = unknowns.contains(Nuisance::EnvironmentTemperature);
         let steps = self.steps(table, &whitened, own.gain);
         let range = self.space.range.temperature_k;
@@ -87,7 +89,8 @@ impl Comparison<'_> {
             let environment_k = own.environment_k.iter().map(|t| t * warmth).collect();
             State { environment_k, ..own.clone() }
         });
-        surroundings.flat_map(|own| self.quadratic_grid(thinned, &whitened, &own, &grid)).collect()
+        let whitened = &whitened;
+        surroundings.flat_map(|own| self.quadratic_grid(target, thinned, whitened, &own, &grid)).collect()
     }
 
     /// Steps of the grid between which the alternative's own emission goes from next to nothing of the target's
@@ -117,6 +120,7 @@ impl Comparison<'_> {
     /// Minima for S′ linear in lighting and gain: weighted least squares in thinned bands.
     fn quadratic_grid(
         &self,
+        target: &Target<'_>,
         thinned: &Thinned,
         whitened: &Whitened,
         own: &State,
@@ -142,13 +146,33 @@ impl Comparison<'_> {
         }
         let free = lit.iter().map(|&k| std::mem::take(&mut scattered[k])).collect();
         let known_sum: f64 = (0..objects).filter(|k| !lit.contains(k)).map(|k| own.lighting[k]).sum();
+        let gain = self.space.unknowns.contains(Nuisance::Gain);
+        // Thinned bands hold so much less of the photons; a prior counts beside them as it does beside all.
+        let share = 1.0 / thinned.stride as f64;
+        let prior = |wanted: Parameter| {
+            let found = self.priors(target).find(|(i, _)| self.space.parameters[*i] == wanted);
+            found.map_or([0.0; 2], |(_, weight)| [weight * weight * share, value(target.state, wanted)])
+        };
+        let of_surroundings: f64 = (0..objects)
+            .map(|k| (prior(Parameter::EnvironmentTemperature(k)), own.environment_k[k]))
+            .map(|([square, centre], t)| square * (t - centre) * (t - centre))
+            .sum();
         let fit = Fit {
+            priors: lit.iter().map(|&k| prior(Parameter::Lighting(k))).collect(),
             free,
             lit,
             known,
             range: self.space.bounds(Parameter::Lighting(0)),
             sum_limit: self.space.lighting_sum() - known_sum,
-            gain: self.space.unknowns.contains(Nuisance::Gain),
+            gain,
+        };
+        let [square, centre] = prior(Parameter::Temperature);
+        let with_priors = |fitted: Fitted, temperature_k: f64| {
+            let off = temperature_k - centre;
+            Fitted {
+                cost: fitted.cost + of_surroundings + square * off * off,
+                slope: fitted.slope + square * off,
+            }
         };
         if let Some(fits) = fit.along(whitened, own, grid) {
             let state = |i: usize| {
@@ -158,11 +182,18 @@ impl Comparison<'_> {
                 }
                 state
             };
-            let fitted: Vec<Fitted> = fits.iter().map(|fit| fit.1).collect();
+            let fits = fits.iter().zip(grid);
+            let fitted: Vec<Fitted> =
+                fits.map(|(fit, emission)| with_priors(fit.1, emission.temperature_k)).collect();
             return minima(&fitted, state);
         }
-        let (states, fitted): (Vec<State>, Vec<Fitted>) =
-            grid.iter().map(|emission| fit.point(whitened, thinned, own, emission)).unzip();
+        let (states, fitted): (Vec<State>, Vec<Fitted>) = grid
+            .iter()
+            .map(|emission| {
+                let (state, fitted) = fit.point(whitened, thinned, own, emission);
+                (state, with_priors(fitted, emission.temperature_k))
+            })
+            .unzip();
         minima(&fitted, |i| states[i].clone())
     }
 

@@ -2,6 +2,7 @@
 
 use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
+use super::priors::PriorAt;
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
 use super::vectors::{Weights, pulls_into, weights_into};
@@ -42,10 +43,12 @@ impl Prover<'_, '_> {
         let bands = self.all.root.len();
         let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
         pulls_into(&residual, &other, &self.all.root, [&mut pull, &mut seen, &mut kept]);
-        let (cost, root, reach) = (dot(&kept, &kept), self.all.root.clone(), self.all.reach);
+        let priors: Vec<PriorAt> = self.all.priors.at(state).collect();
+        let of_priors: f64 = priors.iter().map(|prior| prior.residual * prior.residual).sum();
+        let (cost, root, reach) = (dot(&kept, &kept) + of_priors, self.all.root.clone(), self.all.reach);
         let mut weight = vec![0.0; bands];
         weights_into(Weights { root: &root, other: &seen, reach, most: None, weight: &mut weight });
-        Minimum { amplitudes, spectra, pull, root, other: seen, weight, reach, cost }
+        Minimum { amplitudes, spectra, pull, root, other: seen, weight, priors, reach, cost }
     }
 
     /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.

@@ -15,8 +15,8 @@
 use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
 use super::metric::{Ellipsoid, Metric};
-use super::orthogonal::reduce;
-use super::sources::{Chord, Spectrum, chord};
+use super::orthogonal::{inner, reduce};
+use super::sources::{Chord, Spectrum, chord, whole};
 use super::vectors::{add_into, largest_share, product_into, square_of_product};
 use super::view::View;
 use crate::sum::dot;
@@ -59,8 +59,11 @@ pub(super) struct Bounder {
     rise: Vec<Vec<f64>>,
     half: Vec<Vec<f64>>,
     most: Vec<f64>,
-    /// Columns times the weights.
+    /// Columns times the weights, and where their digits are all kept what of the priors follows.
     whitened: Vec<Vec<f64>>,
+    /// Entries of the priors, row by row, and their residuals.
+    rows: Vec<f64>,
+    residuals: Vec<f64>,
     /// How bright the root of every band can be in the box.
     brightest: Vec<f64>,
     counts: Vec<f64>,
@@ -77,7 +80,7 @@ pub(super) struct Bounder {
 
 /// Where the spectrum of a piece is.
 #[derive(Debug, Clone, Copy)]
-enum Place {
+pub(super) enum Place {
     /// Of a source of known temperature.
     Fixed(usize),
     /// Of an axis.
@@ -185,6 +188,8 @@ impl Bounder {
         let Self { places, half, most, whitened, counts, metric, brightest, is_about_target, .. } = self;
         let metric = if *is_about_target { &view.later.about_target } else { &*metric };
         let basis = &mut whitened[..places.len()];
+        // Priors only bring states nearer: without them more are within reach.
+        basis.iter_mut().for_each(|column| column.truncate(view.root.len()));
         let (_, along) = reduce(basis, &[&metric.shift]);
         let [along] = &along[..] else { return };
         let across = along[places.len()];
@@ -293,6 +298,7 @@ impl Bounder {
     fn write(&mut self, view: &View<'_>, digits: bool) -> Written {
         let Self { places, low, rise, half, most, whitened, counts, metric, .. } = self;
         let Self { square, quadratic, hull, brightest, is_about_target, missed: each, .. } = self;
+        let Self { pieces, rows, residuals, .. } = self;
         let column = |place: Place| -> &[f64] {
             match place {
                 Place::Fixed(s) => view.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
@@ -322,10 +328,27 @@ impl Bounder {
             out.resize(view.root.len(), 0.0);
             product_into(column(*place), &metric.weight, out);
         }
-        quadratic.length = metric.length;
+        let mut along: Vec<f64> = whitened[..m].iter().map(|column| dot(column, &metric.shift)).collect();
+        rows.clear();
+        residuals.clear();
+        view.priors.put_pieces(pieces, places, |constant, entries| {
+            let residual = constant + inner(entries, &quadratic.origin);
+            along.iter_mut().zip(entries).for_each(|(along, entry)| *along += residual * entry);
+            rows.extend_from_slice(entries);
+            residuals.push(residual);
+        });
+        let of_priors = inner(residuals, residuals);
+        let shift = metric.length * metric.length + of_priors;
+        quadratic.length = if of_priors > 0.0 { shift.sqrt() } else { metric.length };
         quadratic.linear.clear();
-        quadratic.linear.extend(whitened[..m].iter().map(|column| 2.0 * dot(column, &metric.shift)));
+        quadratic.linear.extend(along.iter().map(|along| 2.0 * along));
         if digits {
+            if !rows.is_empty() {
+                for (i, column) in whitened[..m].iter_mut().enumerate() {
+                    column.extend(rows.iter().skip(i).step_by(m));
+                    column.resize(whole(column.len()), 0.0);
+                }
+            }
             let (triangle, _) = reduce(&mut whitened[..m], &[]);
             quadratic.factor.clear();
             quadratic.excess.fill(0.0);
@@ -334,7 +357,8 @@ impl Bounder {
             square.resize(m * m, 0.0);
             for i in 0..m {
                 for j in 0..=i {
-                    let product = dot(&whitened[i], &whitened[j]);
+                    let of_priors: f64 = rows.chunks(m).map(|row| row[i] * row[j]).sum();
+                    let product = dot(&whitened[i], &whitened[j]) + of_priors;
                     (square[i * m + j], square[j * m + i]) = (product, product);
                 }
             }
@@ -358,8 +382,7 @@ impl Bounder {
                 (largest, most_missed) = (part, axis);
             }
         }
-        let shift = metric.length * metric.length;
-        Written { cost: metric.cost, shift, grain, missed, axis: most_missed }
+        Written { cost: metric.cost + of_priors, shift, grain, missed, axis: most_missed }
     }
 
     /// The pieces of a box, for tests, with their spectra and what the chords miss.

@@ -17,7 +17,8 @@
 use super::amplitudes::{Amplitudes, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
 use super::orthogonal::{add, back_substitute, inner, orthonormalise, reduce, reduced};
-use super::sources::{Sources, Spectrum};
+use super::priors::PriorAt;
+use super::sources::{Sources, Spectrum, whole};
 use super::vectors::{
     Weights, add_into, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient,
     weights_into,
@@ -52,6 +53,8 @@ pub(super) struct Minimum {
     pub(super) other: Vec<f64>,
     /// √(y/s)/(s + y + reach).
     pub(super) weight: Vec<f64>,
+    /// The priors there.
+    pub(super) priors: Vec<PriorAt>,
     /// The distance within which everything is.
     pub(super) reach: f64,
     /// d².
@@ -59,6 +62,12 @@ pub(super) struct Minimum {
 }
 
 impl Minimum {
+    /// ½‖W⁻¹p‖, with the residuals of the priors.
+    fn shift(&self, weight: &[f64]) -> f64 {
+        let of_priors: f64 = self.priors.iter().map(|prior| prior.residual * prior.residual).sum();
+        (0.25 * square_of_quotient(&self.pull, weight) + of_priors).sqrt()
+    }
+
     /// The least y.
     fn least_root(&self) -> f64 {
         crate::stop::check();
@@ -123,7 +132,15 @@ pub(super) fn close(
             .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
             .collect();
     let pull_sizes: Vec<f64> = minimum.pull.iter().map(|p| p.abs()).collect();
-    let linear: Vec<f64> = raw.iter().map(|column| dot(&minimum.pull, column)).collect();
+    let priors = minimum.priors.iter().map(|prior| prior.entries(&lit, axes.iter().map(|(s, _)| *s)));
+    let priors: Vec<Vec<f64>> = priors.collect();
+    let along_priors = |i: usize| {
+        let rows = minimum.priors.iter().zip(&priors);
+        rows.map(|(prior, entries)| prior.residual * entries[i]).sum::<f64>()
+    };
+    let linear = raw.iter().enumerate();
+    let linear: Vec<f64> =
+        linear.map(|(i, column)| dot(&minimum.pull, column) + 2.0 * along_priors(i)).collect();
     let bends: Vec<[Vec<f64>; 2]> = axes
         .iter()
         .map(|&(s, Reach { faces, .. })| sources.bend(s, minimum.spectra[s].temperature_k, faces))
@@ -132,15 +149,20 @@ pub(super) fn close(
         bends.iter().map(|[bend, third]| [dot(&minimum.pull, bend), dot(&pull_sizes, third)]).collect();
     let mut weight = minimum.weight.clone();
     let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
-    let length = 0.5 * square_of_quotient(&minimum.pull, &weight).sqrt();
+    let length = minimum.shift(&weight);
     let (triangle, lengths, bent, third) = Default::default();
     let mut columns = Columns { minimum, lit, axes, linear, length, triangle, lengths, bent, third };
     let bands = weight.len();
-    let mut basis = vec![vec![0.0; bands]; raw.len()];
-    let mut turns: Vec<[Vec<f64>; 2]> = bends.iter().map(|_| [(); 2].map(|()| vec![0.0; bands])).collect();
+    let size = whole(bands + priors.len());
+    let mut basis = vec![vec![0.0; size]; raw.len()];
+    let mut turns: Vec<[Vec<f64>; 2]> = bends.iter().map(|_| [(); 2].map(|()| vec![0.0; size])).collect();
     let mut closed = None;
     for round in 0..=rounds {
-        raw.iter().zip(&mut basis).for_each(|(column, out)| product_into(column, &weight, out));
+        for (i, (column, out)) in raw.iter().zip(&mut basis).enumerate() {
+            product_into(column, &weight, out);
+            out[bands..].fill(0.0);
+            out[bands..].iter_mut().zip(&priors).for_each(|(out, entries)| *out = entries[i]);
+        }
         let pairs = bends.iter().flatten().zip(turns.iter_mut().flatten());
         pairs.for_each(|(spectrum, out)| product_into(spectrum, &weight, out));
         columns.lengths = basis.iter().map(|column| dot(column, column).sqrt()).collect();
@@ -221,10 +243,11 @@ impl Columns<'_> {
     /// have more of that than its share in them.
     fn weighed(&self, weight: &[f64], basis: &[Vec<f64>], turns: &[[Vec<f64>; 2]]) -> Option<Vec<f64>> {
         crate::stop::check();
-        let Minimum { root, other, reach, cost, pull, .. } = self.minimum;
+        let Minimum { root, other, reach, cost, .. } = self.minimum;
         let (reach, cost) = (*reach, *cost);
         let bands = root.iter().zip(other).filter(|(_, s)| **s > 0.0);
-        let largest = bands.map(|(y, s)| y / s).fold(0.0, f64::max).sqrt();
+        let of_priors = if self.minimum.priors.is_empty() { 0.0 } else { 1.0 };
+        let largest = bands.map(|(y, s)| y / s).fold(of_priors, f64::max).sqrt();
         let (n, amplitudes) = (self.axes.len(), self.lit.len());
         // Lengths of the rows of R⁻¹ of the slopes: |y_j| is no more than that times what is along all slopes.
         let mut rows = vec![0.0; n];
@@ -241,7 +264,7 @@ impl Columns<'_> {
         if turned.is_nan() || turned >= 0.5 {
             return None;
         }
-        let shift = 0.5 * square_of_quotient(pull, weight).sqrt();
+        let shift = self.minimum.shift(weight);
         let shift_along = self.pulled_along();
         let mut all = largest * (cost.sqrt() + reach);
         for _ in 0..CLOSER {

@@ -2,6 +2,7 @@
 
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
+use super::priors::Priors;
 use super::sources::{Sources, neighbours_summed};
 use super::view::View;
 use crate::fisher::Nuisance;
@@ -68,10 +69,11 @@ impl<'a, 'm> Prover<'a, 'm> {
         reach: f64,
     ) -> Self {
         let space = &comparison.space;
-        let sources = Sources::new(comparison, target);
+        let reach = reach * (1.0 + 1e-9);
+        let mut priors = Priors::new(comparison, target, reach);
+        let sources = Sources::new(comparison, target, &priors);
         let counts: Vec<f64> = comparison.target.signal().iter().map(|s| target.counts * s).collect();
         let bands = [comparison.root().to_vec(), counts, comparison.noise().to_vec()];
-        let reach = reach * (1.0 + 1e-9);
         let unknown_lighting = space.unknowns.contains(Nuisance::Lighting);
         let known_total = space.unknowns.known_lighting_total();
         let lit = target.state.lighting.iter().enumerate();
@@ -92,9 +94,13 @@ impl<'a, 'm> Prover<'a, 'm> {
         }
         // By the rounding of the user's own numbers.
         sum *= 1.0 + 1e-15;
+        for (k, range) in ranges.iter_mut().enumerate() {
+            *range = priors.within_reach(Parameter::Lighting(k), *range);
+        }
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let all = View::new(sources, allowed, bands, reach);
+        priors.put_rows(&allowed);
+        let all = View::new(sources, allowed, priors, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
         let Memory { merged: few, all: bounder } = memory;
         Self { merging, merged: None, few, all, bounder, temperature_k }
@@ -240,8 +246,9 @@ fn merged_into<'v, 'a>(
         let bands = all.sources.bands.len();
         let [counts, noise] = [&all.counts, &all.noise].map(|x| neighbours_summed(&x[..bands], count));
         let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
-        let mut view =
-            View::new(all.sources.merged(count), all.allowed.clone(), [root, counts, noise], all.reach);
+        let (sources, allowed, priors) =
+            (all.sources.merged(count), all.allowed.clone(), all.priors.clone());
+        let mut view = View::new(sources, allowed, priors, [root, counts, noise], all.reach);
         view.shaped.clone_from(&all.shaped);
         view
     }))

@@ -14,11 +14,13 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
+use super::priors::Priors;
 use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::Blackbodies;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::planck;
+use crate::scene::Parameter;
 use crate::simd::{Chunk, LANES, dispatched, fold, padded};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
@@ -91,7 +93,7 @@ fn lowest(nodes_cm1: &[f64]) -> f64 {
 }
 
 impl<'a> Sources<'a> {
-    pub(super) fn new(comparison: &Comparison<'a>, target: &Target<'_>) -> Self {
+    pub(super) fn new(comparison: &Comparison<'a>, target: &Target<'_>, priors: &Priors) -> Self {
         let space = &comparison.space;
         let surroundings = comparison.target.surroundings();
         let unknown = |nuisance| space.unknowns.contains(nuisance);
@@ -107,12 +109,15 @@ impl<'a> Sources<'a> {
             strength.iter_mut().for_each(|strength| *strength *= scale);
             strength
         };
-        let span = |unknown: bool, range: [f64; 2], known: f64| if unknown { range } else { [known, known] };
+        let span = |nuisance, parameter, range: [f64; 2], known: f64| {
+            if unknown(nuisance) { priors.within_reach(parameter, range) } else { [known, known] }
+        };
         let other = target.alternative;
         let surface = Source {
             strength: strength(other.to_vec()),
             temperature_k: span(
-                unknown(Nuisance::Temperature),
+                Nuisance::Temperature,
+                Parameter::Temperature,
                 space.range.temperature_k,
                 target.state.temperature_k,
             ),
@@ -123,10 +128,11 @@ impl<'a> Sources<'a> {
             if let Some(own) = &object.emissivity {
                 multiply(&mut lit, own);
             }
-            let range = space.bounds(crate::scene::Parameter::EnvironmentTemperature(k));
+            let parameter = Parameter::EnvironmentTemperature(k);
+            let range = space.bounds(parameter);
             Source {
                 strength: strength(lit),
-                temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
+                temperature_k: span(Nuisance::EnvironmentTemperature, parameter, range, known),
             }
         });
         let list = std::iter::once(surface).chain(lights).collect();

@@ -12,7 +12,7 @@ use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::residual::{self, Comparison};
 use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::planck;
-use crate::scene::{EnvironmentObject, Surroundings};
+use crate::scene::{EnvironmentObject, State, Surroundings};
 use crate::spectrum::Bands;
 
 /// Numbers from 0 to 1.
@@ -102,8 +102,18 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
     let bands = Bands::uniform(720.0, 1240.0, 20.0).unwrap();
     let nodes = bands.nodes_cm1().to_vec();
     let all = [Nuisance::Temperature, Nuisance::Lighting, Nuisance::Gain, Nuisance::EnvironmentTemperature];
-    for set in 1..16_usize {
-        let unknowns = Unknowns::new((0..4).filter(|i| set >> i & 1 == 1).map(|i| all[i])).unwrap();
+    // With priors on all of them where each is a residual of the bound: without the gain, and one of lighting and surroundings.
+    for (set, with_priors) in (1..16_usize).map(|set| (set, false)).chain([1, 2, 3, 8, 9].map(|set| (set, true)))
+    {
+        let unknown: Vec<Nuisance> = (0..4).filter(|i| set >> i & 1 == 1).map(|i| all[i]).collect();
+        let mut unknowns = Unknowns::new(unknown.iter().copied()).unwrap();
+        let photons = 1e4;
+        let mut weights = [0.0; 4];
+        for (i, nuisance) in all.iter().enumerate().filter(|(_, one)| with_priors && unknown.contains(one)) {
+            let sigma = if *nuisance == Nuisance::Lighting { 0.02 } else { 2.0 };
+            weights[i] = 0.5 / (sigma * f64::sqrt(photons));
+            unknowns = unknowns.prior(*nuisance, sigma).unwrap();
+        }
         let object = EnvironmentObject { temperature_k: 260.0 + 60.0 * draw(), emissivity: None };
         let surroundings = Surroundings::new(&nodes, vec![object]).unwrap();
         let state = surroundings.state(280.0 + 60.0 * draw(), &[0.2 + 0.6 * draw()]).unwrap();
@@ -115,7 +125,7 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
         let tolerance = if set & 9 == 9 { 1e-3 } else { 1e-6 };
         let mut solver = NearestSolver::new(&bands, &surroundings, unknowns.clone(), StateRange::default())
             .proving(tolerance);
-        let found = solver.per_photon(&target, &other, &state, f64::INFINITY).unwrap();
+        let found = solver.per_photon(&target, &other, &state, photons).unwrap();
         assert!(found.is_proved_to(tolerance) && found.lower > 0.0, "{set}: {found:?}");
         assert!(found.lower <= found.distance, "{set}: {found:?}");
         let total: f64 = bands.weigh(&surroundings.signal(&target, &state)).iter().sum();
@@ -140,6 +150,9 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
             let cost: f64 = (0..bands.len())
                 .map(|w| ((signals[0][w] / total).sqrt() - (signals[1][w] / total).sqrt()).powi(2))
                 .sum();
+            let values = |at: &State| [at.temperature_k, at.lighting[0], at.gain.ln(), at.environment_k[0]];
+            let off = values(&candidate).into_iter().zip(values(&state)).map(|(a, b)| a - b);
+            let cost = cost + off.zip(weights).map(|(off, weight)| (weight * off).powi(2)).sum::<f64>();
             assert!(cost.sqrt() >= found.lower * (1.0 - 1e-9), "{set}: {} {found:?}", cost.sqrt());
         }
     }

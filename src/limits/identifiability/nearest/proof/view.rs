@@ -5,6 +5,7 @@
 
 use super::amplitudes::Amplitudes;
 use super::metric::Metric;
+use super::priors::Priors;
 use super::sources::{LARGEST_LN_GAIN, Sources, Spectrum, whole};
 use super::vectors::largest_share;
 use crate::sum::dot;
@@ -32,6 +33,7 @@ pub(super) struct End {
 pub(super) struct View<'a> {
     pub(super) sources: Sources<'a>,
     pub(super) allowed: Amplitudes,
+    pub(super) priors: Priors,
     /// √(N + v), N and v of every band, in whole chunks.
     pub(super) root: Vec<f64>,
     pub(super) counts: Vec<f64>,
@@ -61,7 +63,13 @@ pub(super) struct Later {
 }
 
 impl<'a> View<'a> {
-    pub(super) fn new(sources: Sources<'a>, allowed: Amplitudes, bands: [Vec<f64>; 3], reach: f64) -> Self {
+    pub(super) fn new(
+        sources: Sources<'a>,
+        allowed: Amplitudes,
+        priors: Priors,
+        bands: [Vec<f64>; 3],
+        reach: f64,
+    ) -> Self {
         let [root, counts, noise] = bands.map(|mut x| {
             x.resize(whole(x.len()), 0.0);
             x
@@ -88,7 +96,21 @@ impl<'a> View<'a> {
         let shaped = shaped.collect();
         let rounding = ROUNDING + 2.0 * sources.rounding_of_target();
         let later = Later::default();
-        Self { sources, allowed, root, counts, noise, reach, axes, ends, rounding, shaped, dark_k, later }
+        Self {
+            sources,
+            allowed,
+            priors,
+            root,
+            counts,
+            noise,
+            reach,
+            axes,
+            ends,
+            rounding,
+            shaped,
+            dark_k,
+            later,
+        }
     }
 
     /// Makes sure of what only a look at these bands needs.

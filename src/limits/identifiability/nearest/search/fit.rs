@@ -24,6 +24,8 @@ pub(super) struct Fit {
     /// Whitened scattered light of the unknown factors, and whose they are.
     pub(super) free: Vec<Vec<f64>>,
     pub(super) lit: Vec<usize>,
+    /// w² and centre of the prior of each, where the gain is known; w = 0 for none.
+    pub(super) priors: Vec<[f64; 2]>,
     /// Whitened scattered light of the others.
     pub(super) known: Vec<f64>,
     pub(super) range: [f64; 2],
@@ -56,7 +58,14 @@ impl Fit {
             state.lighting[k] = factor;
         }
         let slope = -gain * dot(&residual, &slope);
-        (state, Fitted { cost: dot(&residual, &residual), slope })
+        let of_priors: f64 = match self.gain {
+            true => 0.0,
+            false => {
+                let off = factors.iter().zip(&self.priors).map(|(v, [square, centre])| (square, v - centre));
+                off.map(|(square, off)| square * off * off).sum()
+            }
+        };
+        (state, Fitted { cost: dot(&residual, &residual) + of_priors, slope })
     }
 
     /// Along a grid, for at most one unknown factor, no gain and one node per band: the factor and the fit at
@@ -84,11 +93,13 @@ impl Fit {
         }
         add(&mut scaled, own.gain, strength);
         let size = dot(&column, &column);
+        let [square, centre] = self.priors.first().copied().unwrap_or_default();
+        let size = size + square;
         let reach = if size > 0.0 { 1.0 / size } else { 0.0 };
         let fits = grid.iter().map(|emission| {
             let spectra =
                 Spectra { goal: &goal, strength: &scaled, value: &emission.value, slope: &emission.slope };
-            fit_one(spectra, &column, reach, [low, high])
+            fit_one(spectra, &column, reach, [square, centre], [low, high])
         });
         Some(fits.map(|(factor, cost, slope)| (factor, Fitted { cost, slope })).collect())
     }
@@ -105,7 +116,8 @@ impl Fit {
         }
         let columns: Vec<&[f64]> = self.free.iter().map(Vec::as_slice).collect();
         let limit = (self.sum_limit - low * n as f64).max(0.0);
-        let fitted = least_squares(&columns, &goal, own.gain, high - low, limit);
+        let priors: Vec<[f64; 2]> = self.priors.iter().map(|[square, centre]| [*square, centre - low]).collect();
+        let fitted = least_squares(&columns, &goal, own.gain, &priors, [high - low, limit]);
         fitted.iter().map(|p| p + low).collect()
     }
 
@@ -121,7 +133,7 @@ impl Fit {
             .collect();
         let mut columns = vec![share.as_slice()];
         columns.extend(lit.iter().map(Vec::as_slice));
-        let fitted = least_squares(&columns, signal, 1.0, f64::INFINITY, f64::INFINITY);
+        let fitted = least_squares(&columns, signal, 1.0, &[], [f64::INFINITY; 2]);
         let gain = fitted.iter().sum::<f64>() / limit;
         if gain <= 0.0 {
             return (1.0, vec![0.0; self.free.len()]);
@@ -131,16 +143,27 @@ impl Fit {
     }
 }
 
-/// Coefficients p of `columns` times `scale` that fit `goal` best, 0 ≤ p ≤ `upper`, Σp ≤ `sum_limit`.
-fn least_squares(columns: &[&[f64]], goal: &[f64], scale: f64, upper: f64, sum_limit: f64) -> Vec<f64> {
+/// Coefficients p of `columns` times `scale` that fit `goal` and their priors best, 0 ≤ p ≤ `upper`, Σp ≤ `sum_limit`.
+fn least_squares(
+    columns: &[&[f64]],
+    goal: &[f64],
+    scale: f64,
+    priors: &[[f64; 2]],
+    [upper, sum_limit]: [f64; 2],
+) -> Vec<f64> {
     let n = columns.len();
-    let gram = DMatrix::from_fn(n, n, |i, j| scale * scale * dot(columns[i], columns[j]));
+    let [square, centre] = [0, 1].map(|part| move |i: usize| priors.get(i).map_or(0.0, |prior| prior[part]));
+    let gram = DMatrix::from_fn(n, n, |i, j| {
+        scale * scale * dot(columns[i], columns[j]) + if i == j { square(i) } else { 0.0 }
+    });
     let size = (0..n).map(|i| gram[(i, i)]).fold(0.0, f64::max);
     if size <= 0.0 {
         // Nothing to fit with: any coefficients will do.
         return vec![0.0; n];
     }
-    let pull: Vec<f64> = columns.iter().map(|column| -scale * dot(column, goal) / size).collect();
+    let pull = columns.iter().enumerate();
+    let pull: Vec<f64> =
+        pull.map(|(i, column)| -(scale * dot(column, goal) + square(i) * centre(i)) / size).collect();
     if n == 1 {
         return vec![(-pull[0] * size / gram[(0, 0)]).clamp(0.0, upper.min(sum_limit))];
     }
@@ -172,11 +195,12 @@ struct Spectra<'a> {
 
 dispatched! {
     /// The factor of `column` within its limits that leaves least of goal − strength·value, with the cost and
-    /// half its derivative along T′; `reach` is 1/‖column‖², 0 for no column.
+    /// half its derivative along T′; `reach` is 1/‖column‖², 0 for no column, with the prior's w² in that.
     fn fit_one<'a>(
         spectra: Spectra<'a>,
         column: &'a [f64],
         reach: f64,
+        prior: [f64; 2],
         limits: [f64; 2],
     ) -> (f64, f64, f64) {
         let Spectra { goal, strength, value, slope } = spectra;
@@ -186,14 +210,16 @@ dispatched! {
         for (((g, s), b), c) in g.iter().zip(s).zip(b).zip(c) {
             pull = added(left(*g, *s, *b), *c, pull);
         }
-        let factor = (total(&pull) * reach).clamp(limits[0], limits[1]);
+        let [square, centre] = prior;
+        let factor = (square.mul_add(centre, total(&pull)) * reach).clamp(limits[0], limits[1]);
         let (mut cost, mut along) = ([0.0; LANES], [0.0; LANES]);
         for ((((g, s), b), d), c) in g.iter().zip(s).zip(b).zip(d).zip(c) {
             let r = fused(-factor, *c, left(*g, *s, *b));
             cost = added(r, r, cost);
             along = added(product(r, *s), *d, along);
         }
-        (factor, total(&cost), -total(&along))
+        let off = factor - centre;
+        (factor, total(&cost) + square * off * off, -total(&along))
     }
 }
 

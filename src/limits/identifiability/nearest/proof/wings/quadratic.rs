@@ -10,6 +10,8 @@
 //!
 //! d² ≥ cost − ‖h‖² + (√(‖h‖² + φ) − m)².
 //!
+//! Priors of T and of δ add their squares, which are of the same kind.
+//!
 //! The same sums say how much light a state within reach can have at most, and with that how bright each band: better weights.
 
 use super::super::bound::CLEAR;
@@ -28,12 +30,17 @@ const WORTH: f64 = 0.1;
 /// The quadratic about the best state, but for what hangs on the interval.
 pub(super) struct About<'m> {
     minimum: &'m Minimum,
-    /// A(T*), c.
+    /// A(T*), T*, c.
     own: &'m [f64],
+    own_k: f64,
     pub(super) amplitude: f64,
-    /// q, Σ p q, and where δ may be; no q where no amplitude is free.
+    /// q, Σ p q with what a prior of it pulls, and where δ may be; no q where no amplitude is free.
     light: Option<&'m [f64]>,
     pull_lit: f64,
+    /// Of priors: ρ and ∂ρ/∂T of the axis, ∂ρ/∂δ of the light, and Σρ² of all.
+    of_axis: [f64; 2],
+    per_light: f64,
+    of_priors: f64,
     range: [f64; 2],
     /// N and N₀, and their rounding as a share of them.
     counts: &'m [f64],
@@ -44,7 +51,7 @@ pub(super) struct About<'m> {
 /// Weights, and what they make of all that does not hang on the interval.
 pub(super) struct Weighed {
     weight: Vec<f64>,
-    /// W q, ‖W q‖².
+    /// W q, ‖W q‖² with what a prior of it adds.
     lit: Vec<f64>,
     lit_lit: f64,
     /// ‖h‖², and the rounding of counts as a length.
@@ -58,12 +65,14 @@ impl Prover<'_, '_> {
         let amplitude = self.all.held(s)?;
         let allowed = &self.all.allowed;
         let open: Vec<usize> = (0..allowed.ranges.len()).filter(|&k| allowed.tied(k).is_none()).collect();
+        let mut lit = None;
         let (light, range) = match open[..] {
             [] => (None, [0.0; 2]),
             // With a sum that is known the one light has what that says.
             [_] if allowed.sum_known && allowed.ranges.len() == 1 => (None, [0.0; 2]),
             [k] if !allowed.sum_known => {
                 let [low, high] = allowed.ranges[k];
+                lit = Some(k + 1);
                 let ends = [low, high.min(allowed.sum).max(low)];
                 (Some(&minimum.spectra[k + 1].counts[..]), ends.map(|end| end - minimum.amplitudes[k + 1]))
             }
@@ -74,7 +83,29 @@ impl Prover<'_, '_> {
         counts_into(&minimum.other, &self.all.noise, &mut seen);
         let (own, counts, rounding) =
             (&minimum.spectra[s].counts[..], &self.all.counts[..], self.all.rounding);
-        Some(About { minimum, own, amplitude, light, pull_lit, range, counts, seen, rounding })
+        let prior = |source: Option<usize>, of_temperature: bool, units: f64| {
+            let row = minimum.priors.iter();
+            let mut row =
+                row.filter(|row| Some(row.source) == source && row.of_temperature == of_temperature);
+            row.next().map_or([0.0; 2], |row| [row.residual, row.per_unit * units])
+        };
+        let (of_axis, of_light) = (prior(Some(s), true, amplitude), prior(lit, false, 1.0));
+        let of_priors = minimum.priors.iter().map(|row| row.residual * row.residual).sum();
+        Some(About {
+            minimum,
+            own,
+            own_k: minimum.spectra[s].temperature_k,
+            amplitude,
+            light,
+            pull_lit: pull_lit + 2.0 * of_light[0] * of_light[1],
+            of_axis,
+            per_light: of_light[1],
+            of_priors,
+            range,
+            counts,
+            seen,
+            rounding,
+        })
     }
 }
 
@@ -84,10 +115,10 @@ impl About<'_> {
         if let Some(light) = self.light {
             product_into(light, &weight, &mut lit);
         }
-        let shift = 0.25 * square_of_quotient(&self.minimum.pull, &weight);
+        let shift = 0.25 * square_of_quotient(&self.minimum.pull, &weight) + self.of_priors;
         let length = |x: &[f64]| square_of_product(x, &weight).sqrt();
         let grain = self.rounding * (length(self.counts) + length(&self.seen));
-        let lit_lit = dot(&lit, &lit);
+        let lit_lit = dot(&lit, &lit) + self.per_light * self.per_light;
         Weighed { weight, lit, lit_lit, shift, grain }
     }
 
@@ -137,10 +168,18 @@ impl About<'_> {
             lit,
         });
         let [pulled, along, square, across, steep, lit, lit_along, half] = sums;
+        // The prior of the axis is ρ + ∂ρ/∂T (T − T*), ρ² of which is in the cost.
+        let [residual, per_k] = self.of_axis;
+        let (off, turn) = (
+            per_k * (cold.temperature_k - self.own_k),
+            per_k * (hot.temperature_k - cold.temperature_k),
+        );
+        let square = square + off * (off + 2.0 * residual);
+        let (across, steep) = (across + turn * (residual + off), steep + turn * turn);
         let (x, y, range) = (across + 0.5 * along, lit + 0.5 * self.pull_lit, self.range);
         let quadratic = OverRectangle { xx: steep, xy: lit_along, yy: *lit_lit, x, y, range };
         let farthest = range[0].abs().max(range[1].abs());
-        let sizes = shift + square + steep + farthest * farthest * lit_lit;
+        let sizes = shift + square.abs() + off * off + steep + farthest * farthest * lit_lit;
         let share = f64::EPSILON * (weight.len() / LANES + TERMS) as f64;
         let rounding = share * (cost + sizes);
         let fall = pulled + square + quadratic.least() - rounding;

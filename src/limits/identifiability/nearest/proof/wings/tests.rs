@@ -37,13 +37,20 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
             nodes.iter().map(|nu| (a + b * (nu / c).sin()).clamp(0.02, 0.99)).collect::<Vec<f64>>()
         };
         let (own, other) = (wave(), wave());
-        let unknowns = Unknowns::new(set.iter().copied()).unwrap();
+        let mut unknowns = Unknowns::new(set.iter().copied()).unwrap();
+        if trial % 2 == 0 {
+            for nuisance in set {
+                let unit = if *nuisance == Nuisance::Lighting { 0.1 } else { 10.0 };
+                unknowns = unknowns.prior(*nuisance, unit * 10f64.powf(-2.0 * draw())).unwrap();
+            }
+        }
         let range = StateRange::default();
+        let photons = 1e4;
         let best = NearestSolver::new(&bands, &surroundings, unknowns.clone(), range)
-            .per_photon(&own, &other, &state, f64::INFINITY)
+            .per_photon(&own, &other, &state, photons)
             .unwrap();
         let mut comparison = Comparison::new(&bands, &surroundings, unknowns, range);
-        let metric = Metric::PerPhoton { photons: f64::INFINITY };
+        let metric = Metric::PerPhoton { photons };
         let target = comparison.aim(&own, &other, &state, metric).unwrap();
         let reach = best.distance * (1.0 + 3.0 * draw().powi(2));
         let mut memory = Memory::default();
