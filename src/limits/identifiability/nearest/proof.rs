@@ -44,7 +44,7 @@ const MARGIN: f64 = 1e-12;
 /// Boxes looked at most, by the number of unknown temperatures.
 const BOXES: [u64; 4] = [1, 2_000, 6_000, 6_000];
 /// The same where the bound leaves a prior out: what is wanting then no box brings.
-const BOXES_WITHOUT_PRIORS: u64 = 60;
+const BOXES_WITHOUT_PRIORS: u64 = 30;
 /// Nearer states that are followed at most.
 const RESTARTS: usize = 30;
 /// Descents into valleys on the way, boxes before the first one (most proofs need no more), and boxes after which another one
@@ -140,9 +140,11 @@ impl Prover<'_, '_> {
         goal: Goal,
     ) -> Outcome {
         let Goal { limit, enough, rounding, boxes } = goal;
-        let boxes = if self.all.priors.are_rows() { boxes } else { boxes.min(BOXES_WITHOUT_PRIORS) };
+        // Where the bound leaves a prior out the best state is no minimum of what it is of: nothing closes about that.
+        let is_whole = self.all.priors.are_rows();
+        let boxes = if is_whole { boxes } else { boxes.min(BOXES_WITHOUT_PRIORS) };
         let mut queue = BestFirst::new(boxes);
-        let minimum = best.map(|best| self.minimum(comparison, target, &best.state));
+        let minimum = best.filter(|_| is_whole).map(|best| self.minimum(comparison, target, &best.state));
         if minimum.as_ref().is_some_and(|minimum| self.all.allowed.at_limit(&minimum.amplitudes)) {
             self.all.at_limit();
         }

@@ -246,8 +246,7 @@ fn merged_into<'v, 'a>(
         let bands = all.sources.bands.len();
         let [counts, noise] = [&all.counts, &all.noise].map(|x| neighbours_summed(&x[..bands], count));
         let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
-        let (sources, allowed, priors) =
-            (all.sources.merged(count), all.allowed.clone(), all.priors.clone());
+        let (sources, allowed, priors) = (all.sources.merged(count), all.allowed.clone(), all.priors.clone());
         let mut view = View::new(sources, allowed, priors, [root, counts, noise], all.reach);
         view.shaped.clone_from(&all.shaped);
         view

@@ -2,6 +2,7 @@
 //! shares no code with them in `hadar accuracy brute-force`.
 
 mod amplitudes;
+mod priors;
 
 use super::amplitudes::Ray;
 use super::metric::{Ellipsoid, Metric};
@@ -103,7 +104,8 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
     let nodes = bands.nodes_cm1().to_vec();
     let all = [Nuisance::Temperature, Nuisance::Lighting, Nuisance::Gain, Nuisance::EnvironmentTemperature];
     // With priors on all of them where each is a residual of the bound: without the gain, and one of lighting and surroundings.
-    for (set, with_priors) in (1..16_usize).map(|set| (set, false)).chain([1, 2, 3, 8, 9].map(|set| (set, true)))
+    for (set, with_priors) in
+        (1..16_usize).map(|set| (set, false)).chain([1, 2, 3, 8, 9].map(|set| (set, true)))
     {
         let unknown: Vec<Nuisance> = (0..4).filter(|i| set >> i & 1 == 1).map(|i| all[i]).collect();
         let mut unknowns = Unknowns::new(unknown.iter().copied()).unwrap();

@@ -116,7 +116,8 @@ impl Fit {
         }
         let columns: Vec<&[f64]> = self.free.iter().map(Vec::as_slice).collect();
         let limit = (self.sum_limit - low * n as f64).max(0.0);
-        let priors: Vec<[f64; 2]> = self.priors.iter().map(|[square, centre]| [*square, centre - low]).collect();
+        let priors: Vec<[f64; 2]> =
+            self.priors.iter().map(|[square, centre]| [*square, centre - low]).collect();
         let fitted = least_squares(&columns, &goal, own.gain, &priors, [high - low, limit]);
         fitted.iter().map(|p| p + low).collect()
     }

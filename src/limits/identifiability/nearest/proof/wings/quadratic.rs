@@ -170,10 +170,8 @@ impl About<'_> {
         let [pulled, along, square, across, steep, lit, lit_along, half] = sums;
         // The prior of the axis is ρ + ∂ρ/∂T (T − T*), ρ² of which is in the cost.
         let [residual, per_k] = self.of_axis;
-        let (off, turn) = (
-            per_k * (cold.temperature_k - self.own_k),
-            per_k * (hot.temperature_k - cold.temperature_k),
-        );
+        let (off, turn) =
+            (per_k * (cold.temperature_k - self.own_k), per_k * (hot.temperature_k - cold.temperature_k));
         let square = square + off * (off + 2.0 * residual);
         let (across, steep) = (across + turn * (residual + off), steep + turn * turn);
         let (x, y, range) = (across + 0.5 * along, lit + 0.5 * self.pull_lit, self.range);
