@@ -11,8 +11,9 @@
 //! ratio of 1 is out of reach.
 
 mod kernels;
+mod made_up;
 
-use kernels::{BANDS, CUBE, MATERIALS, Scene};
+use kernels::{BANDS, CUBE, Scene, materials};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -171,9 +172,23 @@ fn works() -> Vec<Work> {
     let signal_and_columns = 16.0;
     // Of n columns: u a, inner products, taken off the later ones; the last once more.
     let orthogonal = |n: f64| n + n * (n + 1.0) / 2.0 + n * (n - 1.0) / 2.0 + n + 1.0;
-    let materials = MATERIALS as f64;
     // A target's own: S, columns, contrast, orthogonalisation, m and kᵢ.
     let of_target = signal_and_columns + orthogonal(2.0) + 8.0;
+    let matrix = |kernel: &'static str, calls: usize| {
+        let others = materials(kernel) as f64 - 1.0;
+        Work {
+            kernel,
+            unit: "pair of a matrix",
+            units: (others + 1.0) * others,
+            calls,
+            // Δ and Δ², the same both ways, then m Δ² and two kᵢ Δ.
+            operations: (4.0 + of_target / others) * bands,
+            divisions: bands / others,
+            // e′, and a fifth of e, m and the kᵢ.
+            cache_bytes: (8.0 + 32.0 / 5.0 + 100.0 / others) * bands,
+            memory_bytes: 0.0,
+        }
+    };
     // A dozen states each with B(T′) by one exponential, S − S′, columns, inner products, √; 130 temperatures of the
     // grid in 134 bands with 8 operations.
     let (states, grid) = (12.0, 130.0 * 134.0);
@@ -200,18 +215,9 @@ fn works() -> Vec<Work> {
             cache_bytes: (24.0 + 32.0 + 96.0 + 24.0) * bands,
             memory_bytes: 0.0,
         },
-        Work {
-            kernel: "local matrix",
-            unit: "pair of a matrix",
-            units: materials * (materials - 1.0),
-            calls: 10,
-            // Δ and Δ², the same both ways, then m Δ² and two kᵢ Δ.
-            operations: (4.0 + of_target / (materials - 1.0)) * bands,
-            divisions: bands / (materials - 1.0),
-            // e′, and a fifth of e, m and the kᵢ.
-            cache_bytes: (8.0 + 32.0 / 5.0 + 100.0 / (materials - 1.0)) * bands,
-            memory_bytes: 0.0,
-        },
+        matrix("local matrix", 10),
+        matrix("local matrix of 300", 1),
+        matrix("local matrix of 1000", 1),
         Work {
             kernel: "nearest",
             unit: "nearest state",

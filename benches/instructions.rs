@@ -4,6 +4,7 @@
 //! in which the set-up cancels. Without arguments it names the kernels.
 
 mod kernels;
+mod made_up;
 
 use kernels::{NAMES, Scene};
 

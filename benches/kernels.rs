@@ -1,8 +1,9 @@
 //! The core kernels, each made ready to be called again and again, for the benches that count and bound them.
 //!
-//! Skin against aluminium over 536 bands (715 to 1250 cm⁻¹), surroundings at 20 °C, as in `distances.rs`. Every call gets
+//! Skin against aluminium over 536 bands (715 to 1250 cm⁻¹), surroundings at 20 °C. Every call gets
 //! another temperature than the call before, so that nothing may be kept from it.
 
+use crate::made_up::{counts, library};
 use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
@@ -32,10 +33,14 @@ pub(crate) const NAMES: [&str; 8] = [
     "poisson draws",
 ];
 
-/// Bands of the spectra, materials of the library, samples of the cube.
+/// Bands of the spectra, samples of the cube.
 pub(crate) const BANDS: usize = 536;
-pub(crate) const MATERIALS: usize = 30;
 pub(crate) const CUBE: [usize; 3] = [32, 64, 54];
+
+/// How many materials a matrix has: what its name says, or 30.
+pub(crate) fn materials(name: &str) -> usize {
+    name.rsplit(' ').next().and_then(|count| count.parse().ok()).unwrap_or(30)
+}
 
 /// What the kernels work on.
 pub(crate) struct Scene {
@@ -95,8 +100,8 @@ impl Scene {
                     );
                 })
             }
-            "local matrix" => {
-                let library: Vec<Vec<f64>> = (0..MATERIALS).map(|i| self.made_up(i)).collect();
+            "local matrix" | "local matrix of 300" | "local matrix of 1000" => {
+                let library = library(nu, materials(name));
                 let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, self.unknowns.clone());
                 let states = [at(0), at(1)];
                 Box::new(move |call| {
@@ -149,19 +154,6 @@ impl Scene {
         })
     }
 
-    /// The made-up materials of `distances.rs`.
-    fn made_up(&self, material: usize) -> Vec<f64> {
-        let emissivity = |&nu: &f64| {
-            let place = (nu - 985.0) / 265.0;
-            let waves = (1..=5).map(|j| {
-                let phase = f64::from(j) * std::f64::consts::PI * (place + 1.0);
-                0.1 * (1.7 * (material as f64 * 5.0 + f64::from(j))).sin() * phase.cos()
-            });
-            (0.8 + waves.sum::<f64>()).clamp(0.05, 0.99)
-        };
-        self.bands.nodes_cm1().iter().map(emissivity).collect()
-    }
-
     /// Mean counts of the person and of the nearest robot, 1.2763e6 photons in all: d = 1.
     fn means(&self) -> [Vec<f64>; 2] {
         let signal = |emissivity: &[f64], temperature_k: f64, lighting: f64| {
@@ -174,17 +166,10 @@ impl Scene {
     }
 }
 
-/// Counts of some 10⁴ with strong texture.
+/// A cube with strong texture.
 fn cube() -> Cube {
     let [rows, columns, bands] = CUBE;
-    let mut state = 1_u32;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        (state >> 20) as f32
-    };
-    let samples = (0..rows * columns * bands).map(|i| 1e4 + next() + (i % bands) as f32).collect();
     let shape = Shape::new(rows, columns, bands).expect("a shape");
+    let samples = counts(shape.len(), bands);
     Cube::from(MemoryCube::new(shape, samples).expect("as many samples as the shape has"))
 }

@@ -1,8 +1,10 @@
 //! How long the information of all windows of a heat cube takes, and whether it reaches a requirement.
 //!
-//! `cargo bench --bench ranging`: 540 × 960 × 54 samples in memory (the case `ranging` of `numpy_peer.py` is the
-//! full cell with
-//! 5 × 5 windows), and 1080 × 1920 × 54 read from a file by rows, beside a copy of as many samples in memory.
+//! `cargo bench --bench ranging`: 540 × 960 × 54 samples in memory, and 1080 × 1920 × 54 read from a file by rows, beside a copy
+//! of as many samples in memory. The case `windows` of `numpy_peer.py` is the full cell with windows of 5 × 5: the sums of both
+//! are printed.
+
+mod made_up;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::cube::{Cube, MemoryCube, Shape};
@@ -11,20 +13,9 @@ use hadar::ranging::information::decide::decide;
 use hadar::ranging::information::{Cell, Request, Window, information, information_by_rows};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar_formats::cube::write_npy;
+use made_up::counts;
 use std::hint::black_box;
 use std::ops::Range;
-
-/// Counts of some 10⁴ with strong texture.
-fn counts(shape: Shape) -> Vec<f32> {
-    let mut state = 1_u32;
-    let mut next = || {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        (state >> 20) as f32
-    };
-    (0..shape.len()).map(|i| 1e4 + next() + (i % shape.bands()) as f32).collect()
-}
 
 fn request<'a>(window: usize, noise: &'a NoiseVariance, cells: &'a [Cell]) -> Request<'a> {
     Request {
@@ -40,7 +31,7 @@ fn request<'a>(window: usize, noise: &'a NoiseVariance, cells: &'a [Cell]) -> Re
 fn in_memory(criterion: &mut Criterion) {
     let shape = Shape::new(540, 960, 54).expect("a shape");
     let noise = NoiseVariance::None;
-    let textured = counts(shape);
+    let textured = counts(shape.len(), shape.bands());
     // Level, but for a patch.
     let level_but = |rows: Range<usize>, columns: Range<usize>| {
         let mut level = vec![1e4_f32; shape.len()];
@@ -70,6 +61,7 @@ fn in_memory(criterion: &mut Criterion) {
     for (name, cube) in [("textured", &textured), ("level but for a patch", &patch), ("half textured", &half)]
     {
         let map = information(cube, &request(5, &noise, &[Cell::Full])).expect("sound counts");
+        println!("sum of the windows, {name}: {:.11e}", map.cell(Cell::Full).iter().sum::<f64>());
         let required = 0.05 * map.cell(Cell::Full).iter().fold(0.0, |most: f64, j| most.max(*j));
         let decision = decide(cube, &request(5, &noise, &[]), required).expect("sound counts");
         println!("{name}: {:?}", decision.stats);
@@ -83,7 +75,7 @@ fn in_memory(criterion: &mut Criterion) {
 fn from_a_file(criterion: &mut Criterion) {
     let shape = Shape::new(1080, 1920, 54).expect("a shape");
     let noise = NoiseVariance::None;
-    let samples = counts(shape);
+    let samples = counts(shape.len(), shape.bands());
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("cube.npy");
     write_npy(&path, shape, &samples).expect("room for the file");

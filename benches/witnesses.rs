@@ -1,7 +1,7 @@
 //! How long simulated spectra, their judgement and the training of classifiers take.
 //!
 //! `cargo bench --bench witnesses`. Skin at 37 °C against the nearest robot, 536 bands, 1.276e6 photons (d = 1). NumPy's
-//! draws (case `draws` of `numpy_peer.py`) are of the same means.
+//! draws (case `judged` of `numpy_peer.py`) are of the same means.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::fisher::{Nuisance, Unknowns};
