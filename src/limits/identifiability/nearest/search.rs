@@ -79,7 +79,7 @@ impl Comparison<'_> {
         let scene: Vec<f64> = std::iter::once(target.state.temperature_k)
             .chain(target.state.environment_k.iter().copied())
             .collect();
-        let (thinned, grid) = table.grid(steps, &scene, range);
+        let (thinned, grid) = table.grid(&whitened.emissivity, steps, &scene, range);
         if !linear {
             let temperatures: Vec<f64> = grid.iter().map(|emission| emission.temperature_k).collect();
             return self.linearised_grid(target, own, &temperatures);
@@ -190,7 +190,7 @@ impl Comparison<'_> {
         let (states, fitted): (Vec<State>, Vec<Fitted>) = grid
             .iter()
             .map(|emission| {
-                let (state, fitted) = fit.point(whitened, thinned, own, emission);
+                let (state, fitted) = fit.point(whitened, own, emission);
                 (state, with_priors(fitted, emission.temperature_k))
             })
             .unzip();

@@ -4,7 +4,7 @@
 //! factors (and, with the gain, in G′ and G′V′). The derivative of ‖r‖² along T′ follows from r alone, by the
 //! envelope theorem: −2 G′ r·W e′B′(T′), here without the 2.
 
-use super::table::{Emission, Thinned};
+use super::table::Emission;
 use super::whitened::Whitened;
 use crate::box_least_squares::BoxLeastSquares;
 use crate::scene::State;
@@ -40,12 +40,11 @@ impl Fit {
     pub(super) fn point(
         &self,
         whitened: &Whitened,
-        thinned: &Thinned,
         own: &State,
         emission: &Emission,
     ) -> (State, Fitted) {
         crate::stop::check();
-        let (mut base, slope) = whitened.emission(thinned, emission);
+        let [mut base, slope] = whitened.emission(emission);
         add(&mut base, 1.0, &self.known);
         let signal = &whitened.signal;
         let (gain, factors) =
@@ -68,8 +67,7 @@ impl Fit {
         (state, Fitted { cost: dot(&residual, &residual) + of_priors, slope })
     }
 
-    /// Along a grid, for at most one unknown factor, no gain and one node per band: the factor and the fit at
-    /// each T′. `None` if the scene is not of this kind.
+    /// Along a grid, for at most one unknown factor and no gain: the factor and the fit at each T′. `None` if the scene is not of this kind.
     pub(super) fn along(
         &self,
         whitened: &Whitened,
@@ -77,13 +75,13 @@ impl Fit {
         grid: &[&Emission],
     ) -> Option<Vec<(f64, Fitted)>> {
         crate::stop::check();
-        let strength = whitened.strength.as_deref()?;
         if self.gain || self.free.len() > 1 {
             return None;
         }
         let [low, high] = self.range;
         let high = high.min(self.sum_limit).max(low);
         // Zeros up to a whole chunk add nothing to any sum.
+        let strength = &whitened.strength;
         let zeros = || Aligned::zeros(strength.len().next_multiple_of(LANES));
         let (mut goal, mut column, mut scaled) = (zeros(), zeros(), zeros());
         add(&mut goal, 1.0, &whitened.signal);
@@ -97,8 +95,8 @@ impl Fit {
         let size = size + square;
         let reach = if size > 0.0 { 1.0 / size } else { 0.0 };
         let fits = grid.iter().map(|emission| {
-            let spectra =
-                Spectra { goal: &goal, strength: &scaled, value: &emission.value, slope: &emission.slope };
+            let [value, slope] = emission.spectra();
+            let spectra = Spectra { goal: &goal, strength: &scaled, value, slope };
             fit_one(spectra, &column, reach, [square, centre], [low, high])
         });
         Some(fits.map(|(factor, cost, slope)| (factor, Fitted { cost, slope })).collect())
@@ -186,7 +184,7 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
     }
 }
 
-/// Whitened spectra of a fit with one node per band, in whole chunks.
+/// Whitened spectra of a fit, in whole chunks.
 struct Spectra<'a> {
     goal: &'a [f64],
     strength: &'a [f64],

@@ -1,7 +1,8 @@
 //! Thinned bands, and blackbody radiances at their nodes for a grid of temperatures.
 //!
 //! Temperatures grow by [`RATIO`] from the coldest there is, the same for every pair, so that what one search
-//! has computed serves the next ones; around the temperatures of a scene there are more of them.
+//! has computed serves the next ones; around the temperatures of a scene there are more of them. Where bands have several nodes
+//! the emission of one alternative is kept in its bands as well: whatever scene it is searched in, it is the same.
 
 use crate::order;
 use crate::planck;
@@ -24,8 +25,10 @@ const AROUND: [f64; 7] = [-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03];
 #[derive(Debug, Clone)]
 pub(super) struct Emission {
     pub(super) temperature_k: f64,
-    pub(super) value: Aligned,
-    pub(super) slope: Aligned,
+    value: Aligned,
+    slope: Aligned,
+    /// The same of the alternative in bands of several nodes.
+    banded: Option<[Aligned; 2]>,
 }
 
 impl Emission {
@@ -33,7 +36,28 @@ impl Emission {
         let whole = || Aligned::zeros(nodes_cm1.len().next_multiple_of(LANES));
         let (mut value, mut slope) = (whole(), whole());
         planck::photon_radiance_and_slope_into(nodes_cm1, temperature_k, &mut value, &mut slope);
-        Self { temperature_k, value, slope }
+        Self { temperature_k, value, slope, banded: None }
+    }
+
+    /// What the alternative sends, and its slope, to be multiplied by the strength of each band.
+    pub(super) fn spectra(&self) -> [&[f64]; 2] {
+        match &self.banded {
+            Some([value, slope]) => [value, slope],
+            None => [&self.value, &self.slope],
+        }
+    }
+
+    /// Makes sure of the spectra in bands of several nodes.
+    fn band(&mut self, bands: &Bands, emissivity: &[f64]) {
+        if self.banded.is_none() {
+            let of = |spectrum: &[f64]| {
+                let sent: Vec<f64> = spectrum.iter().zip(emissivity).map(|(b, e)| b * e).collect();
+                let mut banded = Aligned::zeros(bands.len().next_multiple_of(LANES));
+                bands.weigh_into(&sent, &mut banded[..bands.len()]);
+                banded
+            };
+            self.banded = Some([of(&self.value), of(&self.slope)]);
+        }
     }
 }
 
@@ -53,13 +77,16 @@ pub(crate) struct EmissionTable {
     pub(super) thinned: Thinned,
     even: Vec<Option<Emission>>,
     around: Vec<Emission>,
+    /// Emissivity of the alternative whose spectra stand in the bands, at the thinned nodes.
+    emissivity: Vec<f64>,
 }
 
 impl EmissionTable {
     pub(crate) fn new(whole: &Bands) -> Self {
         let stride = (whole.len() / ENOUGH_BANDS).max(1);
         let (bands, nodes) = whole.every(stride);
-        Self { thinned: Thinned { bands, nodes, stride }, even: Vec::new(), around: Vec::new() }
+        let thinned = Thinned { bands, nodes, stride };
+        Self { thinned, even: Vec::new(), around: Vec::new(), emissivity: Vec::new() }
     }
 
     /// The first step of the grid at which `weights` emit `goal` or more, between two temperatures (K).
@@ -77,9 +104,11 @@ impl EmissionTable {
     }
 
     /// Emissions in the order of their temperatures: the even grid over `steps`, more around the
-    /// temperatures of a scene, and the ends of the range where it cuts the grid.
+    /// temperatures of a scene, and the ends of the range where it cuts the grid. They are of an alternative of this emissivity at the
+    /// thinned nodes.
     pub(super) fn grid(
         &mut self,
+        emissivity: &[f64],
         steps: std::ops::RangeInclusive<usize>,
         scene_k: &[f64],
         [low_k, high_k]: [f64; 2],
@@ -109,6 +138,21 @@ impl EmissionTable {
                     None => Emission::of(self.thinned.bands.nodes_cm1(), t),
                 })
                 .collect();
+        }
+        let bands = &self.thinned.bands;
+        if !bands.one_node_per_band() {
+            if self.emissivity != emissivity {
+                self.emissivity = emissivity.to_vec();
+                let all = self.even.iter_mut().flatten().chain(&mut self.around);
+                all.for_each(|emission| emission.banded = None);
+            }
+            let even = chosen.iter();
+            for &step in even {
+                if let Some(Some(emission)) = self.even.get_mut(step) {
+                    emission.band(bands, emissivity);
+                }
+            }
+            self.around.iter_mut().for_each(|emission| emission.band(bands, emissivity));
         }
         let even = chosen.iter().filter_map(|&step| self.even.get(step)?.as_ref());
         let mut all: Vec<&Emission> = even

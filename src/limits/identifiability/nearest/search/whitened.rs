@@ -10,9 +10,9 @@ pub(super) struct Whitened {
     whitening: Vec<f64>,
     /// Whitened signal of the target.
     pub(super) signal: Aligned,
-    /// Emissivity of the alternative at the thinned nodes, and with one node per band the whitened e′ of each band.
-    emissivity: Vec<f64>,
-    pub(super) strength: Option<Aligned>,
+    /// Emissivity of the alternative at the thinned nodes, and what its emission in each band is multiplied by.
+    pub(super) emissivity: Vec<f64>,
+    pub(super) strength: Aligned,
 }
 
 impl Whitened {
@@ -27,11 +27,13 @@ impl Whitened {
             .collect();
         let emissivity: Vec<f64> = thinned.nodes.iter().map(|&j| target.alternative[j]).collect();
         let signal: Vec<f64> = signal.iter().zip(&whitening).map(|(s, w)| s * w).collect();
-        let strength = thinned.bands.one_node_per_band().then(|| {
+        let strength = if thinned.bands.one_node_per_band() {
             let nodes = emissivity.iter().zip(thinned.bands.weights_cm1()).zip(&whitening);
             let strength: Vec<f64> = nodes.map(|((e, width), w)| e * width * w).collect();
             Aligned::from(&strength[..])
-        });
+        } else {
+            Aligned::from(&whitening[..])
+        };
         Self { whitening, signal: Aligned::from(&signal[..]), emissivity, strength }
     }
 
@@ -49,12 +51,8 @@ impl Whitened {
     }
 
     /// The whitened emission of the alternative, and its derivative along T′.
-    pub(super) fn emission(&self, thinned: &Thinned, emission: &Emission) -> (Vec<f64>, Vec<f64>) {
-        let of = |spectrum: &[f64]| {
-            let values: Vec<f64> = spectrum.iter().zip(&self.emissivity).map(|(b, e)| b * e).collect();
-            self.whiten(thinned, &values)
-        };
-        (of(&emission.value), of(&emission.slope))
+    pub(super) fn emission(&self, emission: &Emission) -> [Vec<f64>; 2] {
+        emission.spectra().map(|spectrum| spectrum.iter().zip(&*self.strength).map(|(b, s)| b * s).collect())
     }
 
     /// Σ over the thinned bands of the alternative's emission is that of these times the blackbody radiance.

@@ -161,7 +161,7 @@ fn with_priors(set: usize, draw: &mut impl FnMut() -> f64) -> Unknowns {
 fn no_state_is_nearer_than_a_proof_with_priors_says() {
     let mut draw = draws(23);
     let (mut told, mut proved, mut tight) = (0, 0, 0);
-    for trial in 0..100 {
+    for trial in 0..300 {
         let scene = Scene::drawn(&mut draw);
         let unknowns = with_priors(1 + trial % 15, &mut draw);
         let found = scene.nearest(&unknowns);
