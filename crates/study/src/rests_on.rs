@@ -12,6 +12,7 @@ use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::spectrum::Bands;
 use hadar_scenario::{DistanceKind, Setting};
+use std::collections::{HashMap, HashSet};
 
 /// Share of draws of the emissivities that settles a question.
 const SETTLED: f64 = 0.95;
@@ -82,7 +83,7 @@ impl Study {
         let others = apart.iter().flat_map(|found| &found.told_apart);
         let constants = told()
             .find_map(|(_, pair)| self.one_numbers(&pair.alternative))
-            .or_else(|| others.clone().find_map(|pair| self.one_numbers_of(pair)));
+            .or_else(|| self.one_numbers_among(others.clone()));
         found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
         let least = |pair: &PairResult| bounds_lower(pair).unwrap_or_default();
         let hardest = told().min_by(|(_, a), (_, b)| least(a).total_cmp(&least(b)));
@@ -101,6 +102,7 @@ impl Study {
         if ranges.is_empty() && others.clone().next().is_some() {
             let hold_in = |range: StateRange| {
                 let told = Self { range, ..self.clone() }.told_apart(Skipping::On, &|_, _| ())?.told_apart;
+                let told: HashSet<&[String; 2]> = told.iter().collect();
                 Ok(others.clone().all(|pair| told.contains(pair)))
             };
             ranges = self.ranges_that_decide(false, &hold_in)?;
@@ -112,10 +114,14 @@ impl Study {
         Ok(found)
     }
 
-    /// Emissivities of two of all materials, where each is entered as one number.
-    fn one_numbers_of(&self, [one, other]: &[String; 2]) -> Option<[f64; 2]> {
-        let of = |name: &String| self.all_members().find(|surface| surface.name == *name);
-        of(one)?.placeholders(of(other)?)
+    /// Emissivities of the first pair of materials of which each is entered as one number.
+    fn one_numbers_among<'p>(&self, mut pairs: impl Iterator<Item = &'p [String; 2]>) -> Option<[f64; 2]> {
+        let mut one_number: HashMap<&str, Option<f64>> = HashMap::new();
+        for surface in self.all_members() {
+            one_number.entry(&surface.name).or_insert(surface.one_number);
+        }
+        let of = |name: &String| one_number.get(name.as_str()).copied().flatten();
+        pairs.find_map(|[one, other]| Some([of(one)?, of(other)?]))
     }
 
     /// What the distance of a pair hangs on, of which so much is proved. `errors` as in [`Reached`].

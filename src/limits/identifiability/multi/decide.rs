@@ -18,7 +18,7 @@
 //! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart.
 
 use super::beyond::{Beyond, Seen};
-use super::{LibraryScene, Progress};
+use super::{LibraryScene, Progress, check_count};
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
@@ -129,6 +129,7 @@ impl LibraryScene<'_> {
     ) -> Result<Decisions> {
         check::positive("required distance", required, "")?;
         let count = emissivities.len();
+        check_count(count)?;
         let few = match skipping {
             Skipping::On => Few::of(self, emissivities, counting)?,
             Skipping::Off => None,

@@ -20,6 +20,7 @@ mod lent;
 
 use self::kernels::{Contrast, MOST_NUISANCES, TOGETHER, contrast_into, weighted_square};
 use self::lent::{Lent, grouped};
+use super::check_count;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
@@ -176,6 +177,7 @@ impl<'a> LocalMatrix<'a> {
 
     fn matrix(&mut self, emissivities: &[&[f64]], state: &State, weights: Weights<'_>) -> Result<Vec<f64>> {
         let count = emissivities.len();
+        check_count(count)?;
         let nodes = self.jacobian.surroundings().nodes_cm1().len();
         if let Some(other) = emissivities.iter().find(|emissivity| emissivity.len() != nodes) {
             let (what, found) = ("emissivity".into(), other.len());

@@ -4,6 +4,7 @@
 //! depend on the number of threads. Of a pair its distance, the bound and the error are kept, 24 bytes: 24 MB for a thousand
 //! materials.
 
+use super::check_count;
 use crate::error::Result;
 use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
@@ -97,6 +98,7 @@ impl<'a> LibraryScene<'a> {
         pair: impl Fn(&mut NearestSolver<'a>, &[f64], &[f64]) -> Result<NearestDistance> + Sync,
     ) -> Result<NearestMatrix> {
         let (done, count) = (AtomicUsize::new(0), emissivities.len());
+        check_count(count)?;
         let row = |solver: &mut NearestSolver<'a>, target: usize| -> Result<Vec<[f64; 3]>> {
             let found = emissivities.iter().enumerate().map(|(other, emissivity)| {
                 if other == target {

@@ -37,12 +37,7 @@ pub(super) struct Fit {
 
 impl Fit {
     /// At one T′, for any number of unknown factors, and the gain.
-    pub(super) fn point(
-        &self,
-        whitened: &Whitened,
-        own: &State,
-        emission: &Emission,
-    ) -> (State, Fitted) {
+    pub(super) fn point(&self, whitened: &Whitened, own: &State, emission: &Emission) -> (State, Fitted) {
         crate::stop::check();
         let [mut base, slope] = whitened.emission(emission);
         add(&mut base, 1.0, &self.known);
