@@ -164,11 +164,13 @@ HEAVY = {
     "target": {"material": "skin", "temperature": "37 degC"},
     "environment": [
         {"temperature": f"{5 + 7 * k} degC", "lighting": 0.1125, "material": material}
-        for k, material in enumerate(["concrete", "asphalt", "grass-dry", "brick-red", "pmma", "steel-rough"])
+        for k, material in enumerate(
+            ["concrete", "asphalt", "grass-dry", "brick-red", "pmma", "steel-rough", "soda-lime-glass", "aluminium"]
+        )
     ],
-    "alternatives": {"materials": ["aluminium"]},
+    "alternatives": {"materials": ["pmma", "aluminium"]},
     "bands": {"start": "715 cm^-1", "stop": "1250 cm^-1", "step": "0.1 cm^-1"},
-    "unknown": {"priors": {"temperature": "2 K", "lighting": 0.1}, "nuisances": ["temperature", "lighting"]},
+    "unknown": {"nuisances": ["temperature", "lighting", "gain", "environment-temperature"]},
 }
 
 

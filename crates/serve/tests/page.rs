@@ -302,7 +302,7 @@ fn a_hundred_at_once_are_answered_beside_clients_that_never_finish() {
     drop(idle);
 }
 
-/// A question of hours: eight surroundings with priors.
+/// A question of minutes: eight surroundings of unknown temperatures.
 fn heavy() -> String {
     let object = |i: usize| {
         let material =
@@ -316,7 +316,7 @@ fn heavy() -> String {
     SCENARIO
         .replace("[[environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n", &surroundings)
         .replace("20 cm^-1", "0.1 cm^-1")
-        + "[unknown]\npriors = { temperature = \"2 K\", lighting = 0.1 }\nnuisances = [\"temperature\", \"lighting\"]\n"
+        + "[unknown]\nnuisances = [\"temperature\", \"lighting\", \"gain\", \"environment-temperature\"]\n"
 }
 
 /// Ten of the heaviest take no more than their own places, and give those back when nobody waits for them any more.
@@ -338,7 +338,7 @@ fn the_heaviest_keep_nobody_waiting() {
         stream.set_nonblocking(true).unwrap();
         assert!(
             stream.read(&mut [0; 1]).is_err(),
-            "a question of hours was answered: the test shows nothing"
+            "a question of minutes was answered: the test shows nothing"
         );
     }
     drop(waiting);
