@@ -247,10 +247,33 @@ impl Study {
         kind: DistanceKind,
         alternative: &Surface,
     ) -> Result<Option<f64>> {
+        self.photons_by(|photons| self.distance_per_photon(kind, alternative, photons))
+    }
+
+    /// Photons at which what is proved of √N d₀(N) meets the requirement, at least as many as at which the distance does.
+    pub(super) fn photons_enough_with_priors(
+        &self,
+        alternative: &Surface,
+        photons: Option<f64>,
+    ) -> Result<Option<f64>> {
+        let Some(photons) = photons.filter(|photons| *photons > 0.0) else { return Ok(photons) };
+        let sure = |photons: f64| {
+            let found = self.nearest(alternative, photons)?;
+            Ok((found.distance, self.sure(found.distance, found.lower)))
+        };
+        let (distance, proved) = sure(photons)?;
+        if proved >= distance {
+            return Ok(Some(photons));
+        }
+        let enough = self.photons_by(|photons| sure(photons).map(|(_, proved)| proved))?;
+        Ok(enough.map(|enough| enough.max(photons)))
+    }
+
+    /// The same of any distance per √photon that depends on the photons.
+    fn photons_by(&self, distance: impl Fn(f64) -> Result<f64>) -> Result<Option<f64>> {
         let excess = |log: f64| {
             let photons = log.exp();
-            let distance = self.distance_per_photon(kind, alternative, photons)?;
-            Ok((photons.sqrt() * distance / self.required).max(1e-300).ln())
+            Ok((photons.sqrt() * distance(photons)? / self.required).max(1e-300).ln())
         };
         // From a millionth of a photon to 10⁶⁰ of them.
         let (low, high) = (-14.0, 138.0);

@@ -210,6 +210,7 @@ impl Study {
             DistanceKind::Nearest if with_priors.is_none() => {
                 required(self.sure(nearest.distance, nearest.lower))
             }
+            DistanceKind::Nearest => self.photons_enough_with_priors(alternative, required_by.of(kind))?,
             _ => required_by.of(kind),
         };
         let condition = local.condition_number();

@@ -18,7 +18,8 @@
 //! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart.
 
 use super::beyond::{Beyond, Seen};
-use super::{LibraryScene, Progress, check_count};
+use super::count::check_count;
+use super::{LibraryScene, Progress};
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;

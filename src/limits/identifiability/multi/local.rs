@@ -20,7 +20,7 @@ mod lent;
 
 use self::kernels::{Contrast, MOST_NUISANCES, TOGETHER, contrast_into, weighted_square};
 use self::lent::{Lent, grouped};
-use super::check_count;
+use super::count::check_count;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};

@@ -4,7 +4,7 @@
 //! depend on the number of threads. Of a pair its distance, the bound and the error are kept, 24 bytes: 24 MB for a thousand
 //! materials.
 
-use super::check_count;
+use super::count::check_count;
 use crate::error::Result;
 use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
