@@ -80,7 +80,7 @@ pub(super) struct Bounder {
 
 /// Where the spectrum of a piece is.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
+enum Place {
     /// Of a source of known temperature.
     Fixed(usize),
     /// Of an axis.
@@ -331,7 +331,7 @@ impl Bounder {
         let mut along: Vec<f64> = whitened[..m].iter().map(|column| dot(column, &metric.shift)).collect();
         rows.clear();
         residuals.clear();
-        view.priors.put_pieces(pieces, places, |constant, entries| {
+        view.priors.put_pieces(pieces, |constant, entries| {
             let residual = constant + inner(entries, &quadratic.origin);
             along.iter_mut().zip(entries).for_each(|(along, entry)| *along += residual * entry);
             rows.extend_from_slice(entries);

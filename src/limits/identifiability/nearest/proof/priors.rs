@@ -7,7 +7,6 @@
 //! of factors beside an unknown gain, of temperatures of sources whose amplitude is unknown) only add to a distance; the bound leaves them out.
 
 use super::amplitudes::{Amplitudes, Pieces};
-use super::bound::Place;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::identifiability::space::value;
 use crate::scene::{Parameter, State};
@@ -95,11 +94,12 @@ impl Priors {
 
     /// ρ = constant + entries · z of the pieces of a box, row by row; no entries where it is not linear in them, of an amplitude that
     /// stands in it by its shape.
-    pub(super) fn put_pieces(&self, pieces: &Pieces, places: &[Place], mut put: impl FnMut(f64, &[f64])) {
-        let mut entries = vec![0.0; places.len()];
+    pub(super) fn put_pieces(&self, pieces: &Pieces, mut put: impl FnMut(f64, &[f64])) {
+        let count = pieces.source.len();
+        let mut entries = vec![0.0; count];
         for Row { prior: Prior { weight, centre, .. }, source, amplitude } in &self.rows {
             entries.fill(0.0);
-            let mut own = (0..places.len()).filter(|&i| pieces.source[i] == *source);
+            let mut own = (0..count).filter(|&i| pieces.source[i] == *source);
             let Some(first) = own.next() else { continue };
             if pieces.unit[first] != [1.0; 2] {
                 continue;

@@ -71,7 +71,8 @@ impl<'a, 'm> Prover<'a, 'm> {
         let space = &comparison.space;
         let reach = reach * (1.0 + 1e-9);
         let mut priors = Priors::new(comparison, target, reach);
-        let sources = Sources::new(comparison, target, &priors);
+        let sources =
+            Sources::new(comparison, target, |parameter, range| priors.within_reach(parameter, range));
         let counts: Vec<f64> = comparison.target.signal().iter().map(|s| target.counts * s).collect();
         let bands = [comparison.root().to_vec(), counts, comparison.noise().to_vec()];
         let unknown_lighting = space.unknowns.contains(Nuisance::Lighting);

@@ -14,7 +14,6 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
-use super::priors::Priors;
 use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::Blackbodies;
@@ -93,7 +92,11 @@ fn lowest(nodes_cm1: &[f64]) -> f64 {
 }
 
 impl<'a> Sources<'a> {
-    pub(super) fn new(comparison: &Comparison<'a>, target: &Target<'_>, priors: &Priors) -> Self {
+    pub(super) fn new(
+        comparison: &Comparison<'a>,
+        target: &Target<'_>,
+        within_reach: impl Fn(Parameter, [f64; 2]) -> [f64; 2],
+    ) -> Self {
         let space = &comparison.space;
         let surroundings = comparison.target.surroundings();
         let unknown = |nuisance| space.unknowns.contains(nuisance);
@@ -110,7 +113,7 @@ impl<'a> Sources<'a> {
             strength
         };
         let span = |nuisance, parameter, range: [f64; 2], known: f64| {
-            if unknown(nuisance) { priors.within_reach(parameter, range) } else { [known, known] }
+            if unknown(nuisance) { within_reach(parameter, range) } else { [known, known] }
         };
         let other = target.alternative;
         let surface = Source {
