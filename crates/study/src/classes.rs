@@ -255,8 +255,13 @@ impl Study {
                 }
                 None if study.unknowns.has_priors() => {
                     let photons = study.photons_with_priors(kind, alternative)?;
-                    let distance = photons.map_or(0.0, |photons| study.required / photons.sqrt());
-                    (distance, distance, 0.0)
+                    let enough = match kind {
+                        DistanceKind::Nearest => study.photons_enough_with_priors(alternative, photons)?,
+                        _ => photons,
+                    };
+                    let [distance, lower] = [photons, enough]
+                        .map(|photons| photons.map_or(0.0, |photons| study.required / photons.sqrt()));
+                    (distance, lower, 0.0)
                 }
                 None => {
                     let distance = study.distance_per_photon(kind, alternative, f64::INFINITY)?;

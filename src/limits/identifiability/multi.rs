@@ -19,6 +19,7 @@ mod scaling;
 
 pub use crate::demand::Skipping;
 pub use classes::{ClassDistances, Classes, MemberPair};
+pub use count::check_count;
 pub use decide::Decisions;
 pub use local::{LocalMatrix, Passes};
 pub use nearest::{LibraryScene, NearestMatrix, Progress};

@@ -4,7 +4,7 @@ use crate::support::answers::{
     EVERYTHING, FIVE, LIBRARY, by_alternative, close, example, has, identify, keys, number, pairs, same,
     texts,
 };
-use crate::support::folder::Folder;
+use crate::support::folder::{Folder, SCENARIO};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -424,5 +424,32 @@ fn nearly_dependent_unknowns_count() {
         assert!(number(&pair[error]) < 1e-9, "{pair}");
         let warnings = found["warnings"].as_array().unwrap();
         assert!(warnings.iter().all(|warning| warning["code"] != "unknown-without-effect"), "{warnings:?}");
+    }
+}
+
+/// Photons that are enough rest on what is proved, with priors too: as many as it takes where all is proved, more or no number
+/// where a proof leaves priors out.
+#[test]
+fn photons_that_are_enough_are_proved_with_priors_too() {
+    let folder = Folder::with(SCENARIO);
+    for (unknown, priors, is_proved) in [
+        (r#"["temperature", "lighting"]"#, r#"{ temperature = "2 K" }"#, true),
+        (r#"["temperature", "lighting"]"#, "{ lighting = 0.05 }", true),
+        (r#"["temperature", "environment-temperature"]"#, r#"{ environment-temperature = "3 K" }"#, true),
+        (r#"["temperature", "gain"]"#, r#"{ temperature = "1 K", gain = 0.02 }"#, false),
+        (r#"["temperature", "lighting", "gain"]"#, "{ gain = 0.02 }", false),
+        (
+            r#"["temperature", "lighting", "environment-temperature"]"#,
+            r#"{ environment-temperature = "3 K" }"#,
+            false,
+        ),
+    ] {
+        let set = [format!("unknown.nuisances={unknown}"), format!("unknown.priors={priors}")];
+        let answer = folder.json(&["identify", "a.toml", "--set", &set[0], "--set", &set[1]]);
+        let pair = &answer["pairs"][0];
+        let [needed, enough] = [0, 1].map(|end| pair["photons_required_bounds"][end].as_f64());
+        let needed = needed.expect("a number of photons");
+        assert_eq!(enough == Some(needed), is_proved, "{set:?}: {needed} {enough:?}");
+        assert!(enough.is_none_or(|enough| enough >= needed), "{set:?}: {needed} {enough:?}");
     }
 }

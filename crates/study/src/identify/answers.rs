@@ -3,7 +3,7 @@
 use crate::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
 use hadar::demand::{self, Ledger, Skipping, Thing, if_asked};
 use hadar::error::{Error, Result};
-use hadar::identifiability::multi::Progress;
+use hadar::identifiability::multi::{self, Progress};
 
 /// What is asked besides the distances to every alternative: nothing else is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +81,12 @@ impl Study {
         let (bands, filters) = asked.bands.unwrap_or_default();
         number_of("--bands", bands, self.bands.len())?;
         number_of("--filters", filters, self.bands.len())?;
+        if asked.matrix || asked.apart {
+            // Before the target is compared with each of them.
+            let count = self.materials()?.len();
+            multi::check_count(count)
+                .map_err(|error| error.at(self.scenario().place("alternatives.materials")))?;
+        }
         let ledger = Ledger::open();
         let section = Thing::Sections;
         let mut identification = self.identify()?;

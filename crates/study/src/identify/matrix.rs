@@ -11,6 +11,7 @@ use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::multi::{self, LibraryScene, LocalMatrix, NearestMatrix, Passes, Progress};
 use hadar_scenario::DistanceKind;
+use std::collections::HashMap;
 
 impl Study {
     /// Target and alternatives, each once; of classes all members.
@@ -19,8 +20,9 @@ impl Study {
     /// A single material; different spectra of the same name.
     pub fn materials(&self) -> Result<Vec<&Surface>> {
         let mut all: Vec<&Surface> = Vec::new();
+        let mut by_name: HashMap<&str, &Surface> = HashMap::new();
         for surface in self.all_members() {
-            match all.iter().find(|known| known.name == surface.name) {
+            match by_name.insert(&surface.name, surface) {
                 Some(known) if known.emissivity == surface.emissivity => {}
                 Some(_) => {
                     let found = format!("two different spectra are called `{}`", surface.name);

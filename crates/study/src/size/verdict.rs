@@ -263,6 +263,8 @@ impl Study {
         };
         let proved =
             pair.proof == NearestProof::Proved && self.scenario.requirement.by == DistanceKind::Nearest;
+        // What few counts decide is bounded between two states by photons alone, without what priors say of these.
+        let proved = proved && !(few_counts && self.unknowns.has_priors());
         let found_by = if proved { Grade::Proved } else { Grade::Searched };
         let grade = answer.map(|_| found_by.under(&conditions));
         let sentence = Finding {

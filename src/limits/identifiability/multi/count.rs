@@ -8,7 +8,10 @@ const MOST: usize = 20_000;
 const DISTANCE_S: f64 = 1e-4;
 
 /// Makes sure that there is room for all pairs of so many materials.
-pub(super) fn check_count(count: usize) -> Result<()> {
+///
+/// # Errors
+/// Of more than 20 000, with what they would take.
+pub fn check_count(count: usize) -> Result<()> {
     if count <= MOST {
         return Ok(());
     }

@@ -78,7 +78,7 @@ words! {
             may be too large.",
         remedy: "Rely on what is proved (distance_nearest_lower), or make an unknown known.",
         NearestSearch { distance, lower, priors } => {
-            let why = if *priors { ", which leaves some priors out (of the gain, or beside it)" } else { "" };
+            let why = if *priors { ", which leaves priors out," } else { "" };
             let proved = match 1.0 - lower / distance {
                 // Three digits would show the same number twice.
                 gap if gap < 0.01 => format!("comes within {gap:.0e} of it"),

@@ -14,6 +14,9 @@ use crate::scene::{Parameter, State};
 /// Rounding of a parameter, as a share of it.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Slope of a row from which on its square would soon be beyond numbers.
+const STEEPEST: f64 = 1e120;
+
 /// Parameter, w and θ.
 #[derive(Debug, Clone, Copy)]
 struct Prior {
@@ -69,12 +72,17 @@ impl Priors {
             let amplitude = match prior.parameter {
                 Parameter::Lighting(_) => None,
                 Parameter::Temperature => Some(1.0),
-                Parameter::EnvironmentTemperature(k) => Some(allowed.tied(k).filter(|lit| *lit > 0.0)?),
+                Parameter::EnvironmentTemperature(k) => Some(allowed.tied(k)?),
                 Parameter::Gain | Parameter::Material => return None,
             };
-            Some(Row { prior: *prior, source, amplitude })
+            // Of what is next to dark the slope of its row is beyond numbers.
+            let per_unit = prior.weight / amplitude.unwrap_or(1.0);
+            (per_unit < STEEPEST).then_some(Row { prior: *prior, source, amplitude })
         };
         self.rows = if allowed.gain_free { Vec::new() } else { self.all.iter().filter_map(row).collect() };
+        // The temperature of what is dark costs nothing where it is the target's: such a prior adds nothing.
+        let dark = |k: usize| !allowed.gain_free && allowed.tied(k) == Some(0.0);
+        self.all.retain(|prior| !matches!(prior.parameter, Parameter::EnvironmentTemperature(k) if dark(k)));
     }
 
     /// Whether the bound leaves none out.

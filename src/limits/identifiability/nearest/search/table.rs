@@ -146,8 +146,7 @@ impl EmissionTable {
                 let all = self.even.iter_mut().flatten().chain(&mut self.around);
                 all.for_each(|emission| emission.banded = None);
             }
-            let even = chosen.iter();
-            for &step in even {
+            for &step in &chosen {
                 if let Some(Some(emission)) = self.even.get_mut(step) {
                     emission.band(bands, emissivity);
                 }
