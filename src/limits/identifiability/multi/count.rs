@@ -16,9 +16,9 @@ pub fn check_count(count: usize) -> Result<()> {
         return Ok(());
     }
     let pairs = (count as f64).powi(2);
-    let (gigabytes, days) = (8e-9 * pairs, DISTANCE_S * pairs / 86_400.0);
+    let (gigabytes, hours) = (8e-9 * pairs, DISTANCE_S * pairs / 3600.0);
     let expected = format!(
-        "at most {MOST}: a matrix of that many distances takes {gigabytes:.0} GB and some {days:.0} days of a core; divide the \
+        "at most {MOST}: a matrix of that many distances takes {gigabytes:.0} GB and some {hours:.0} hours of a core; divide the \
          library, or ask for one target against all"
     );
     Err(Error::out_of_range("number of materials compared with each other", count as f64, "", expected))
@@ -32,6 +32,6 @@ mod tests {
     fn too_many_materials_are_refused_with_what_they_would_take() {
         assert!(check_count(MOST).is_ok());
         let told = check_count(100_000).unwrap_err().to_string();
-        assert!(told.contains("80 GB") && told.contains("12 days") && told.contains("20000"), "{told}");
+        assert!(told.contains("80 GB") && told.contains("278 hours") && told.contains("20000"), "{told}");
     }
 }
