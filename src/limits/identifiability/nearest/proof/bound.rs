@@ -188,7 +188,7 @@ impl Bounder {
         let Self { places, half, most, whitened, counts, metric, brightest, is_about_target, .. } = self;
         let metric = if *is_about_target { &view.later.about_target } else { &*metric };
         let basis = &mut whitened[..places.len()];
-        // Priors only bring states nearer: without them more are within reach.
+        // Priors only take states farther away: without them more are within reach.
         basis.iter_mut().for_each(|column| column.truncate(view.root.len()));
         let (_, along) = reduce(basis, &[&metric.shift]);
         let [along] = &along[..] else { return };
