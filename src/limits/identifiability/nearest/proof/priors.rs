@@ -14,6 +14,8 @@ use crate::scene::{Parameter, State};
 /// Rounding of a parameter, as a share of it.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// Share of a parameter up to which a prior leaves it open within reach for it to be as good as known.
+const PINNED: f64 = 1e-10;
 /// Slope of a row from which on its square would soon be beyond numbers.
 const STEEPEST: f64 = 1e120;
 
@@ -41,6 +43,7 @@ pub(super) struct Priors {
     all: Vec<Prior>,
     reach: f64,
     rows: Vec<Row>,
+    is_whole: bool,
 }
 
 impl Priors {
@@ -49,7 +52,7 @@ impl Priors {
             let parameter = comparison.space.parameters[i];
             Prior { parameter, weight, centre: value(target.state, parameter) }
         });
-        Self { all: priors.collect(), reach, rows: Vec::new() }
+        Self { all: priors.collect(), reach, rows: Vec::new(), is_whole: true }
     }
 
     /// The range of a parameter as far as it is within reach.
@@ -63,31 +66,35 @@ impl Priors {
 
     /// Finds which of them are residuals, by what the amplitudes may be.
     pub(super) fn put_rows(&mut self, allowed: &Amplitudes) {
-        let source = |parameter: Parameter| match parameter {
-            Parameter::Lighting(k) | Parameter::EnvironmentTemperature(k) => k + 1,
-            _ => 0,
-        };
-        let row = |prior: &Prior| {
-            let source = source(prior.parameter);
-            let amplitude = match prior.parameter {
-                Parameter::Lighting(_) => None,
-                Parameter::Temperature => Some(1.0),
-                Parameter::EnvironmentTemperature(k) => Some(allowed.tied(k)?),
-                Parameter::Gain | Parameter::Material => return None,
+        self.is_whole = true;
+        for prior in &self.all {
+            // Within reach that is known as well as it matters: the range says it all, and a residual would be nothing but rounding.
+            if self.reach <= PINNED * prior.weight * prior.centre.abs() {
+                continue;
+            }
+            let linear = match prior.parameter {
+                _ if allowed.gain_free => None,
+                Parameter::Lighting(k) => Some((k + 1, None)),
+                Parameter::Temperature => Some((0, Some(1.0))),
+                Parameter::EnvironmentTemperature(k) => match allowed.tied(k) {
+                    // What is dark has the target's temperature for nothing.
+                    Some(0.0) => continue,
+                    factor => factor.map(|factor| (k + 1, Some(factor))),
+                },
+                Parameter::Gain | Parameter::Material => None,
             };
-            // Of what is next to dark the slope of its row is beyond numbers.
-            let per_unit = prior.weight / amplitude.unwrap_or(1.0);
-            (per_unit < STEEPEST).then_some(Row { prior: *prior, source, amplitude })
-        };
-        self.rows = if allowed.gain_free { Vec::new() } else { self.all.iter().filter_map(row).collect() };
-        // The temperature of what is dark costs nothing where it is the target's: such a prior adds nothing.
-        let dark = |k: usize| !allowed.gain_free && allowed.tied(k) == Some(0.0);
-        self.all.retain(|prior| !matches!(prior.parameter, Parameter::EnvironmentTemperature(k) if dark(k)));
+            // Of what is next to dark the slope is beyond numbers.
+            let linear = linear.filter(|(_, amplitude)| prior.weight / amplitude.unwrap_or(1.0) < STEEPEST);
+            match linear {
+                Some((source, amplitude)) => self.rows.push(Row { prior: *prior, source, amplitude }),
+                None => self.is_whole = false,
+            }
+        }
     }
 
     /// Whether the bound leaves none out.
     pub(super) fn are_rows(&self) -> bool {
-        self.rows.len() == self.all.len()
+        self.is_whole
     }
 
     /// The rows at a state.
