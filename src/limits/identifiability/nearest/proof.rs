@@ -2,9 +2,9 @@
 //!
 //! For fixed temperatures ‖√(N + v) − √(N′ + v)‖² is jointly convex in all that enters linearly, the amplitudes of the
 //! alternative's sources (`amplitudes`): −√ is convex. What is left to search are the unknown temperatures, none, one or a
-//! few. A box of them is bounded by quadratics that lie below the cost wherever it could be nearer than the best state known
-//! (`metric`), over amplitudes and the chord of each source's spectrum (`sources`), less what the chord misses; the least
-//! value of a quadratic is bounded by its slope (`hull`). About the best state a box is closed at once by convexity
+//! few. A box of them is bounded over amplitudes and the chord of each source's spectrum (`sources`), less what the chord misses: by a
+//! quadratic that lies below the cost wherever it could be nearer than the best state known (`metric`), and by tangents of the cost itself
+//! (`tangent`); the least value of a quadratic is bounded by its slope (`hull`). About the best state a box is closed at once by convexity
 //! (`closing`). Beside it one unknown temperature is walked through outwards (`wings`); what that leaves, and boxes of several, are halved
 //! until none could be nearer, the lowest first. A state that turns out to be nearer on
 //! the way becomes the best one, and all begins again.
@@ -24,6 +24,7 @@ mod priors;
 mod prover;
 mod region;
 mod sources;
+mod tangent;
 mod vectors;
 mod view;
 mod wings;
@@ -154,15 +155,19 @@ impl Prover<'_, '_> {
             // Its bound is that distance, and errs as that does; what bounds the others counts its own rounding.
             Some(Closed::Box(lower, faces)) => {
                 let surely = (1.0 - rounding).max(0.0);
-                queue.leave(surely * surely * lower);
-                Some(faces)
+                Some((surely * surely * lower, faces))
             }
             Some(Closed::Nothing) | None => None,
         };
+        let (lower, faces) = faces.unzip();
+        match lower {
+            // There is one box; where closing it did not suffice tangents may.
+            _ if self.all.axes.is_empty() => queue.push(lower.unwrap_or(0.0), 0, Region::of(Vec::new())),
+            Some(lower) => queue.leave(lower),
+            None => {}
+        }
         if self.all.axes.is_empty() {
-            if faces.is_none() {
-                queue.push(0.0, 0, Region::of(Vec::new()));
-            }
+            // Nothing is left beside it.
         } else if let Some(Wings { lower, left, nearer }) =
             minimum.as_ref().zip(best).and_then(|(minimum, best)| {
                 self.wings((&mut *comparison, target), (minimum, &best.state), faces.as_deref(), goal)

@@ -118,7 +118,7 @@ impl Prover<'_, '_> {
         free.into_iter().chain(self.all.allowed.gain_free.then_some(0)).all(|s| {
             let mut allowed = self.all.allowed.clone();
             match s.checked_sub(1) {
-                None => allowed.gain_cap = Some(0.5 * amplitudes[0]),
+                None => allowed.gain_cap = 0.5 * amplitudes[0],
                 Some(k) => {
                     let share = 0.5 * amplitudes[s] / amplitudes[0];
                     if share <= allowed.ranges[k][0] {

@@ -3,14 +3,15 @@
 //! The alternative is a sum of sources: its surface with amplitude c₀ (the gain) and object k with cₖ = c₀Vₖ. A source of
 //! unknown temperature stands in it by two *pieces*, its spectra at both ends of an interval. The amplitudes fulfil
 //!
-//! lₖ ≤ Vₖ ≤ uₖ,  ΣVₖ ≤ s (or = s),  c₀ = 1, or where the gain is free Σ amplitude · length ≤ total,
+//! lₖ ≤ Vₖ ≤ uₖ,  ΣVₖ ≤ s (or = s),  c₀ = 1, or where the gain is free c₀ ≤ g and Σ amplitude · length ≤ total,
 //!
 //! the length of a piece being the sum of its counts. A piece may be a shape, A/β: then its amplitude is c·β, and c is known of it
 //! to lie between two multiples, g and h. Every set here contains what is allowed, and may be somewhat larger
 //! where that is simpler: a least value over it is a lower bound.
 //!
 //! With c₀ = 1 the least value comes of filling the cheapest pieces first (the constraints are laminar). With a free gain
-//! the extreme points are rays cut off at the total, and the cheapest per length is found as Dinkelbach does.
+//! the extreme points are rays cut off at the total, of which the cheapest per length is found as Dinkelbach does, rays cut off at g, and
+//! mixtures of two of those that reach both: for a price μ of length both cost the same, and none costs less.
 //! Source: W. Dinkelbach, Management Science 13, 492 (1967), doi:10.1287/mnsc.13.7.492.
 
 use super::sources::Spectrum;
@@ -87,8 +88,8 @@ pub(super) struct Amplitudes {
     pub(super) sum_known: bool,
     /// What all sources together send at most.
     pub(super) total: f64,
-    /// Largest c₀, where one is set.
-    pub(super) gain_cap: Option<f64>,
+    /// Largest c₀ where that is free.
+    pub(super) gain_cap: f64,
 }
 
 /// Memory of [`Amplitudes::least`], and by how much rounding may have lifted what it found.
@@ -96,6 +97,7 @@ pub(super) struct Amplitudes {
 pub(super) struct Ray {
     cost: Vec<f64>,
     vertex: Vec<f64>,
+    long: Vec<f64>,
     lifted: f64,
 }
 
@@ -120,13 +122,8 @@ impl Amplitudes {
         if !self.gain_free {
             return self.ray(pieces, cost, vertex);
         }
-        if let Some(cap) = self.gain_cap {
-            let value = self.ray(pieces, cost, vertex);
-            let [least, most] = pieces.unit_of(0);
-            let scale = if value < 0.0 { cap * (most / least) } else { 0.0 };
-            vertex.iter_mut().for_each(|v| *v *= scale);
-            return scale * value;
-        }
+        let [least, most] = pieces.unit_of(0);
+        let limit = self.gain_cap * (most / least);
         let along = |vertex: &[f64], x: &[f64]| -> f64 { vertex.iter().zip(x).map(|(v, x)| v * x).sum() };
         vertex.fill(0.0);
         ray.cost.resize(cost.len(), 0.0);
@@ -158,13 +155,75 @@ impl Amplitudes {
             let length = along(vertex, &pieces.length);
             (rate, scale) = (along(vertex, cost) / length, self.total / length);
             if !(rate.is_finite() && scale.is_finite()) {
-                // Without limit, or beyond what numbers hold: nothing is proved of such a box.
-                vertex.fill(f64::NAN);
-                return f64::NAN;
+                // Without limit but for the gain, or beyond what numbers hold.
+                scale = f64::INFINITY;
+                break;
             }
+        }
+        if scale > limit {
+            // Without the largest gain it is no more than this.
+            let known = self.total * rate - ray.lifted;
+            let least = self.least_within(limit, pieces, cost, vertex, ray);
+            ray.lifted = if known.is_finite() { ray.lifted.min(least - known) } else { ray.lifted };
+            return least;
         }
         vertex.iter_mut().for_each(|v| *v *= scale);
         self.total * rate
+    }
+
+    /// The least where the cheapest ray for its length, which is the `vertex`, would be cut off by the largest gain.
+    fn least_within(
+        &self,
+        limit: f64,
+        pieces: &Pieces,
+        cost: &[f64],
+        vertex: &mut [f64],
+        ray: &mut Ray,
+    ) -> f64 {
+        let along = |vertex: &[f64], x: &[f64]| -> f64 { vertex.iter().zip(x).map(|(v, x)| v * x).sum() };
+        let Ray { cost: adjusted, vertex: better, long, lifted } = ray;
+        let most = self.total / limit;
+        long.resize(cost.len(), 0.0);
+        let value = self.ray(pieces, cost, long);
+        // Of rays cut off at the gain this one costs least, that of the vertex is short enough.
+        let mut share = if along(long, &pieces.length) <= most { 1.0 } else { 0.0 };
+        *lifted = 0.0;
+        for _ in 0..STEPS {
+            if share == 1.0 || value.is_nan() {
+                break;
+            }
+            let [cost_long, cost_short] = [&**long, &*vertex].map(|v| along(v, cost));
+            let [length_long, length_short] = [&**long, &*vertex].map(|v| along(v, &pieces.length));
+            share = ((most - length_short) / (length_long - length_short)).clamp(0.0, 1.0);
+            let price = (cost_short - cost_long) / (length_long - length_short);
+            if !price.is_finite() {
+                share = f64::NAN;
+                break;
+            }
+            let price = price.max(0.0);
+            for ((adjusted, cost), length) in adjusted.iter_mut().zip(cost).zip(&pieces.length) {
+                *adjusted = cost + price * length;
+            }
+            let least = self.ray(pieces, adjusted, better);
+            let known = share * cost_long + (1.0 - share) * cost_short + price * most;
+            // No ray is cheaper than the least, but for what its own last digits are, and so no mixture of them within the total.
+            *lifted = limit * (known - least).max(0.0) + LAST_DIGITS * price * self.total;
+            if known <= least || better == long || *better == *vertex {
+                break;
+            }
+            if along(better, &pieces.length) > most {
+                long.copy_from_slice(better);
+            } else {
+                vertex.copy_from_slice(better);
+            }
+        }
+        vertex.iter_mut().zip(&*long).for_each(|(v, long)| *v = limit * (share * long + (1.0 - share) * *v));
+        let value = along(vertex, cost);
+        if lifted.is_nan() || value.is_nan() {
+            vertex.fill(f64::NAN);
+            return f64::NAN;
+        }
+        value
     }
 
     /// How far below what was found a ray may be that is cheaper by `less`: rays may be longer than others by any factor, so that
@@ -175,10 +234,10 @@ impl Amplitudes {
 
     /// How large the amplitude of a piece can be of a state within reach.
     pub(super) fn most(&self, pieces: &Pieces, i: usize) -> f64 {
+        let gain = if self.gain_free { self.gain_cap } else { 1.0 };
         let range = match pieces.source[i].checked_sub(1) {
-            _ if self.gain_free => f64::INFINITY,
-            None => 1.0,
-            Some(k) => self.ranges[k][1],
+            None => gain,
+            Some(k) => gain * self.ranges[k][1],
         };
         (self.total / pieces.length[i]).min(range / pieces.unit[i][0])
     }

@@ -1,36 +1,43 @@
 //! The bound of d² in a box of temperatures.
 //!
 //! In a box every source of unknown temperature is a mixture of two spectra, the ends of its chord (`sources`), but for what
-//! the chord misses: ‖W(N′ − ΣzA)‖ ≤ m. With the quadratic of `metric` about some N₀, h its shift, and
-//! φ(δ) = ‖W(ΣzA − N₀) + h‖² − ‖h‖² (`hull`),
+//! the chord misses. A first look is by the quadratic of `metric` about the target, h its shift: with ‖W(N′ − ΣzA)‖ ≤ m and
+//! φ(δ) = ‖W(ΣzA − N)‖² − ‖h‖² (`hull`),
 //!
 //! d² ≥ cost − ‖h‖² + (√(‖h‖² + φ) − m)²,
 //!
 //! 0 in place of the bracket where that is negative; or, as m is in proportion to the amplitudes, with the least of the convex
-//! √(‖h‖² + φ) − m(z) in its place. Where it comes out least is where the next quadratic is written about.
+//! √(‖h‖² + φ) − m(z) in its place. From where that is least Newton's method goes to the least of the cost itself over the box, what
+//! chords miss included, and a tangent there is a bound as exact as can be (`tangent`).
 //!
 //! What the amplitudes may be: a curve lies above its cold end and above its tangent there, so that c(1 − λ) of the one and cλ
 //! of the other never are more than a band can have within reach, nor all bands together.
 
 use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
-use super::metric::{Ellipsoid, Metric};
-use super::orthogonal::{inner, reduce};
-use super::sources::{Chord, Spectrum, chord, whole};
-use super::vectors::{add_into, largest_share, product_into, square_of_product};
+use super::orthogonal::inner;
+use super::sources::{Chord, Spectrum, chord};
+use super::tangent::{Bands, size_of_product, slopes};
+use super::vectors::{add_into, largest_share, product_into, square_of_product, square_of_quotient};
 use super::view::View;
 use crate::sum::dot;
 
-/// Share of the bound wanted, or of the quadratic's least, beyond which what chords miss makes better quadratics useless.
-const COARSE: f64 = 0.25;
-/// Share of what is wanting that a better quadratic must have brought for another one to be tried.
-const WORTH: f64 = 0.03;
+/// Share of what is wanted below which the least cost over a box is so far from it that finer bands hardly help.
+const COARSE: f64 = 0.5;
 /// How many times the rounding of counts a distance must be to be seen in them.
 pub(super) const CLEAR: f64 = 4.0;
-/// Rounding of the square of a length that is divided in two, as a share of it.
-const ROUNDING: f64 = 1e-13;
-/// Attempts with products of columns; after that their digits are all kept.
-const PLAIN: usize = 2;
+/// Rounding of products and sums of bands, as a share of the sizes of their terms.
+const ROUNDING: f64 = 4e-15;
+/// Tangents at most, the first of them after steps in which a band alone reaches the target's counts, and parts of a step that are tried.
+const TANGENTS: usize = 12;
+const STRAIGHT: usize = 2;
+const PARTS: [f64; 4] = [1.0, 0.4, 0.1, 0.02];
+/// Share of the largest amplitude below which one is as good as none.
+const HARDLY: f64 = 1e-3;
+/// Share of a cost by which a step must lower it, of what its slope promises.
+const PROMISED: f64 = 0.01;
+/// Share of what is wanting below which a fall of the cost ends the search.
+const WORTH: f64 = 0.02;
 
 /// Amplitudes and temperatures of all sources.
 pub(super) struct Mixture {
@@ -59,23 +66,29 @@ pub(super) struct Bounder {
     rise: Vec<Vec<f64>>,
     half: Vec<Vec<f64>>,
     most: Vec<f64>,
-    /// Columns times the weights, and where their digits are all kept what of the priors follows.
+    /// Columns times the weights.
     whitened: Vec<Vec<f64>>,
     /// Entries of the priors, row by row, and their residuals.
     rows: Vec<f64>,
     residuals: Vec<f64>,
-    /// How bright the root of every band can be in the box.
-    brightest: Vec<f64>,
+    /// Amplitudes of the pieces, where the last bound was least.
+    point: Vec<f64>,
+    /// There: the counts, what chords may miss of them, the slope of the cost by counts, and the weights of a step.
     counts: Vec<f64>,
-    metric: Metric,
+    slack: Vec<f64>,
+    pull: Vec<f64>,
+    weight: Vec<f64>,
+    /// Σ|r/y|N, costs of the pieces less their rounding, and what that is, and the cheapest amplitudes.
+    by_own: f64,
+    least_cost: Vec<f64>,
+    sizes: Vec<f64>,
+    vertex: Vec<f64>,
     /// What the chord of a piece of amplitude 1 misses, as a length: 0 but at cold ends.
     missed: Vec<f64>,
-    /// Whether the last quadratic was about the target itself.
-    is_about_target: bool,
     square: Vec<f64>,
     quadratic: Quadratic,
     hull: Hull,
-    ray: Ray,
+    memory: Vertex,
 }
 
 /// Where the spectrum of a piece is.
@@ -94,21 +107,81 @@ fn rises(places: &[Place]) -> impl Iterator<Item = usize> {
     places.iter().enumerate().filter(|(_, place)| matches!(place, Place::Rise(_))).map(|(i, _)| i)
 }
 
-/// What a quadratic is written with, besides what stands in the memory.
-struct Written {
-    cost: f64,
-    /// ‖h‖².
-    shift: f64,
-    /// Rounding of the counts that are compared, as a length.
-    grain: f64,
-    /// m, and the axis that has most of it.
-    missed: f64,
-    axis: usize,
+/// The spectrum of a piece.
+fn column<'s>(view: &'s View<'_>, [low, rise]: [&'s [Vec<f64>]; 2], place: Place) -> &'s [f64] {
+    match place {
+        Place::Fixed(s) => view.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
+        Place::Low(axis) => &low[axis],
+        Place::Rise(axis) => &rise[axis],
+    }
+}
+
+/// Spectra of all pieces times weights.
+fn put_products(
+    whitened: &mut Vec<Vec<f64>>,
+    of: [&[Vec<f64>]; 2],
+    view: &View<'_>,
+    places: &[Place],
+    weight: &[f64],
+) {
+    whitened.resize_with(whitened.len().max(places.len()), Vec::new);
+    for (out, place) in whitened.iter_mut().zip(places) {
+        out.resize(weight.len(), 0.0);
+        product_into(column(view, of, *place), weight, out);
+    }
+}
+
+/// Products of all columns with each other, with the rows of the priors.
+fn put_square(square: &mut Vec<f64>, columns: &[Vec<f64>], rows: &[f64]) {
+    let m = columns.len();
+    square.resize(m * m, 0.0);
+    for i in 0..m {
+        for j in 0..=i {
+            let of_priors: f64 = rows.chunks(m).map(|row| row[i] * row[j]).sum();
+            let product = dot(&columns[i], &columns[j]) + of_priors;
+            (square[i * m + j], square[j * m + i]) = (product, product);
+        }
+    }
+}
+
+/// Memory of [`Cheapest`].
+#[derive(Debug, Clone, Default)]
+struct Vertex {
+    both: Vec<f64>,
+    ray: Ray,
+}
+
+/// Finds the cheapest amplitudes of the pieces.
+struct Cheapest<'a> {
+    allowed: &'a Amplitudes,
+    pieces: &'a Pieces,
+    places: &'a [Place],
+}
+
+impl Cheapest<'_> {
+    /// Puts them, and returns what rounding may have lifted their cost by.
+    fn put(&self, costs: &[f64], vertex: &mut [f64], memory: &mut Vertex) -> f64 {
+        let Self { allowed, pieces, places } = self;
+        let Vertex { both, ray } = memory;
+        both.clear();
+        both.extend_from_slice(costs);
+        rises(places).for_each(|i| both[i] += costs[i - 1]);
+        allowed.least(pieces, both, vertex, ray);
+        let rounding = allowed.rounding(pieces, both, vertex, ray);
+        rises(places).for_each(|i| vertex[i - 1] += vertex[i]);
+        rounding
+    }
+
+    /// How large each amplitude can be.
+    fn put_most(&self, most: &mut Vec<f64>) {
+        most.clear();
+        most.extend((0..self.places.len()).map(|i| self.allowed.most(self.pieces, i)));
+    }
 }
 
 impl Bounder {
-    /// A bound of d² in a box, over `narrower` amplitudes where these are given, from so many quadratics at most; the first of
-    /// them about `start`, amplitudes of the pieces.
+    /// A bound of d² in a box, over `narrower` amplitudes where these are given; without a first look from `start` on, amplitudes of
+    /// the pieces.
     pub(super) fn bound(
         &mut self,
         view: &mut View<'_>,
@@ -116,7 +189,6 @@ impl Bounder {
         narrower: Option<&Amplitudes>,
         enough: f64,
         start: Option<&[f64]>,
-        quadratics: usize,
     ) -> Bound {
         crate::stop::check();
         view.look();
@@ -124,95 +196,210 @@ impl Bounder {
         self.lay(view, ends);
         let narrower = narrower.map(|allowed| Amplitudes { total: view.allowed.total, ..allowed.clone() });
         let allowed = narrower.as_ref().unwrap_or(&view.allowed);
-        self.hull.point.clear();
-        self.hull.point.extend_from_slice(start.unwrap_or_default());
-        self.brightest.clear();
-        self.brightest.extend(view.root.iter().map(|y| y + view.reach));
-        let mut both = vec![0.0; self.places.len()];
-        let mut found = Bound { lower: 0.0, axis: 0, coarse: false };
-        for attempt in 0..quadratics {
-            crate::stop::check();
-            let Written { cost, shift, grain, missed, axis } = self.write(view, attempt >= PLAIN);
-            found.axis = axis;
-            // What is subtracted from each other here, and how much of it rounding may be.
-            let rounding = 1e-15 * (cost + shift);
-            let rest = cost - shift - rounding;
-            let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - shift;
-            let Self { hull, quadratic, places, pieces, ray, missed: each, .. } = self;
-            quadratic.most.clear();
-            quadratic.most.extend((0..places.len()).map(|i| allowed.most(pieces, i)));
-            let mut cheapest = |costs: &[f64], vertex: &mut [f64]| {
-                both.copy_from_slice(costs);
-                rises(places).for_each(|i| both[i] += costs[i - 1]);
-                allowed.least(pieces, &both, vertex, ray);
-                let rounding = allowed.rounding(pieces, &both, vertex, ray);
-                rises(places).for_each(|i| vertex[i - 1] += vertex[i]);
-                rounding
-            };
-            let fall = hull.least(quadratic, &mut cheapest, wanted);
-            let left = (shift + fall).max(0.0).sqrt();
-            // (left − missed)² without the difference of squares that may be nearly equal; nothing of what is hardly more than
-            // the rounding of the counts that are compared.
-            let seen = left > missed && left > CLEAR * grain;
-            let apart = cost - rounding + fall + missed * (missed - 2.0 * left);
-            let mut lower = if seen { apart } else { rest.min(0.0) };
-            if lower < enough && missed > grain {
-                // What chords miss is in proportion to the amplitudes, of which the least may need next to nothing.
-                let length = hull.length_less(quadratic, &mut cheapest, each) - grain;
-                if length > CLEAR * grain {
-                    lower = lower
-                        .max(cost - rounding + (length - quadratic.length) * (length + quadratic.length));
-                }
-            }
-            // Without its rounding, which another origin makes small.
-            let there = shift + fall + hull.rounding;
-            found.coarse = missed * missed > COARSE * enough.max(there);
-            let gained = lower - found.lower;
-            found.lower = found.lower.max(lower);
-            if found.lower >= enough || found.coarse {
-                break;
-            }
-            let wanting = enough - found.lower;
-            if attempt > 0 && gained < WORTH * wanting && hull.rounding < WORTH * wanting {
-                break;
-            }
-            if attempt + 1 < quadratics {
-                self.narrow(view, rest, missed);
+        let mut lower = 0.0;
+        match start {
+            Some(start) if start.len() == self.places.len() => start.clone_into(&mut self.point),
+            _ => {
+                lower = self.about_target(view, allowed, enough);
+                self.point.clone_from(&self.hull.point);
             }
         }
-        found
+        let mut coarse = false;
+        if lower < enough {
+            let (bound, least) = self.tangents(view, allowed, enough);
+            lower = lower.max(bound);
+            coarse = least < COARSE * enough;
+        }
+        Bound { lower, axis: self.widest(view), coarse }
     }
 
-    /// How bright bands can be by the last quadratic: states within reach have √(‖h‖² + φ) ≤ m + √(reach² − rest).
-    fn narrow(&mut self, view: &View<'_>, rest: f64, missed: f64) {
-        let Self { places, half, most, whitened, counts, metric, brightest, is_about_target, .. } = self;
-        let metric = if *is_about_target { &view.later.about_target } else { &*metric };
-        let basis = &mut whitened[..places.len()];
-        // Priors only take states farther away: without them more are within reach.
-        basis.iter_mut().for_each(|column| column.truncate(view.root.len()));
-        let (_, along) = reduce(basis, &[&metric.shift]);
-        let [along] = &along[..] else { return };
-        let across = along[places.len()];
-        let within = missed + (view.reach * view.reach - rest).max(0.0).sqrt();
-        let shift = metric.length * metric.length;
-        let radius = ((within - across) * (within + across) + ROUNDING * shift).max(0.0).sqrt();
-        let mut off = vec![0.0; view.root.len()];
-        half.iter().zip(&*most).for_each(|(half, most)| add_into(*most, half, &mut off));
-        let ellipsoid = Ellipsoid { basis, along, radius, counts, missed: &off };
-        ellipsoid.lower(&metric.weight, &view.noise, brightest);
+    /// The axis whose chords miss most.
+    fn widest(&self, view: &View<'_>) -> usize {
+        let missed = |axis: usize| {
+            let cold = self.places.iter().position(|place| matches!(place, Place::Low(own) if *own == axis));
+            let amplitude = cold.map_or(0.0, |cold| self.point[cold].max(HARDLY * self.most[axis]));
+            amplitude * square_of_product(&self.half[axis], &view.later.about_target.weight).sqrt()
+        };
+        let parts: Vec<f64> = (0..view.axes.len()).map(missed).collect();
+        (0..parts.len()).max_by(|&i, &j| parts[i].total_cmp(&parts[j])).unwrap_or(0)
+    }
+
+    /// A bound by the tangents of the cost from the point on, and the least cost found in the box.
+    fn tangents(&mut self, view: &View<'_>, allowed: &Amplitudes, enough: f64) -> (f64, f64) {
+        let (mut lower, mut goal) = (0.0_f64, Vec::new());
+        let mut cost = self.evaluate(view, false);
+        for step in 0..TANGENTS {
+            crate::stop::check();
+            if cost.is_nan() {
+                break;
+            }
+            let (bound, gap) = self.tangent(view, allowed, cost);
+            lower = lower.max(bound);
+            // The least over the box is no more than what is found in it.
+            if lower >= enough || cost < enough || gap <= WORTH * (enough - lower) || step + 1 == TANGENTS {
+                break;
+            }
+            self.newton(view, allowed);
+            let promised =
+                inner(&self.quadratic.linear, &self.hull.point) - inner(&self.quadratic.linear, &self.point);
+            let from = self.point.clone();
+            goal.clone_from(&self.hull.point);
+            let mut fell = false;
+            for part in PARTS {
+                let points = from.iter().zip(&goal);
+                self.point.clear();
+                self.point.extend(points.map(|(from, to)| part.mul_add(to - from, *from)));
+                let there = self.evaluate(view, step + 1 >= STRAIGHT);
+                if there < cost + PROMISED * part * promised.min(0.0) {
+                    (cost, fell) = (there, true);
+                    break;
+                }
+            }
+            if !fell {
+                self.point = from;
+                break;
+            }
+        }
+        (lower, cost)
+    }
+
+    /// The least cost at the point within what chords miss; puts slopes and the weights of a step from there.
+    fn evaluate(&mut self, view: &View<'_>, exact: bool) -> f64 {
+        let Self { places, low, rise, half, point, counts, slack, pull, weight, .. } = self;
+        let Self { pieces, rows, residuals, .. } = self;
+        let bands = view.root.len();
+        for line in [&mut *counts, slack, pull, weight] {
+            line.clear();
+            line.resize(bands, 0.0);
+        }
+        for (place, amount) in places.iter().zip(&*point) {
+            add_into(*amount, column(view, [low, rise], *place), counts);
+            if let Place::Low(axis) = *place {
+                add_into(*amount, &half[axis], slack);
+            }
+        }
+        let (root, own, noise) = (&view.root[..], &view.counts[..], &view.noise[..]);
+        let [cost, by_own] = slopes(Bands { root, own, noise, counts, missed: slack, pull, weight, exact });
+        rows.clear();
+        residuals.clear();
+        view.priors.put_pieces(pieces, |constant, entries| {
+            residuals.push(constant + inner(entries, point));
+            rows.extend_from_slice(entries);
+        });
+        self.by_own = by_own;
+        cost + inner(residuals, residuals)
+    }
+
+    /// The bound by the tangent at the point, and how far below the cost there it falls but for rounding.
+    fn tangent(&mut self, view: &View<'_>, allowed: &Amplitudes, cost: f64) -> (f64, f64) {
+        let Self { places, low, rise, half, point, pull, pieces, rows, residuals, .. } = self;
+        let Self { quadratic, least_cost, sizes, vertex, memory, .. } = self;
+        let (m, rounding) = (places.len(), view.rounding + ROUNDING);
+        quadratic.linear.clear();
+        least_cost.clear();
+        sizes.clear();
+        for (i, place) in places.iter().enumerate() {
+            let spectrum = column(view, [low, rise], *place);
+            let of_priors =
+                residuals.iter().zip(rows.chunks(m)).map(|(residual, row)| 2.0 * residual * row[i]);
+            let of_priors: Vec<f64> = of_priors.collect();
+            let missed = if let Place::Low(axis) = *place { size_of_product(pull, &half[axis]) } else { 0.0 };
+            let size = rounding * (size_of_product(pull, spectrum) + missed)
+                + ROUNDING * of_priors.iter().map(|x| x.abs()).sum::<f64>();
+            let own = dot(pull, spectrum) - missed + of_priors.iter().sum::<f64>();
+            quadratic.linear.push(own);
+            least_cost.push(own - size);
+            sizes.push(size);
+        }
+        vertex.clear();
+        vertex.resize(m, 0.0);
+        let lifted = Cheapest { allowed, pieces, places }.put(least_cost, vertex, memory);
+        let (mut gap, mut lost) = (0.0, lifted + ROUNDING * cost + view.rounding * self.by_own);
+        for i in 0..m {
+            gap += quadratic.linear[i] * (point[i] - vertex[i]);
+            lost += sizes[i] * (point[i].abs() + vertex[i].abs());
+        }
+        let bound = cost - gap.max(0.0) - lost;
+        (if bound.is_nan() { f64::NEG_INFINITY } else { bound }, gap)
+    }
+
+    /// A Newton step from the point over what is allowed: where it ends is the point of the hull.
+    fn newton(&mut self, view: &View<'_>, allowed: &Amplitudes) {
+        let Self { places, low, rise, whitened, weight, pull, rows, residuals, point, .. } = self;
+        let Self { square, quadratic, hull, pieces, memory, .. } = self;
+        put_products(whitened, [low, rise], view, places, weight);
+        put_square(square, &whitened[..places.len()], rows);
+        factor_of(square, &mut quadratic.factor, &mut quadratic.excess);
+        quadratic.origin.clone_from(point);
+        let of_priors = inner(residuals, residuals);
+        quadratic.length = (0.25 * square_of_quotient(pull, weight) + of_priors).sqrt();
+        let oracle = Cheapest { allowed, pieces, places };
+        oracle.put_most(&mut quadratic.most);
+        hull.least(quadratic, |costs, vertex| oracle.put(costs, vertex, memory), f64::INFINITY);
+    }
+
+    /// A bound by the quadratic about the target.
+    fn about_target(&mut self, view: &View<'_>, allowed: &Amplitudes, enough: f64) -> f64 {
+        let Self { places, low, rise, half, most, whitened, rows, residuals, .. } = self;
+        let Self { square, quadratic, hull, pieces, memory, missed: each, .. } = self;
+        let metric = &view.later.about_target;
+        let m = places.len();
+        put_products(whitened, [low, rise], view, places, &metric.weight);
+        let mut along: Vec<f64> = whitened[..m].iter().map(|column| dot(column, &metric.shift)).collect();
+        rows.clear();
+        residuals.clear();
+        view.priors.put_pieces(pieces, |residual, entries| {
+            along.iter_mut().zip(entries).for_each(|(along, entry)| *along += residual * entry);
+            rows.extend_from_slice(entries);
+            residuals.push(residual);
+        });
+        put_square(square, &whitened[..m], rows);
+        factor_of(square, &mut quadratic.factor, &mut quadratic.excess);
+        quadratic.origin.clear();
+        quadratic.origin.resize(m, 0.0);
+        quadratic.linear.clear();
+        quadratic.linear.extend(along.iter().map(|along| 2.0 * along));
+        let shift = metric.cost + inner(residuals, residuals);
+        quadratic.length = shift.sqrt();
+        let length = |x: &[f64]| square_of_product(x, &metric.weight).sqrt();
+        let grain = view.rounding * length(&view.counts);
+        each.clear();
+        each.resize(m, 0.0);
+        let mut missed = grain;
+        for (i, place) in places.iter().enumerate() {
+            if let Place::Low(axis) = *place {
+                each[i] = length(&half[axis]);
+                missed += most[axis] * each[i];
+            }
+        }
+        let wanted = (enough.sqrt() + missed).powi(2) - shift;
+        let oracle = Cheapest { allowed, pieces, places };
+        oracle.put_most(&mut quadratic.most);
+        let mut cheapest = |costs: &[f64], vertex: &mut [f64]| oracle.put(costs, vertex, memory);
+        let fall = hull.least(quadratic, &mut cheapest, wanted);
+        let left = (shift + fall).max(0.0).sqrt();
+        // Nothing of what is hardly more than the rounding of the counts that are compared.
+        let seen = left > missed && left > CLEAR * grain;
+        let lower = if seen { (left - missed).powi(2) } else { 0.0 };
+        if lower >= enough || missed <= grain {
+            return lower;
+        }
+        // What chords miss is in proportion to the amplitudes, of which the least may need next to nothing.
+        let length = hull.length_less(quadratic, &mut cheapest, each) - grain;
+        if length > CLEAR * grain { lower.max(length * length) } else { lower }
     }
 
     /// Where the last bound was least: an amplitude for every piece.
     pub(super) fn point(&self) -> &[f64] {
-        &self.hull.point
+        &self.point
     }
 
     /// The same, source by source.
     pub(super) fn mixture(&self, view: &View<'_>) -> Mixture {
-        let Self { pieces, places, hull, .. } = self;
+        let Self { pieces, places, .. } = self;
         let sources = view.sources.list.len();
         let (mut amplitudes, mut temperature_k) = (vec![0.0; sources], vec![0.0; sources]);
-        let mut point = hull.point.clone();
+        let mut point = self.point.clone();
         rises(places).for_each(|i| point[i - 1] -= point[i]);
         for ((amount, s), t) in point.iter().zip(&pieces.source).zip(&pieces.temperature_k) {
             amplitudes[*s] += amount;
@@ -291,98 +478,6 @@ impl Bounder {
                 places.push(place);
             }
         }
-    }
-
-    /// Writes the quadratic about the last point, or about the target where there is none; with all `digits` of columns that
-    /// their products cannot tell apart.
-    fn write(&mut self, view: &View<'_>, digits: bool) -> Written {
-        let Self { places, low, rise, half, most, whitened, counts, metric, .. } = self;
-        let Self { square, quadratic, hull, brightest, is_about_target, missed: each, .. } = self;
-        let Self { pieces, rows, residuals, .. } = self;
-        let column = |place: Place| -> &[f64] {
-            match place {
-                Place::Fixed(s) => view.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
-                Place::Low(axis) => &low[axis],
-                Place::Rise(axis) => &rise[axis],
-            }
-        };
-        let m = places.len();
-        quadratic.origin.clear();
-        counts.clear();
-        counts.resize(view.root.len(), 0.0);
-        let metric = if hull.point.len() == m {
-            for (place, amount) in places.iter().zip(&hull.point) {
-                add_into(*amount, column(*place), counts);
-            }
-            quadratic.origin.extend_from_slice(&hull.point);
-            metric.put_about(counts, [&view.root, &view.counts, &view.noise], brightest);
-            *is_about_target = false;
-            &*metric
-        } else {
-            quadratic.origin.resize(m, 0.0);
-            *is_about_target = true;
-            &view.later.about_target
-        };
-        whitened.resize_with(whitened.len().max(m), Vec::new);
-        for (out, place) in whitened.iter_mut().zip(&*places) {
-            out.resize(view.root.len(), 0.0);
-            product_into(column(*place), &metric.weight, out);
-        }
-        let mut along: Vec<f64> = whitened[..m].iter().map(|column| dot(column, &metric.shift)).collect();
-        rows.clear();
-        residuals.clear();
-        view.priors.put_pieces(pieces, |constant, entries| {
-            let residual = constant + inner(entries, &quadratic.origin);
-            along.iter_mut().zip(entries).for_each(|(along, entry)| *along += residual * entry);
-            rows.extend_from_slice(entries);
-            residuals.push(residual);
-        });
-        let of_priors = inner(residuals, residuals);
-        let shift = metric.length * metric.length + of_priors;
-        quadratic.length = if of_priors > 0.0 { shift.sqrt() } else { metric.length };
-        quadratic.linear.clear();
-        quadratic.linear.extend(along.iter().map(|along| 2.0 * along));
-        if digits {
-            if !rows.is_empty() {
-                for (i, column) in whitened[..m].iter_mut().enumerate() {
-                    column.extend(rows.iter().skip(i).step_by(m));
-                    column.resize(whole(column.len()), 0.0);
-                }
-            }
-            let (triangle, _) = reduce(&mut whitened[..m], &[]);
-            quadratic.factor.clear();
-            quadratic.excess.fill(0.0);
-            triangle.iter().for_each(|column| quadratic.factor.extend(column));
-        } else {
-            square.resize(m * m, 0.0);
-            for i in 0..m {
-                for j in 0..=i {
-                    let of_priors: f64 = rows.chunks(m).map(|row| row[i] * row[j]).sum();
-                    let product = dot(&whitened[i], &whitened[j]) + of_priors;
-                    (square[i * m + j], square[j * m + i]) = (product, product);
-                }
-            }
-            factor_of(square, &mut quadratic.factor, &mut quadratic.excess);
-        }
-        let length = |x: &[f64]| square_of_product(x, &metric.weight).sqrt();
-        let grain = view.rounding * (length(&view.counts) + length(counts));
-        let (mut missed, mut largest, mut most_missed) = (grain, -1.0, 0);
-        each.clear();
-        each.resize(m, 0.0);
-        for (axis, (half, most)) in half.iter().zip(&*most).enumerate() {
-            let of_unit = length(half);
-            if let Some(place) =
-                places.iter().position(|place| matches!(place, Place::Low(own) if *own == axis))
-            {
-                each[place] = of_unit;
-            }
-            let part = most * of_unit;
-            missed += part;
-            if part > largest {
-                (largest, most_missed) = (part, axis);
-            }
-        }
-        Written { cost: metric.cost + of_priors, shift, grain, missed, axis: most_missed }
     }
 
     /// The pieces of a box, for tests, with their spectra and what the chords miss.

@@ -371,6 +371,11 @@ impl Columns<'_> {
             let terms: Vec<(usize, f64)> = objects.chain([(0, allowed.sum)]).collect();
             put(&terms, allowed.sum_known);
         }
+        if let Some(place) = place(0).filter(|_| amplitudes[0] >= allowed.gain_cap * (1.0 - NEAR)) {
+            let mut along = vec![0.0; size];
+            along[place] = -1.0;
+            limits.push(Limit { along, slack: (allowed.gain_cap - amplitudes[0]).max(0.0), both: false });
+        }
         for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
             for (value, _) in [(1.0, down_k), (-1.0, up_k)].into_iter().filter(|(_, room)| **room == 0.0) {
                 let mut along = vec![0.0; size];

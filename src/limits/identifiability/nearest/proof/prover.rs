@@ -3,14 +3,11 @@
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
 use super::priors::Priors;
-use super::sources::{Sources, neighbours_summed};
+use super::sources::{LARGEST_LN_GAIN, Sources, neighbours_summed};
 use super::view::View;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::{Parameter, State};
-
-/// Quadratics that are tried in a box.
-const QUADRATICS: usize = 5;
 
 /// Share of what is enough that bands counted together must bound for all to be looked at in a wide box, and from how many
 /// times as warm at its hot end on it is wide.
@@ -99,7 +96,8 @@ impl<'a, 'm> Prover<'a, 'm> {
             *range = priors.within_reach(Parameter::Lighting(k), *range);
         }
         let gain_free = space.unknowns.contains(Nuisance::Gain);
-        let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
+        let gain_cap = LARGEST_LN_GAIN.exp() * (1.0 + 1e-12);
+        let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap };
         priors.put_rows(&allowed);
         let all = View::new(sources, allowed, priors, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
@@ -172,7 +170,7 @@ impl<'a, 'm> Prover<'a, 'm> {
         let mut least = 0.0;
         if let Some(merged) = merged_into(&mut self.merged, &self.all, self.merging) {
             know(merged);
-            let found = self.few.bound(merged, ends, narrower, enough, None, QUADRATICS);
+            let found = self.few.bound(merged, ends, narrower, enough, None);
             // Where they are far from it all bands would hardly do either.
             let wide = || ends.iter().zip(known).any(|([a, b], known)| known[*b] > WIDE * known[*a]);
             let hopeless = found.lower < if found.coarse { enough } else { HOPE * enough };
@@ -183,7 +181,7 @@ impl<'a, 'm> Prover<'a, 'm> {
         }
         know(&mut self.all);
         let start = self.merged.as_ref().map(|_| self.few.point());
-        let found = self.bounder.bound(&mut self.all, ends, narrower, enough, start, QUADRATICS);
+        let found = self.bounder.bound(&mut self.all, ends, narrower, enough, start);
         Looked { lower: found.lower.max(least), axis: found.axis, in_all: true }
     }
 
@@ -209,7 +207,7 @@ impl<'a, 'm> Prover<'a, 'm> {
                 start.push(*amplitude);
             }
         }
-        self.bounder.bound(&mut self.all, ends, None, enough, Some(&start), QUADRATICS).lower
+        self.bounder.bound(&mut self.all, ends, None, enough, Some(&start)).lower
     }
 
     /// The range of an unknown temperature, cut off where a known amplitude is too bright in some band.

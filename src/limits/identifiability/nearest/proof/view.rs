@@ -6,7 +6,7 @@
 use super::amplitudes::Amplitudes;
 use super::metric::Metric;
 use super::priors::Priors;
-use super::sources::{LARGEST_LN_GAIN, Sources, Spectrum, whole};
+use super::sources::{Sources, Spectrum, whole};
 use super::vectors::largest_share;
 use crate::sum::dot;
 
@@ -226,7 +226,7 @@ impl<'a> View<'a> {
 
     /// The largest amplitude that a source can have by its range.
     pub(super) fn most(&self, s: usize) -> f64 {
-        let gain = if self.allowed.gain_free { LARGEST_LN_GAIN.exp() } else { 1.0 };
+        let gain = if self.allowed.gain_free { self.allowed.gain_cap } else { 1.0 };
         match s.checked_sub(1) {
             None => gain,
             Some(k) => gain * self.allowed.ranges[k][1].min(self.allowed.sum),

@@ -18,7 +18,7 @@ fn pieces() -> Pieces {
 
 fn amplitudes(gain_free: bool, sum_known: bool) -> Amplitudes {
     let ranges = vec![[0.1, 0.8], [0.0, 0.7]];
-    Amplitudes { gain_free, ranges, sum: 0.9, sum_known, total: 5.0, gain_cap: None }
+    Amplitudes { gain_free, ranges, sum: 0.9, sum_known, total: 5.0, gain_cap: f64::INFINITY }
 }
 
 /// Amplitudes that are allowed, drawn anyhow.
@@ -33,7 +33,7 @@ fn allowed(draw: &mut impl FnMut() -> f64, of: &Amplitudes) -> Vec<f64> {
         let mut z = vec![a, 1.0 - a, v[0] * b, v[0] * (1.0 - b), v[1]];
         if of.gain_free {
             let length = inner(&z, &pieces().length);
-            let scale = of.total / length * draw();
+            let scale = (of.total / length).min(of.gain_cap) * draw();
             z.iter_mut().for_each(|z| *z *= scale);
         } else if z[2] > 0.3 {
             continue;
@@ -45,13 +45,24 @@ fn allowed(draw: &mut impl FnMut() -> f64, of: &Amplitudes) -> Vec<f64> {
 #[test]
 fn no_amplitudes_cost_less_than_the_cheapest() {
     let mut draw = draws(3);
-    for (gain_free, sum_known) in [(false, false), (false, true), (true, false), (true, true)] {
-        let of = amplitudes(gain_free, sum_known);
+    let free = [(true, false), (true, true)];
+    let known = [(false, false, f64::INFINITY), (false, true, f64::INFINITY)];
+    let capped = [f64::INFINITY, 3.3, 2.6, 0.5].into_iter();
+    let capped = capped.flat_map(|cap| free.map(|(gain, sum)| (gain, sum, cap)));
+    let mut both = 0;
+    for (gain_free, sum_known, gain_cap) in known.into_iter().chain(capped) {
+        let of = Amplitudes { gain_cap, ..amplitudes(gain_free, sum_known) };
         for _ in 0..200 {
             let cost: Vec<f64> = (0..5).map(|_| draw() - 0.6).collect();
             let mut vertex = vec![0.0; 5];
             let least = of.least(&pieces(), &cost, &mut vertex, &mut Ray::default());
             assert!((inner(&cost, &vertex) - least).abs() < 1e-12 * (1.0 + least.abs()));
+            if gain_free && least < 0.0 {
+                // It is allowed itself.
+                let (gain, length) = (vertex[0] + vertex[1], inner(&vertex, &pieces().length));
+                assert!(gain <= gain_cap * (1.0 + 1e-12) && length <= of.total * (1.0 + 1e-12));
+                both += u32::from(gain > 0.999 * gain_cap && length > 0.999 * of.total);
+            }
             let mut lowest = f64::INFINITY;
             for _ in 0..300 {
                 lowest = lowest.min(inner(&cost, &allowed(&mut draw, &of)));
@@ -63,6 +74,7 @@ fn no_amplitudes_cost_less_than_the_cheapest() {
             }
         }
     }
+    assert!(both > 50, "{both}");
 }
 
 /// Units of the sources may differ by any factor, and so the lengths of rays: a short one that is cheaper for its length is found
@@ -132,7 +144,7 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
         sum: 1.0,
         sum_known: false,
         total: 0.0,
-        gain_cap: None,
+        gain_cap: f64::INFINITY,
     };
     let (mut pieces, mut ray) = (Pieces::default(), Ray::default());
     (0..2).for_each(|source| {
