@@ -110,6 +110,19 @@ impl Amplitudes {
         lights.iter().enumerate().any(full) || nearly(lights.iter().sum(), self.sum)
     }
 
+    /// Brings amplitudes of all sources within what is allowed.
+    pub(super) fn bring_within(&self, amplitudes: &mut [f64]) {
+        let Some((surface, lights)) = amplitudes.split_first_mut() else { return };
+        *surface = if self.gain_free { surface.min(self.gain_cap) } else { 1.0 };
+        for (light, [low, high]) in lights.iter_mut().zip(&self.ranges) {
+            *light = light.min(high * *surface).max(low * *surface);
+        }
+        let all: f64 = lights.iter().sum();
+        if all > self.sum * *surface || (self.sum_known && all > 0.0) {
+            lights.iter_mut().for_each(|light| *light *= self.sum * *surface / all);
+        }
+    }
+
     /// The factor of an object where it is known.
     pub(super) fn tied(&self, k: usize) -> Option<f64> {
         let [low, high] = self.ranges[k];

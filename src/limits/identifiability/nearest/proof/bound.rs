@@ -17,7 +17,7 @@ use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
 use super::orthogonal::inner;
 use super::sources::{Chord, Spectrum, chord};
-use super::tangent::{Bands, size_of_product, slopes};
+use super::tangent::{Bands, size_of_product, slopes, weights};
 use super::vectors::{add_into, largest_share, product_into, square_of_product, square_of_quotient};
 use super::view::View;
 use crate::sum::dot;
@@ -114,6 +114,11 @@ fn column<'s>(view: &'s View<'_>, [low, rise]: [&'s [Vec<f64>]; 2], place: Place
         Place::Low(axis) => &low[axis],
         Place::Rise(axis) => &rise[axis],
     }
+}
+
+/// The bands of a view where such counts are compared, of which chords may miss so much.
+fn of_bands<'s>(view: &'s View<'_>, [counts, missed]: [&'s [f64]; 2]) -> Bands<'s> {
+    Bands { root: &view.root, own: &view.counts, noise: &view.noise, counts, missed }
 }
 
 /// Spectra of all pieces times weights.
@@ -227,7 +232,7 @@ impl Bounder {
     /// A bound by the tangents of the cost from the point on, and the least cost found in the box.
     fn tangents(&mut self, view: &View<'_>, allowed: &Amplitudes, enough: f64) -> (f64, f64) {
         let (mut lower, mut goal) = (0.0_f64, Vec::new());
-        let mut cost = self.evaluate(view, false);
+        let mut cost = self.evaluate(view);
         for step in 0..TANGENTS {
             crate::stop::check();
             if cost.is_nan() {
@@ -239,7 +244,7 @@ impl Bounder {
             if lower >= enough || cost < enough || gap <= WORTH * (enough - lower) || step + 1 == TANGENTS {
                 break;
             }
-            self.newton(view, allowed);
+            self.newton(view, allowed, step >= STRAIGHT);
             let promised =
                 inner(&self.quadratic.linear, &self.hull.point) - inner(&self.quadratic.linear, &self.point);
             let from = self.point.clone();
@@ -249,7 +254,7 @@ impl Bounder {
                 let points = from.iter().zip(&goal);
                 self.point.clear();
                 self.point.extend(points.map(|(from, to)| part.mul_add(to - from, *from)));
-                let there = self.evaluate(view, step + 1 >= STRAIGHT);
+                let there = self.evaluate(view);
                 if there < cost + PROMISED * part * promised.min(0.0) {
                     (cost, fell) = (there, true);
                     break;
@@ -264,22 +269,22 @@ impl Bounder {
     }
 
     /// The least cost at the point within what chords miss; puts slopes and the weights of a step from there.
-    fn evaluate(&mut self, view: &View<'_>, exact: bool) -> f64 {
-        let Self { places, low, rise, half, point, counts, slack, pull, weight, .. } = self;
+    fn evaluate(&mut self, view: &View<'_>) -> f64 {
+        let Self { places, low, rise, half, point, counts, slack, pull, .. } = self;
         let Self { pieces, rows, residuals, .. } = self;
         let bands = view.root.len();
-        for line in [&mut *counts, slack, pull, weight] {
+        for line in [&mut *counts, slack] {
             line.clear();
             line.resize(bands, 0.0);
         }
+        pull.resize(bands, 0.0);
         for (place, amount) in places.iter().zip(&*point) {
             add_into(*amount, column(view, [low, rise], *place), counts);
             if let Place::Low(axis) = *place {
                 add_into(*amount, &half[axis], slack);
             }
         }
-        let (root, own, noise) = (&view.root[..], &view.counts[..], &view.noise[..]);
-        let [cost, by_own] = slopes(Bands { root, own, noise, counts, missed: slack, pull, weight, exact });
+        let [cost, by_own] = slopes(of_bands(view, [counts, slack]), &view.later.share, pull);
         rows.clear();
         residuals.clear();
         view.priors.put_pieces(pieces, |constant, entries| {
@@ -324,8 +329,11 @@ impl Bounder {
     }
 
     /// A Newton step from the point over what is allowed: where it ends is the point of the hull.
-    fn newton(&mut self, view: &View<'_>, allowed: &Amplitudes) {
-        let Self { places, low, rise, whitened, weight, pull, rows, residuals, point, .. } = self;
+    fn newton(&mut self, view: &View<'_>, allowed: &Amplitudes, exact: bool) {
+        let Self { places, low, rise, whitened, weight, pull, rows, residuals, point, counts, slack, .. } =
+            self;
+        weight.resize(view.root.len(), 0.0);
+        weights(of_bands(view, [counts, slack]), exact, weight);
         let Self { square, quadratic, hull, pieces, memory, .. } = self;
         put_products(whitened, [low, rise], view, places, weight);
         put_square(square, &whitened[..places.len()], rows);

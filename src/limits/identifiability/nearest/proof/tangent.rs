@@ -18,7 +18,8 @@ use crate::simd::{Chunk, LANES, added, dispatched, fold};
 /// Share of the square of y below which counts are lifted, for a slope.
 const FLOOR: f64 = 1e-24;
 
-/// What [`slopes`] reads and writes, in whole chunks.
+/// What [`slopes`] and [`weights`] read, in whole chunks.
+#[derive(Clone, Copy)]
 pub(super) struct Bands<'a> {
     /// y, N and v.
     pub(super) root: &'a [f64],
@@ -27,63 +28,78 @@ pub(super) struct Bands<'a> {
     /// Σ z₀A, and what chords may miss of it.
     pub(super) counts: &'a [f64],
     pub(super) missed: &'a [f64],
-    /// p.
-    pub(super) pull: &'a mut [f64],
-    /// √ of the weight of a Newton step; `exact` for ½f″ itself.
-    pub(super) weight: &'a mut [f64],
-    pub(super) exact: bool,
+}
+
+/// y, N and v of a chunk of bands, Σ z₀A, what chords may miss of it.
+type Lines = [Chunk; 5];
+
+impl<'a> Bands<'a> {
+    fn chunks(&self) -> impl Iterator<Item = Lines> + 'a {
+        let Self { root, own, noise, counts, missed } = *self;
+        let [root, own, noise, counts, missed] =
+            [root, own, noise, counts, missed].map(|line| -> &'a [Chunk] { line.as_chunks().0 });
+        (0..root.len()).map(move |c| [root[c], own[c], noise[c], counts[c], missed[c]])
+    }
 }
 
 dispatched! {
-    /// Slopes and weights of every band; returned are ‖r‖² and Σ|r/y|N.
-    pub(super) fn slopes<'a>(bands: Bands<'a>) -> [f64; 2] {
-        let Bands { root, own, noise, counts, missed, pull, weight, exact } = bands;
-        let lines = [root, own, noise, counts, missed].map(|line| line.as_chunks().0);
-        let (pull, _) = pull.as_chunks_mut();
-        let (weight, _) = weight.as_chunks_mut();
-        let [root, own, noise, counts, missed] = lines.map(|line| &line[..pull.len()]);
-        let weight = &mut weight[..pull.len()];
+    /// p of every band; returned are ‖r‖² and Σ|r/y|N, `share` the N/y of every band.
+    pub(super) fn slopes<'a>(bands: Bands<'a>, share: &'a [f64], pull: &'a mut [f64]) -> [f64; 2] {
         let (mut cost, mut by_own) = ([0.0; LANES], [0.0; LANES]);
-        for c in 0..pull.len() {
-            let band = [root[c], own[c], noise[c], counts[c], missed[c]];
-            let [square, p, w, q] = one(band, exact);
+        let out = pull.as_chunks_mut().0.iter_mut().zip(share.as_chunks().0);
+        for (lines, (pull, share)) in bands.chunks().zip(out) {
+            let [square, slope, residual] = one(lines);
+            *pull = slope;
             cost = std::array::from_fn(|i| cost[i] + square[i]);
-            by_own = added(q, own[c], by_own);
-            pull[c] = p;
-            weight[c] = w;
+            by_own = added(residual, *share, by_own);
         }
         [fold(&cost), fold(&by_own)]
     }
 }
 
-/// r², p, weight and |r/y| of a chunk of bands.
+dispatched! {
+    /// The root of the weight of every band in a Newton step; `exact` for ½f″ itself.
+    pub(super) fn weights<'a>(bands: Bands<'a>, exact: bool, out: &'a mut [f64]) {
+        for (lines, out) in bands.chunks().zip(out.as_chunks_mut::<LANES>().0) {
+            let [y, own, noise, _, missed] = lines;
+            let nearest = nearest(lines);
+            let s: Chunk = std::array::from_fn(|i| (nearest[i] + noise[i]).sqrt());
+            let square: Chunk = if exact {
+                std::array::from_fn(|i| 0.25 * y[i] / (s[i] * s[i] * s[i]))
+            } else {
+                std::array::from_fn(|i| 0.5 / (s[i] * (y[i] + s[i])))
+            };
+            let bends = |i: usize| y[i] > 0.0 && !(nearest[i] == own[i] && missed[i] > 0.0);
+            *out = std::array::from_fn(|i| if bends(i) { square[i].sqrt() } else { 0.0 });
+        }
+    }
+}
+
+/// N₀.
 #[inline(always)]
-fn one([y, own, noise, counts, missed]: [Chunk; 5], exact: bool) -> [Chunk; 4] {
-    let nearest: Chunk = std::array::from_fn(|i| {
+fn nearest([y, own, _, counts, missed]: Lines) -> Chunk {
+    std::array::from_fn(|i| {
         let (low, high) = (counts[i] - missed[i], counts[i] + missed[i]);
         let near = if own[i] < low { low } else { own[i] };
         let near = if near > high { high } else { near };
         let least = FLOOR * y[i] * y[i];
         if near > least { near } else { least }
-    });
+    })
+}
+
+/// r², p and |r| of a chunk of bands.
+#[inline(always)]
+fn one(lines: Lines) -> [Chunk; 3] {
+    let [y, own, noise, counts, missed] = lines;
+    let nearest = nearest(lines);
     let s: Chunk = std::array::from_fn(|i| (nearest[i] + noise[i]).sqrt());
-    let sum: Chunk = std::array::from_fn(|i| y[i] + s[i]);
-    let residual: Chunk =
-        std::array::from_fn(|i| if sum[i] > 0.0 { (own[i] - nearest[i]) / sum[i] } else { 0.0 });
+    let pull: Chunk = std::array::from_fn(|i| (nearest[i] - own[i]) / (s[i] * (y[i] + s[i])));
+    let residual: Chunk = std::array::from_fn(|i| if y[i] > 0.0 { (pull[i] * s[i]).abs() } else { 0.0 });
     // Of a target that is dark each count adds itself, and what chords miss of it may be more than all of it.
     let cost =
         std::array::from_fn(|i| if y[i] > 0.0 { residual[i] * residual[i] } else { counts[i] - missed[i] });
-    let pull = std::array::from_fn(|i| if y[i] > 0.0 { -residual[i] / s[i] } else { 1.0 });
-    let square: Chunk =
-        std::array::from_fn(
-            |i| {
-                if exact { 0.25 * y[i] / (s[i] * s[i] * s[i]) } else { 0.5 / (s[i] * sum[i]) }
-            },
-        );
-    let bends = |i: usize| y[i] > 0.0 && !(residual[i] == 0.0 && missed[i] > 0.0);
-    let weight = std::array::from_fn(|i| if bends(i) { square[i].sqrt() } else { 0.0 });
-    let by_own = std::array::from_fn(|i| if y[i] > 0.0 { (residual[i] / y[i]).abs() } else { 0.0 });
-    [cost, pull, weight, by_own]
+    let pull = std::array::from_fn(|i| if y[i] > 0.0 { pull[i] } else { 1.0 });
+    [cost, pull, residual]
 }
 
 dispatched! {

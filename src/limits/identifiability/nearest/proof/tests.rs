@@ -92,17 +92,10 @@ fn no_counts_are_below_a_tangent() {
         let (other, wider) = (bands(0.2, 10.0), bands(0.5, 0.5));
         let sides: Vec<f64> = bands(0.0, 2.0).iter().map(|x| x - 1.0).collect();
         let root: Vec<f64> = own.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
-        let [mut pull, mut weight] = [(); 2].map(|()| vec![0.0; 8]);
-        let [cost, _] = slopes(tangent::Bands {
-            root: &root,
-            own: &own,
-            noise: &noise,
-            counts: &centre,
-            missed: &missed,
-            pull: &mut pull,
-            weight: &mut weight,
-            exact: trial % 3 == 0,
-        });
+        let mut pull = vec![0.0; 8];
+        let bands =
+            tangent::Bands { root: &root, own: &own, noise: &noise, counts: &centre, missed: &missed };
+        let [cost, _] = slopes(bands, &root, &mut pull);
         let tangent = |counts: &[f64], wide: &[f64]| -> f64 {
             let change = |w: usize| pull[w] * (counts[w] - centre[w]) - pull[w].abs() * (wide[w] - missed[w]);
             cost + (0..8).map(change).sum::<f64>()

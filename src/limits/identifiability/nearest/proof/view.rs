@@ -60,6 +60,8 @@ pub(super) struct Later {
     /// The counts that each band can have within reach.
     pub(super) brightest: Vec<f64>,
     pub(super) about_target: Metric,
+    /// N/y of every band, 0 where y is.
+    pub(super) share: Vec<f64>,
 }
 
 impl<'a> View<'a> {
@@ -126,7 +128,10 @@ impl<'a> View<'a> {
             });
         let brightest = self.root.iter().zip(&self.noise);
         let brightest = brightest.map(|(y, v)| (y + reach) * (y + reach) * (1.0 + 1e-9) - v);
+        let share = self.root.iter().zip(&self.counts);
+        let share = share.map(|(y, n)| if *y > 0.0 { n / y } else { 0.0 });
         self.later = Later {
+            share: share.collect(),
             fixed: fixed.collect(),
             brightest: brightest.collect(),
             about_target: Metric::about_target(&self.root, &self.counts, reach),

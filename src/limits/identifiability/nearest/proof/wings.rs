@@ -193,6 +193,7 @@ impl Prover<'_, '_> {
             // As bright as before at the nearer end.
             let mut start = best.amplitudes.clone();
             start[s] *= self.all.sources.brightness(best.temperature_k[s], from);
+            self.all.allowed.bring_within(&mut start);
             let lower = self.bound_from(&ends, s, f64::from(u8::from(to < from)), &start, enough);
             let there = self.bounder.mixture(&self.all);
             if lower >= enough {
