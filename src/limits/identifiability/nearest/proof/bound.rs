@@ -22,7 +22,8 @@ use super::vectors::{add_into, largest_share, product_into, square_of_product, s
 use super::view::View;
 use crate::sum::dot;
 
-/// Share of what is wanted below which the least cost over a box is so far from it that finer bands hardly help.
+/// Share of what is wanted, and of the cost without what chords miss, below which the least cost over a box is so far from it that finer
+/// bands hardly help.
 const COARSE: f64 = 0.5;
 /// How many times the rounding of counts a distance must be to be seen in them.
 pub(super) const CLEAR: f64 = 4.0;
@@ -213,7 +214,7 @@ impl Bounder {
         if lower < enough {
             let (bound, least) = self.tangents(view, allowed, enough);
             lower = lower.max(bound);
-            coarse = least < COARSE * enough;
+            coarse = least < COARSE * enough && least < COARSE * self.without_chords(view);
         }
         Bound { lower, axis: self.widest(view), coarse }
     }
@@ -293,6 +294,13 @@ impl Bounder {
         });
         self.by_own = by_own;
         cost + inner(residuals, residuals)
+    }
+
+    /// The cost at the point if chords missed nothing.
+    fn without_chords(&mut self, view: &View<'_>) -> f64 {
+        let Self { counts, slack, pull, .. } = self;
+        slack.fill(0.0);
+        slopes(of_bands(view, [counts, slack]), &view.later.share, pull)[0]
     }
 
     /// The bound by the tangent at the point, and how far below the cost there it falls but for rounding.
