@@ -28,7 +28,7 @@ const COARSE: f64 = 0.5;
 /// How many times the rounding of counts a distance must be to be seen in them.
 pub(super) const CLEAR: f64 = 4.0;
 /// Rounding of products and sums of bands, as a share of the sizes of their terms.
-const ROUNDING: f64 = 4e-15;
+const ROUNDING: f64 = 3e-15;
 /// Tangents at most, the first of them after steps in which a band alone reaches the target's counts, and parts of a step that are tried.
 const TANGENTS: usize = 12;
 const STRAIGHT: usize = 2;
@@ -79,10 +79,10 @@ pub(super) struct Bounder {
     slack: Vec<f64>,
     pull: Vec<f64>,
     weight: Vec<f64>,
-    /// Σ|r/y|N, costs of the pieces less their rounding, and what that is, and the cheapest amplitudes.
+    /// Σ|r/y|N, costs of the pieces less their rounding, what that is at the point and anywhere, and the cheapest amplitudes.
     by_own: f64,
     least_cost: Vec<f64>,
-    sizes: Vec<f64>,
+    sizes: Vec<[f64; 2]>,
     vertex: Vec<f64>,
     /// What the chord of a piece of amplitude 1 misses, as a length: 0 but at cold ends.
     missed: Vec<f64>,
@@ -307,7 +307,7 @@ impl Bounder {
     fn tangent(&mut self, view: &View<'_>, allowed: &Amplitudes, cost: f64) -> (f64, f64) {
         let Self { places, low, rise, half, point, pull, pieces, rows, residuals, .. } = self;
         let Self { quadratic, least_cost, sizes, vertex, memory, .. } = self;
-        let (m, rounding) = (places.len(), view.rounding + ROUNDING);
+        let m = places.len();
         quadratic.linear.clear();
         least_cost.clear();
         sizes.clear();
@@ -317,12 +317,14 @@ impl Bounder {
                 residuals.iter().zip(rows.chunks(m)).map(|(residual, row)| 2.0 * residual * row[i]);
             let of_priors: Vec<f64> = of_priors.collect();
             let missed = if let Place::Low(axis) = *place { size_of_product(pull, &half[axis]) } else { 0.0 };
-            let size = rounding * (size_of_product(pull, spectrum) + missed)
-                + ROUNDING * of_priors.iter().map(|x| x.abs()).sum::<f64>();
+            let all = size_of_product(pull, spectrum);
+            let size = ROUNDING * (all + missed + of_priors.iter().map(|x| x.abs()).sum::<f64>());
+            // What chords miss holds the rounding of their ends.
+            let of_spectrum = if let Place::Fixed(_) = *place { view.rounding * all } else { 0.0 };
             let own = dot(pull, spectrum) - missed + of_priors.iter().sum::<f64>();
             quadratic.linear.push(own);
-            least_cost.push(own - size);
-            sizes.push(size);
+            least_cost.push(own - size - of_spectrum);
+            sizes.push([size, size + of_spectrum]);
         }
         vertex.clear();
         vertex.resize(m, 0.0);
@@ -330,7 +332,7 @@ impl Bounder {
         let (mut gap, mut lost) = (0.0, lifted + ROUNDING * cost + view.rounding * self.by_own);
         for i in 0..m {
             gap += quadratic.linear[i] * (point[i] - vertex[i]);
-            lost += sizes[i] * (point[i].abs() + vertex[i].abs());
+            lost += sizes[i][0] * point[i].abs() + sizes[i][1] * vertex[i].abs();
         }
         let bound = cost - gap.max(0.0) - lost;
         (if bound.is_nan() { f64::NEG_INFINITY } else { bound }, gap)

@@ -47,9 +47,6 @@ pub(super) struct Quadratic {
 pub(super) struct Hull {
     /// The lowest point found, z.
     pub(super) point: Vec<f64>,
-    /// What the bound may be lowered by for rounding, and for what F holds more: less of it the nearer the origin is to the
-    /// minimum, and with all digits.
-    pub(super) rounding: f64,
     /// Vertices less z₀ and F times these, one after the other, and their shares.
     vertices: Vec<f64>,
     images: Vec<f64>,
@@ -80,7 +77,7 @@ impl Hull {
         mut cheapest: impl FnMut(&[f64], &mut [f64]) -> f64,
         enough: f64,
     ) -> f64 {
-        let Quadratic { linear, excess, origin, .. } = quadratic;
+        let Quadratic { linear, origin, .. } = quadratic;
         let n = linear.len();
         for list in [&mut self.vertex, &mut self.image, &mut self.point, &mut self.change] {
             clear(list, n);
@@ -100,11 +97,10 @@ impl Hull {
             }
             let value = self.evaluate(quadratic);
             let lifted = cheapest(&self.gradient, &mut self.vertex);
-            let (mut gap, mut repair) = (0.0, 0.0);
+            let mut gap = 0.0;
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
                 gap += self.gradient[i] * side;
-                repair += excess[i] * self.change[i].abs() * (self.change[i].abs() + 2.0 * side.abs());
             }
             if gap.is_nan() {
                 // No cheapest vertex is known.
@@ -113,7 +109,7 @@ impl Hull {
             let rounding = lifted + self.rounding_of_tangent(quadratic);
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {
-                (lower, stale, self.rounding) = (bound, 0, rounding + repair);
+                (lower, stale) = (bound, 0);
                 self.point.iter_mut().zip(&self.change).zip(origin).for_each(|((p, d), o)| *p = d + o);
             } else {
                 stale += 1;

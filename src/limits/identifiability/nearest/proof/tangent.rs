@@ -15,7 +15,7 @@
 
 use crate::simd::{Chunk, LANES, added, dispatched, fold};
 
-/// Share of the square of y below which counts are lifted, for a slope.
+/// Share of y² to which counts with their noise are lifted, for a slope.
 const FLOOR: f64 = 1e-24;
 
 /// What [`slopes`] and [`weights`] read, in whole chunks.
@@ -77,12 +77,14 @@ dispatched! {
 
 /// N₀.
 #[inline(always)]
-fn nearest([y, own, _, counts, missed]: Lines) -> Chunk {
+fn nearest([y, own, noise, counts, missed]: Lines) -> Chunk {
     std::array::from_fn(|i| {
         let (low, high) = (counts[i] - missed[i], counts[i] + missed[i]);
         let near = if own[i] < low { low } else { own[i] };
         let near = if near > high { high } else { near };
-        let least = FLOOR * y[i] * y[i];
+        // Of none, beside no noise, the slope would be without limit.
+        let lifted = FLOOR * y[i] * y[i] - noise[i];
+        let least = if lifted > 0.0 { lifted } else { 0.0 };
         if near > least { near } else { least }
     })
 }
