@@ -141,7 +141,7 @@ impl Amplitudes {
         vertex.fill(0.0);
         ray.cost.resize(cost.len(), 0.0);
         ray.vertex.resize(cost.len(), 0.0);
-        let (mut rate, mut scale) = (0.0, 0.0);
+        let (mut rate, mut scale, mut settled) = (0.0, 0.0, false);
         for step in 0..=STEPS {
             for ((adjusted, cost), length) in ray.cost.iter_mut().zip(cost).zip(&pieces.length) {
                 *adjusted = cost - rate * length;
@@ -161,7 +161,9 @@ impl Amplitudes {
                 };
             }
             if better >= -LAST_DIGITS * from || step == STEPS {
-                ray.lifted = self.hidden((-better).max(0.0) + LAST_DIGITS * size, pieces, &mut ray.vertex);
+                let less = (-better).max(0.0) + LAST_DIGITS * size;
+                ray.lifted = self.hidden(less, limit, pieces, &mut ray.vertex);
+                settled = true;
                 break;
             }
             vertex.copy_from_slice(&ray.vertex);
@@ -177,7 +179,9 @@ impl Amplitudes {
             // Without the largest gain it is no more than this.
             let known = self.total * rate - ray.lifted;
             let least = self.least_within(limit, pieces, cost, vertex, ray);
-            ray.lifted = if known.is_finite() { ray.lifted.min(least - known) } else { ray.lifted };
+            if settled && known.is_finite() {
+                ray.lifted = ray.lifted.min((least - known).max(0.0));
+            }
             return least;
         }
         vertex.iter_mut().for_each(|v| *v *= scale);
@@ -197,37 +201,34 @@ impl Amplitudes {
         let Ray { cost: adjusted, vertex: better, long, lifted } = ray;
         let most = self.total / limit;
         long.resize(cost.len(), 0.0);
-        let value = self.ray(pieces, cost, long);
-        // Of rays cut off at the gain this one costs least, that of the vertex is short enough.
-        let mut share = if along(long, &pieces.length) <= most { 1.0 } else { 0.0 };
+        self.ray(pieces, cost, long);
         *lifted = 0.0;
-        for _ in 0..STEPS {
-            if share == 1.0 || value.is_nan() {
-                break;
-            }
-            let [cost_long, cost_short] = [&**long, &*vertex].map(|v| along(v, cost));
-            let [length_long, length_short] = [&**long, &*vertex].map(|v| along(v, &pieces.length));
-            share = ((most - length_short) / (length_long - length_short)).clamp(0.0, 1.0);
-            let price = (cost_short - cost_long) / (length_long - length_short);
-            if !price.is_finite() {
-                share = f64::NAN;
-                break;
-            }
-            let price = price.max(0.0);
-            for ((adjusted, cost), length) in adjusted.iter_mut().zip(cost).zip(&pieces.length) {
-                *adjusted = cost + price * length;
-            }
-            let least = self.ray(pieces, adjusted, better);
-            let known = share * cost_long + (1.0 - share) * cost_short + price * most;
-            // No ray is cheaper than the least, but for what its own last digits are, and so no mixture of them within the total.
-            *lifted = limit * (known - least).max(0.0) + LAST_DIGITS * price * self.total;
-            if known <= least || better == long || *better == *vertex {
-                break;
-            }
-            if along(better, &pieces.length) > most {
-                long.copy_from_slice(better);
-            } else {
-                vertex.copy_from_slice(better);
+        let mut share = 1.0;
+        // Of rays cut off at the gain that one costs least; where it is too long, the ray of the vertex is short enough.
+        if along(long, &pieces.length) > most {
+            for step in 1..=STEPS {
+                let [cost_long, cost_short] = [&**long, &*vertex].map(|v| along(v, cost));
+                let [length_long, length_short] = [&**long, &*vertex].map(|v| along(v, &pieces.length));
+                share = ((most - length_short) / (length_long - length_short)).clamp(0.0, 1.0);
+                let price = (cost_short - cost_long) / (length_long - length_short);
+                let price = if price < 0.0 { 0.0 } else { price };
+                for ((adjusted, cost), length) in adjusted.iter_mut().zip(cost).zip(&pieces.length) {
+                    *adjusted = cost + price * length;
+                }
+                let less = share * cost_long + (1.0 - share) * cost_short + price * most
+                    - self.ray(pieces, adjusted, better);
+                // No mixture of rays within the total is cheaper by more than that, but for the rays' own last digits.
+                *lifted = limit * if less < 0.0 { 0.0 } else { less } + LAST_DIGITS * price * self.total;
+                let size = share * cost_long.abs() + (1.0 - share) * cost_short.abs() + price * most;
+                // What was found of this pair is of no other one.
+                if less <= LAST_DIGITS * size || less.is_nan() || step == STEPS {
+                    break;
+                }
+                if along(better, &pieces.length) > most {
+                    long.copy_from_slice(better);
+                } else {
+                    vertex.copy_from_slice(better);
+                }
             }
         }
         vertex.iter_mut().zip(&*long).for_each(|(v, long)| *v = limit * (share * long + (1.0 - share) * *v));
@@ -241,8 +242,9 @@ impl Amplitudes {
 
     /// How far below what was found a ray may be that is cheaper by `less`: rays may be longer than others by any factor, so that
     /// what is rounding of a long one is much of a short one.
-    fn hidden(&self, less: f64, pieces: &Pieces, vertex: &mut [f64]) -> f64 {
-        if less > 0.0 { self.total * less / self.ray(pieces, &pieces.length, vertex) } else { 0.0 }
+    fn hidden(&self, less: f64, limit: f64, pieces: &Pieces, vertex: &mut [f64]) -> f64 {
+        let scale = |shortest: f64| (self.total / shortest).min(limit);
+        if less > 0.0 { less * scale(self.ray(pieces, &pieces.length, vertex)) } else { 0.0 }
     }
 
     /// How large the amplitude of a piece can be of a state within reach.

@@ -1,24 +1,26 @@
 //! The bound of d² in a box of temperatures.
 //!
 //! In a box every source of unknown temperature is a mixture of two spectra, the ends of its chord (`sources`), but for what
-//! the chord misses. A first look is by the quadratic of `metric` about the target, h its shift: with ‖W(N′ − ΣzA)‖ ≤ m and
-//! φ(δ) = ‖W(ΣzA − N)‖² − ‖h‖² (`hull`),
+//! the chord misses. A first look is by the quadratic of `metric` about the target: with ‖W(N′ − ΣzA)‖ ≤ m
 //!
-//! d² ≥ cost − ‖h‖² + (√(‖h‖² + φ) − m)²,
+//! d ≥ ‖W(ΣzA − N)‖ − m,
 //!
-//! 0 in place of the bracket where that is negative; or, as m is in proportion to the amplitudes, with the least of the convex
-//! √(‖h‖² + φ) − m(z) in its place. From where that is least Newton's method goes to the least of the cost itself over the box, what
-//! chords miss included, and a tangent there is a bound as exact as can be (`tangent`).
+//! the least of it over the amplitudes (`hull`): of the square, or as m is in proportion to the amplitudes of the convex difference. From
+//! where that is least a search goes to the least of the cost itself, what chords miss included, and a tangent there is a bound as exact
+//! as can be (`least`).
 //!
 //! What the amplitudes may be: a curve lies above its cold end and above its tangent there, so that c(1 − λ) of the one and cλ
 //! of the other never are more than a band can have within reach, nor all bands together.
 
-use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
+mod least;
+mod pieces;
+
+use self::pieces::{Cheapest, Place, Vertex, put_products, put_square, rises};
+use super::amplitudes::{Amplitudes, Piece, Pieces};
 use super::hull::{Hull, Quadratic, factor_of};
 use super::orthogonal::inner;
 use super::sources::{Chord, Spectrum, chord};
-use super::tangent::{Bands, size_of_product, slopes, weights};
-use super::vectors::{add_into, largest_share, product_into, square_of_product, square_of_quotient};
+use super::vectors::{largest_share, square_of_product};
 use super::view::View;
 use crate::sum::dot;
 
@@ -27,19 +29,8 @@ use crate::sum::dot;
 const COARSE: f64 = 0.5;
 /// How many times the rounding of counts a distance must be to be seen in them.
 pub(super) const CLEAR: f64 = 4.0;
-/// Rounding of products and sums of bands, as a share of the sizes of their terms.
-const ROUNDING: f64 = 3e-15;
-/// Tangents at most, the first of them after steps in which a band alone reaches the target's counts, and parts of a step that are tried.
-const TANGENTS: usize = 12;
-const STRAIGHT: usize = 2;
-const PARTS: [f64; 4] = [1.0, 0.4, 0.1, 0.02];
 /// Share of the largest amplitude below which one is as good as none.
 const HARDLY: f64 = 1e-3;
-/// Share of a cost by which a step must lower it, of what its slope promises.
-const PROMISED: f64 = 0.01;
-/// Share of what is wanting below which a fall of the cost ends the search.
-const WORTH: f64 = 0.02;
-
 /// Amplitudes and temperatures of all sources.
 pub(super) struct Mixture {
     pub(super) amplitudes: Vec<f64>,
@@ -92,99 +83,6 @@ pub(super) struct Bounder {
     memory: Vertex,
 }
 
-/// Where the spectrum of a piece is.
-#[derive(Debug, Clone, Copy)]
-enum Place {
-    /// Of a source of known temperature.
-    Fixed(usize),
-    /// Of an axis.
-    Low(usize),
-    Rise(usize),
-}
-
-/// Where rises stand; each comes after the cold end it begins at. A source stands in the quadratic by its amplitude and by that
-/// share of it which is hot: both ends may be nearly the same, what is between them keeps its digits.
-fn rises(places: &[Place]) -> impl Iterator<Item = usize> {
-    places.iter().enumerate().filter(|(_, place)| matches!(place, Place::Rise(_))).map(|(i, _)| i)
-}
-
-/// The spectrum of a piece.
-fn column<'s>(view: &'s View<'_>, [low, rise]: [&'s [Vec<f64>]; 2], place: Place) -> &'s [f64] {
-    match place {
-        Place::Fixed(s) => view.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
-        Place::Low(axis) => &low[axis],
-        Place::Rise(axis) => &rise[axis],
-    }
-}
-
-/// The bands of a view where such counts are compared, of which chords may miss so much.
-fn of_bands<'s>(view: &'s View<'_>, [counts, missed]: [&'s [f64]; 2]) -> Bands<'s> {
-    Bands { root: &view.root, own: &view.counts, noise: &view.noise, counts, missed }
-}
-
-/// Spectra of all pieces times weights.
-fn put_products(
-    whitened: &mut Vec<Vec<f64>>,
-    of: [&[Vec<f64>]; 2],
-    view: &View<'_>,
-    places: &[Place],
-    weight: &[f64],
-) {
-    whitened.resize_with(whitened.len().max(places.len()), Vec::new);
-    for (out, place) in whitened.iter_mut().zip(places) {
-        out.resize(weight.len(), 0.0);
-        product_into(column(view, of, *place), weight, out);
-    }
-}
-
-/// Products of all columns with each other, with the rows of the priors.
-fn put_square(square: &mut Vec<f64>, columns: &[Vec<f64>], rows: &[f64]) {
-    let m = columns.len();
-    square.resize(m * m, 0.0);
-    for i in 0..m {
-        for j in 0..=i {
-            let of_priors: f64 = rows.chunks(m).map(|row| row[i] * row[j]).sum();
-            let product = dot(&columns[i], &columns[j]) + of_priors;
-            (square[i * m + j], square[j * m + i]) = (product, product);
-        }
-    }
-}
-
-/// Memory of [`Cheapest`].
-#[derive(Debug, Clone, Default)]
-struct Vertex {
-    both: Vec<f64>,
-    ray: Ray,
-}
-
-/// Finds the cheapest amplitudes of the pieces.
-struct Cheapest<'a> {
-    allowed: &'a Amplitudes,
-    pieces: &'a Pieces,
-    places: &'a [Place],
-}
-
-impl Cheapest<'_> {
-    /// Puts them, and returns what rounding may have lifted their cost by.
-    fn put(&self, costs: &[f64], vertex: &mut [f64], memory: &mut Vertex) -> f64 {
-        let Self { allowed, pieces, places } = self;
-        let Vertex { both, ray } = memory;
-        both.clear();
-        both.extend_from_slice(costs);
-        rises(places).for_each(|i| both[i] += costs[i - 1]);
-        allowed.least(pieces, both, vertex, ray);
-        let rounding = allowed.rounding(pieces, both, vertex, ray);
-        rises(places).for_each(|i| vertex[i - 1] += vertex[i]);
-        rounding
-    }
-
-    /// How large each amplitude can be.
-    fn put_most(&self, most: &mut Vec<f64>) {
-        most.clear();
-        most.extend((0..self.places.len()).map(|i| self.allowed.most(self.pieces, i)));
-    }
-}
-
 impl Bounder {
     /// A bound of d² in a box, over `narrower` amplitudes where these are given; without a first look from `start` on, amplitudes of
     /// the pieces.
@@ -228,132 +126,6 @@ impl Bounder {
         };
         let parts: Vec<f64> = (0..view.axes.len()).map(missed).collect();
         (0..parts.len()).max_by(|&i, &j| parts[i].total_cmp(&parts[j])).unwrap_or(0)
-    }
-
-    /// A bound by the tangents of the cost from the point on, and the least cost found in the box.
-    fn tangents(&mut self, view: &View<'_>, allowed: &Amplitudes, enough: f64) -> (f64, f64) {
-        let (mut lower, mut goal) = (0.0_f64, Vec::new());
-        let mut cost = self.evaluate(view);
-        for step in 0..TANGENTS {
-            crate::stop::check();
-            if cost.is_nan() {
-                break;
-            }
-            let (bound, gap) = self.tangent(view, allowed, cost);
-            lower = lower.max(bound);
-            // The least over the box is no more than what is found in it.
-            if lower >= enough || cost < enough || gap <= WORTH * (enough - lower) || step + 1 == TANGENTS {
-                break;
-            }
-            self.newton(view, allowed, step >= STRAIGHT);
-            let promised =
-                inner(&self.quadratic.linear, &self.hull.point) - inner(&self.quadratic.linear, &self.point);
-            let from = self.point.clone();
-            goal.clone_from(&self.hull.point);
-            let mut fell = false;
-            for part in PARTS {
-                let points = from.iter().zip(&goal);
-                self.point.clear();
-                self.point.extend(points.map(|(from, to)| part.mul_add(to - from, *from)));
-                let there = self.evaluate(view);
-                if there < cost + PROMISED * part * promised.min(0.0) {
-                    (cost, fell) = (there, true);
-                    break;
-                }
-            }
-            if !fell {
-                self.point = from;
-                break;
-            }
-        }
-        (lower, cost)
-    }
-
-    /// The least cost at the point within what chords miss; puts slopes and the weights of a step from there.
-    fn evaluate(&mut self, view: &View<'_>) -> f64 {
-        let Self { places, low, rise, half, point, counts, slack, pull, .. } = self;
-        let Self { pieces, rows, residuals, .. } = self;
-        let bands = view.root.len();
-        for line in [&mut *counts, slack] {
-            line.clear();
-            line.resize(bands, 0.0);
-        }
-        pull.resize(bands, 0.0);
-        for (place, amount) in places.iter().zip(&*point) {
-            add_into(*amount, column(view, [low, rise], *place), counts);
-            if let Place::Low(axis) = *place {
-                add_into(*amount, &half[axis], slack);
-            }
-        }
-        let [cost, by_own] = slopes(of_bands(view, [counts, slack]), &view.later.share, pull);
-        rows.clear();
-        residuals.clear();
-        view.priors.put_pieces(pieces, |constant, entries| {
-            residuals.push(constant + inner(entries, point));
-            rows.extend_from_slice(entries);
-        });
-        self.by_own = by_own;
-        cost + inner(residuals, residuals)
-    }
-
-    /// The cost at the point if chords missed nothing.
-    fn without_chords(&mut self, view: &View<'_>) -> f64 {
-        let Self { counts, slack, pull, .. } = self;
-        slack.fill(0.0);
-        slopes(of_bands(view, [counts, slack]), &view.later.share, pull)[0]
-    }
-
-    /// The bound by the tangent at the point, and how far below the cost there it falls but for rounding.
-    fn tangent(&mut self, view: &View<'_>, allowed: &Amplitudes, cost: f64) -> (f64, f64) {
-        let Self { places, low, rise, half, point, pull, pieces, rows, residuals, .. } = self;
-        let Self { quadratic, least_cost, sizes, vertex, memory, .. } = self;
-        let m = places.len();
-        quadratic.linear.clear();
-        least_cost.clear();
-        sizes.clear();
-        for (i, place) in places.iter().enumerate() {
-            let spectrum = column(view, [low, rise], *place);
-            let of_priors =
-                residuals.iter().zip(rows.chunks(m)).map(|(residual, row)| 2.0 * residual * row[i]);
-            let of_priors: Vec<f64> = of_priors.collect();
-            let missed = if let Place::Low(axis) = *place { size_of_product(pull, &half[axis]) } else { 0.0 };
-            let all = size_of_product(pull, spectrum);
-            let size = ROUNDING * (all + missed + of_priors.iter().map(|x| x.abs()).sum::<f64>());
-            // What chords miss holds the rounding of their ends.
-            let of_spectrum = if let Place::Fixed(_) = *place { view.rounding * all } else { 0.0 };
-            let own = dot(pull, spectrum) - missed + of_priors.iter().sum::<f64>();
-            quadratic.linear.push(own);
-            least_cost.push(own - size - of_spectrum);
-            sizes.push([size, size + of_spectrum]);
-        }
-        vertex.clear();
-        vertex.resize(m, 0.0);
-        let lifted = Cheapest { allowed, pieces, places }.put(least_cost, vertex, memory);
-        let (mut gap, mut lost) = (0.0, lifted + ROUNDING * cost + view.rounding * self.by_own);
-        for i in 0..m {
-            gap += quadratic.linear[i] * (point[i] - vertex[i]);
-            lost += sizes[i][0] * point[i].abs() + sizes[i][1] * vertex[i].abs();
-        }
-        let bound = cost - gap.max(0.0) - lost;
-        (if bound.is_nan() { f64::NEG_INFINITY } else { bound }, gap)
-    }
-
-    /// A Newton step from the point over what is allowed: where it ends is the point of the hull.
-    fn newton(&mut self, view: &View<'_>, allowed: &Amplitudes, exact: bool) {
-        let Self { places, low, rise, whitened, weight, pull, rows, residuals, point, counts, slack, .. } =
-            self;
-        weight.resize(view.root.len(), 0.0);
-        weights(of_bands(view, [counts, slack]), exact, weight);
-        let Self { square, quadratic, hull, pieces, memory, .. } = self;
-        put_products(whitened, [low, rise], view, places, weight);
-        put_square(square, &whitened[..places.len()], rows);
-        factor_of(square, &mut quadratic.factor, &mut quadratic.excess);
-        quadratic.origin.clone_from(point);
-        let of_priors = inner(residuals, residuals);
-        quadratic.length = (0.25 * square_of_quotient(pull, weight) + of_priors).sqrt();
-        let oracle = Cheapest { allowed, pieces, places };
-        oracle.put_most(&mut quadratic.most);
-        hull.least(quadratic, |costs, vertex| oracle.put(costs, vertex, memory), f64::INFINITY);
     }
 
     /// A bound by the quadratic about the target.

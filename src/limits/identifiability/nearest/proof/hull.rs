@@ -97,11 +97,11 @@ impl Hull {
             }
             let value = self.evaluate(quadratic);
             let lifted = cheapest(&self.gradient, &mut self.vertex);
-            let mut gap = 0.0;
-            for i in 0..n {
-                let side = self.change[i] - (self.vertex[i] - origin[i]);
-                gap += self.gradient[i] * side;
-            }
+            let sides = self.change.iter().zip(&self.vertex).zip(origin);
+            let gap: f64 = sides
+                .zip(&self.gradient)
+                .map(|(((change, v), o), gradient)| gradient * (change - (v - o)))
+                .sum();
             if gap.is_nan() {
                 // No cheapest vertex is known.
                 break;

@@ -14,6 +14,7 @@
 //! N at once from wherever it is.
 
 use crate::simd::{Chunk, LANES, added, dispatched, fold};
+use crate::sum::CompensatedLanes;
 
 /// Share of y² to which counts with their noise are lifted, for a slope.
 const FLOOR: f64 = 1e-24;
@@ -45,15 +46,15 @@ impl<'a> Bands<'a> {
 dispatched! {
     /// p of every band; returned are ‖r‖² and Σ|r/y|N, `share` the N/y of every band.
     pub(super) fn slopes<'a>(bands: Bands<'a>, share: &'a [f64], pull: &'a mut [f64]) -> [f64; 2] {
-        let (mut cost, mut by_own) = ([0.0; LANES], [0.0; LANES]);
+        let (mut cost, mut by_own) = (CompensatedLanes::default(), [0.0; LANES]);
         let out = pull.as_chunks_mut().0.iter_mut().zip(share.as_chunks().0);
         for (lines, (pull, share)) in bands.chunks().zip(out) {
             let [square, slope, residual] = one(lines);
             *pull = slope;
-            cost = std::array::from_fn(|i| cost[i] + square[i]);
+            cost.add(square);
             by_own = added(residual, *share, by_own);
         }
-        [fold(&cost), fold(&by_own)]
+        [cost.value(), fold(&by_own)]
     }
 }
 
@@ -107,11 +108,10 @@ fn one(lines: Lines) -> [Chunk; 3] {
 dispatched! {
     /// Σ |a||b|.
     pub(super) fn size_of_product<'a>(a: &'a [f64], b: &'a [f64]) -> f64 {
-        let mut lanes = [0.0; LANES];
+        let mut total = CompensatedLanes::default();
         for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-            let both: Chunk = std::array::from_fn(|i| (a[i] * b[i]).abs());
-            lanes = std::array::from_fn(|i| lanes[i] + both[i]);
+            total.add(std::array::from_fn(|i| (a[i] * b[i]).abs()));
         }
-        fold(&lanes)
+        total.value()
     }
 }

@@ -77,6 +77,38 @@ fn no_amplitudes_cost_less_than_the_cheapest() {
     assert!(both > 50, "{both}");
 }
 
+/// Where costs are all but a multiple of lengths any ray is as good as another one, but for rounding; both limits bind.
+#[test]
+fn nothing_costs_less_where_all_cost_alike() {
+    let mut draw = draws(41);
+    let mut within = 0;
+    for trial in 0..40_000 {
+        let mut own = pieces();
+        own.length.iter_mut().for_each(|length| *length = 0.1 + 2.0 * draw());
+        let price = 10f64.powf(4.0 * draw() - 2.0);
+        let last_digit = |x: f64, draw: &mut dyn FnMut() -> f64| x * (1.0 + 4e-16 * (draw() - 0.5));
+        let cost: Vec<f64> = own.length.iter().map(|length| last_digit(-price * length, &mut draw)).collect();
+        let ranges = vec![[0.0, 1.0], [0.0, 1.0]];
+        let of = Amplitudes {
+            ranges,
+            sum: 1.0,
+            gain_cap: 0.3 + draw(),
+            total: 0.5 + draw(),
+            ..amplitudes(true, false)
+        };
+        let (mut vertex, mut ray) = (vec![0.0; 5], Ray::default());
+        let least = of.least(&own, &cost, &mut vertex, &mut ray);
+        let lower = least - of.rounding(&own, &cost, &vertex, &ray);
+        // The longest ray of the largest gain, or the total.
+        let longest = own.length[0].max(own.length[1]) + own.length[2..].iter().copied().fold(0.0, f64::max);
+        let exact = -price * of.total.min(of.gain_cap * longest);
+        within += u32::from(of.total < of.gain_cap * longest);
+        assert!(lower <= exact * (1.0 - 1e-14), "{trial}: {lower} {exact}");
+        assert!(lower >= exact * (1.0 + 1e-11), "{trial}: {lower} {exact}");
+    }
+    assert!(within > 10_000, "{within}");
+}
+
 /// Units of the sources may differ by any factor, and so the lengths of rays: a short one that is cheaper for its length is found
 /// beside a long one whose rounding is more than all of it.
 #[test]
