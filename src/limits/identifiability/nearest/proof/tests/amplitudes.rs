@@ -109,6 +109,36 @@ fn nothing_costs_less_where_all_cost_alike() {
     assert!(within > 10_000, "{within}");
 }
 
+/// Two such rays that took each other's place until the steps ran out; the least by rational numbers.
+#[test]
+fn rays_that_alternate_do_not_hide_the_least() {
+    let length = [
+        0.691_845_986_622_443_6,
+        0.759_434_529_539_388_7,
+        0.774_519_193_638_224_5,
+        0.449_188_684_031_161_86,
+        1.404_612_397_134_735_5,
+    ];
+    let cost = [
+        -0.085_246_468_008_691_58,
+        -0.093_829_532_948_158_81,
+        -0.095_433_126_648_503_45,
+        -0.055_347_215_310_255_76,
+        -0.173_070_666_148_565_45,
+    ];
+    let own = Pieces { source: vec![0, 0, 1, 2, 3], length: length.to_vec(), ..pieces() };
+    let of = Amplitudes {
+        ranges: vec![[0.0, 1.0]; 3],
+        sum: 1.000_000_000_000_001,
+        gain_cap: 0.792_635_405_847_953_2,
+        total: 1.027_877_535_811_033_5,
+        ..amplitudes(true, false)
+    };
+    let (mut vertex, mut ray) = (vec![0.0; 5], Ray::default());
+    let least = of.least(&own, &cost, &mut vertex, &mut ray);
+    assert!((least + 0.126_85).abs() < 1e-5, "{least}");
+}
+
 /// Units of the sources may differ by any factor, and so the lengths of rays: a short one that is cheaper for its length is found
 /// beside a long one whose rounding is more than all of it.
 #[test]
