@@ -31,6 +31,8 @@ mod rectangle;
 pub mod selection;
 mod space;
 
+pub(super) use self::space::{ENVIRONMENT_K, LARGEST_LN_GAIN};
+
 /// What kind of answer a distance is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]

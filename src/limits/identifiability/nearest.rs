@@ -173,7 +173,21 @@ impl<'a> NearestSolver<'a> {
         if found.distance < limit {
             return Ok(Nearer::Somewhere);
         }
-        Ok(self.proved_nearer(&target, limit, Some(&found), MOST_BOXES))
+        let last = self.proved_nearer(&target, limit, Some(&found), MOST_BOXES);
+        if let (Nearer::Undecided, Some(mut without)) = (last, self.without_priors()) {
+            let all = without.nearer_than(emissivity, alternative, state, counting, limit, None)?;
+            return Ok(if all == Nearer::Nowhere { all } else { last });
+        }
+        Ok(last)
+    }
+
+    /// The same solver with nothing known beforehand, where anything is: then no state is farther, so that its bounds hold.
+    fn without_priors(&self) -> Option<Self> {
+        let unknowns = &self.comparison.space.unknowns;
+        let mut solver = unknowns.has_priors().then(|| self.clone())?;
+        solver.comparison.space.unknowns = unknowns.without_priors();
+        solver.table = None;
+        Some(solver)
     }
 
     fn proved_nearer(
@@ -272,6 +286,16 @@ impl<'a> NearestSolver<'a> {
                 self.descend_from(&target, starts, &mut best, enough);
                 if best.as_ref().is_some_and(|best| best.distance < before) {
                     self.prove(&target, &mut best, tolerance);
+                }
+                if let (Some(best), Some(mut without)) = (&mut best, self.without_priors()) {
+                    // What it finds tells whether its bound could be of use.
+                    without.tolerance = None;
+                    let ask =
+                        |solver: &mut Self| solver.search(emissivity, alternative, state, metric, None, 0.0);
+                    if ask(&mut without)?.distance > best.lower {
+                        without.tolerance = Some(tolerance);
+                        best.lower = best.lower.max(ask(&mut without)?.lower).min(best.distance);
+                    }
                 }
             }
         }

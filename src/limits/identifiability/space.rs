@@ -11,8 +11,9 @@ use crate::fisher::{Nuisance, Unknowns};
 use crate::scene::{Parameter, State};
 use nalgebra::{DMatrix, DVector};
 
-/// Largest |ln G′|.
-const LOG_GAIN: f64 = 14.0;
+/// Largest |ln G′|, and the range of Tₖ′ (K): of searches and of what is proved of them.
+pub(in crate::limits) const LARGEST_LN_GAIN: f64 = 14.0;
+pub(in crate::limits) const ENVIRONMENT_K: [f64; 2] = [0.1, 1e6];
 /// Share of its range within which a parameter counts as standing at the edge.
 const EDGE: f64 = 1e-9;
 
@@ -169,8 +170,8 @@ impl StateSpace {
         match parameter {
             Parameter::Temperature => self.range.temperature_k,
             Parameter::Lighting(_) => self.lighting,
-            Parameter::Gain => [-LOG_GAIN, LOG_GAIN],
-            Parameter::EnvironmentTemperature(_) => [0.1, 1e6],
+            Parameter::Gain => [-LARGEST_LN_GAIN, LARGEST_LN_GAIN],
+            Parameter::EnvironmentTemperature(_) => ENVIRONMENT_K,
             Parameter::Material => [0.0, 0.0],
         }
     }

@@ -20,13 +20,10 @@ use super::ranges::Ranges;
 use super::relation::{Product, Relation};
 use super::scene::{EnvelopeScene, Stretch};
 use crate::fisher::{Nuisance, Unknowns};
+use crate::identifiability::{ENVIRONMENT_K, LARGEST_LN_GAIN};
 use crate::planck;
 use crate::scene::State;
 use crate::spectrum::Bands;
-
-/// Largest |ln G′|, and the range of Tₖ′ (K): those of the search for the nearest state.
-const LOG_GAIN: f64 = 14.0;
-const ENVIRONMENT_K: [f64; 2] = [0.1, 1e6];
 
 /// What a source is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,7 +136,7 @@ impl<'a> Model<'a> {
         let (e, other) = (scene.emissivity.to_vec(), scene.alternative.to_vec());
         let zeros = || vec![0.0; e.len()];
         let (one, none) = ([1.0, 1.0], [0.0, 0.0]);
-        let gain_range = if own_gain { [(-LOG_GAIN).exp(), LOG_GAIN.exp()] } else { one };
+        let gain_range = if own_gain { [(-LARGEST_LN_GAIN).exp(), LARGEST_LN_GAIN.exp()] } else { one };
         let mut built = Built { sources: Vec::new(), region: Vec::new() };
         let t = ranges.temperature_k();
         let span = |t, own, other| Span { t, own, other };

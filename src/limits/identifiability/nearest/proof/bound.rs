@@ -15,6 +15,8 @@
 mod least;
 mod pieces;
 
+#[cfg(test)]
+use self::pieces::column;
 use self::pieces::{Cheapest, Place, Vertex, put_products, put_square, rises};
 use super::amplitudes::{Amplitudes, Piece, Pieces};
 use super::hull::{Hull, Quadratic, factor_of};
@@ -31,6 +33,7 @@ const COARSE: f64 = 0.5;
 pub(super) const CLEAR: f64 = 4.0;
 /// Share of the largest amplitude below which one is as good as none.
 const HARDLY: f64 = 1e-3;
+
 /// Amplitudes and temperatures of all sources.
 pub(super) struct Mixture {
     pub(super) amplitudes: Vec<f64>,
@@ -279,13 +282,7 @@ impl Bounder {
     ) -> (Pieces, Vec<Vec<f64>>, Vec<Vec<f64>>) {
         view.look();
         self.lay(view, ends);
-        let columns = self.places.iter().map(|place| match *place {
-            Place::Fixed(s) => {
-                view.later.fixed[s].as_ref().map_or_else(Vec::new, |fixed| fixed.counts.clone())
-            }
-            Place::Low(axis) => self.low[axis].clone(),
-            Place::Rise(axis) => self.rise[axis].clone(),
-        });
+        let columns = self.places.iter().map(|place| column(view, [&self.low, &self.rise], *place).to_vec());
         let columns = columns.collect();
         (self.pieces.clone(), columns, self.half.clone())
     }

@@ -3,10 +3,11 @@
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
 use super::priors::Priors;
-use super::sources::{LARGEST_LN_GAIN, Sources, neighbours_summed};
+use super::sources::{Sources, neighbours_summed};
 use super::view::View;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
+use crate::identifiability::space::LARGEST_LN_GAIN;
 use crate::scene::{Parameter, State};
 
 /// Share of what is enough that bands counted together must bound for all to be looked at in a wide box, and from how many

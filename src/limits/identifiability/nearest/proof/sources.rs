@@ -18,6 +18,7 @@ use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::Blackbodies;
 use crate::identifiability::nearest::residual::{Comparison, Target};
+use crate::identifiability::space::LARGEST_LN_GAIN;
 use crate::planck;
 use crate::scene::Parameter;
 use crate::simd::{Chunk, LANES, dispatched, fold, padded};
@@ -84,8 +85,6 @@ const DARK: f64 = 690.0;
 const NOTHING: f64 = 1e-32;
 /// By how much of itself the rounding of what is colder may be larger before it is asked how much of the light that is.
 const SAME_ROUNDING: f64 = 0.5;
-/// |ln G| at most.
-pub(super) const LARGEST_LN_GAIN: f64 = 14.0;
 
 fn lowest(nodes_cm1: &[f64]) -> f64 {
     nodes_cm1.iter().copied().fold(f64::INFINITY, f64::min)

@@ -184,6 +184,38 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
     }
 }
 
+/// Bands in which one side sends nothing count. Where the gain alone is unknown, d² = Σn − (Σ√(nm))²/Σm.
+#[test]
+fn dark_bands_of_either_side_are_part_of_a_proof() {
+    let mut draw = draws(43);
+    let bands = Bands::uniform(720.0, 1240.0, 40.0).unwrap();
+    let nodes = bands.nodes_cm1().to_vec();
+    let surroundings = Surroundings::new(&nodes, Vec::new()).unwrap();
+    for trial in 0..60 {
+        let state = surroundings.state(250.0 + 100.0 * draw(), &[]).unwrap();
+        let mut wave = |dark: f64| -> Vec<f64> {
+            nodes.iter().map(|_| if draw() < dark { 0.0 } else { 0.1 + 0.8 * draw() }).collect()
+        };
+        let (target, other) = (wave(0.2), wave(0.2));
+        for unknown in
+            [&[Nuisance::Gain][..], &[Nuisance::Temperature], &[Nuisance::Temperature, Nuisance::Gain]]
+        {
+            let unknowns = Unknowns::new(unknown.iter().copied()).unwrap();
+            let mut solver =
+                NearestSolver::new(&bands, &surroundings, unknowns, StateRange::default()).proving(1e-6);
+            let found = solver.per_photon(&target, &other, &state, f64::INFINITY).unwrap();
+            assert!(found.is_proved_to(1e-6) && found.lower > 0.0, "{trial} {unknown:?}: {found:?}");
+            if unknown == [Nuisance::Gain] {
+                let [n, m] = [&target, &other].map(|e| bands.weigh(&surroundings.signal(e, &state)));
+                let all = |of: &[f64]| of.iter().sum::<f64>();
+                let both: f64 = n.iter().zip(&m).map(|(n, m)| (n * m).sqrt()).sum();
+                let exact = (1.0 - both * both / (all(&n) * all(&m))).sqrt();
+                assert!((found.distance / exact - 1.0).abs() < 1e-9, "{trial}: {found:?} {exact}");
+            }
+        }
+    }
+}
+
 /// A state within reach, written as amplitudes of the pieces of any box that it lies in, costs no less than the cheapest, whatever
 /// the costs; and the pieces are its spectrum but for what the chords may miss.
 #[test]

@@ -32,7 +32,7 @@ fn of_bands<'s>(view: &'s View<'_>, [counts, missed]: [&'s [f64]; 2]) -> Bands<'
 impl Bounder {
     /// A bound by the tangents of the cost from the point on, and the least cost found in the box.
     pub(super) fn tangents(&mut self, view: &View<'_>, allowed: &Amplitudes, enough: f64) -> (f64, f64) {
-        let (mut lower, mut goal) = (0.0_f64, Vec::new());
+        let mut lower = 0.0_f64;
         let mut cost = self.evaluate(view);
         for step in 0..TANGENTS {
             crate::stop::check();
@@ -49,10 +49,9 @@ impl Bounder {
             let promised =
                 inner(&self.quadratic.linear, &self.hull.point) - inner(&self.quadratic.linear, &self.point);
             let from = self.point.clone();
-            goal.clone_from(&self.hull.point);
             let mut fell = false;
             for part in PARTS {
-                let points = from.iter().zip(&goal);
+                let points = from.iter().zip(&self.hull.point);
                 self.point.clear();
                 self.point.extend(points.map(|(from, to)| part.mul_add(to - from, *from)));
                 let there = self.evaluate(view);
@@ -69,7 +68,7 @@ impl Bounder {
         (lower, cost)
     }
 
-    /// The least cost at the point within what chords miss; puts slopes and the weights of a step from there.
+    /// The least cost at the point within what chords miss; puts its slopes there.
     fn evaluate(&mut self, view: &View<'_>) -> f64 {
         let Self { places, low, rise, half, point, counts, slack, pull, .. } = self;
         let Self { pieces, rows, residuals, .. } = self;
@@ -113,15 +112,17 @@ impl Bounder {
         sizes.clear();
         for (i, place) in places.iter().enumerate() {
             let spectrum = column(view, [low, rise], *place);
-            let of_priors =
-                residuals.iter().zip(rows.chunks(m)).map(|(residual, row)| 2.0 * residual * row[i]);
-            let of_priors: Vec<f64> = of_priors.collect();
+            let of_priors = residuals.iter().zip(rows.chunks(m));
+            let (by_priors, sizes_of_priors) = of_priors.fold((0.0, 0.0), |(sum, size), (residual, row)| {
+                let term = 2.0 * residual * row[i];
+                (sum + term, size + term.abs())
+            });
             let missed = if let Place::Low(axis) = *place { size_of_product(pull, &half[axis]) } else { 0.0 };
             let all = size_of_product(pull, spectrum);
-            let size = ROUNDING * (all + missed + of_priors.iter().map(|x| x.abs()).sum::<f64>());
+            let size = ROUNDING * (all + missed + sizes_of_priors);
             // What chords miss holds the rounding of their ends.
             let of_spectrum = if let Place::Fixed(_) = *place { view.rounding * all } else { 0.0 };
-            let own = dot(pull, spectrum) - missed + of_priors.iter().sum::<f64>();
+            let own = dot(pull, spectrum) - missed + by_priors;
             quadratic.linear.push(own);
             least_cost.push(own - size - of_spectrum);
             sizes.push([size, size + of_spectrum]);

@@ -204,6 +204,7 @@ fn narrower_priors_never_bring_states_nearer() {
         told += 1;
         let deviations = [1e100, 10f64.powf(2.0 - 3.0 * draw()), 10f64.powf(-1.0 - 3.0 * draw()), 1e-100];
         let mut before = scene.nearest(&set());
+        let unsaid = before.lower;
         for sigma in deviations {
             let now = scene.nearest(&set().prior(nuisance, sigma).unwrap());
             let slack = 1e-9 * now.distance
@@ -213,6 +214,11 @@ fn narrower_priors_never_bring_states_nearer() {
             assert!(
                 before.lower <= now.distance + slack,
                 "{trial} {nuisance:?} {sigma:e}: {before:?} {now:?}"
+            );
+            // Nor does it make less of it proved.
+            assert!(
+                now.lower >= unsaid * (1.0 - 2e-6) - slack,
+                "{trial} {nuisance:?} {sigma:e}: {unsaid} {now:?}"
             );
             before = now;
         }
