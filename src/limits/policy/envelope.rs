@@ -109,6 +109,29 @@ impl WorstCase {
 /// Ranges that do not fit the surroundings; emissivities, noise or a range of states that cannot be; a scene
 /// without photons.
 pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -> Result<WorstCase> {
+    found(scene, ranges, None, effort)
+}
+
+/// The same from a scene that is near the worst one, with the alternative's state there, instead of from a dense set of scenes: enough
+/// where a bound far below the distance is. What it proves holds wherever it began, but the distance attained may be farther above.
+///
+/// # Errors
+/// As [`worst_case`].
+pub fn worst_case_near(
+    scene: &EnvelopeScene<'_>,
+    ranges: &Ranges,
+    known: [&State; 2],
+    effort: &Effort,
+) -> Result<WorstCase> {
+    found(scene, ranges, Some(known), effort)
+}
+
+fn found(
+    scene: &EnvelopeScene<'_>,
+    ranges: &Ranges,
+    known: Option<[&State; 2]>,
+    effort: &Effort,
+) -> Result<WorstCase> {
     scene.check()?;
     ranges.check_objects(scene.surroundings.objects().len())?;
     if let Some(state) = ranges.equilibrium(scene) {
@@ -127,7 +150,12 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     };
     // A descent over scene and state together knows nothing of priors.
     let descent = joint.as_ref().filter(|_| !scene.unknowns.has_priors());
-    let attained = attain::attain(scene, ranges, points, descent)?;
+    let attained = match (known, descent) {
+        (Some([state, nearest]), Some(joint)) => {
+            attain::attain_near(joint, ranges, joint.0.point(state, nearest))?
+        }
+        _ => attain::attain(scene, ranges, points, descent)?,
+    };
     if attained.distance == 0.0 {
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
     }

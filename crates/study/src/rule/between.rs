@@ -8,15 +8,13 @@
 use super::super::{Study, Surface};
 use super::apart::{Candidate, DISTANCES, TellApart, steps};
 use super::envelope::{Estimate, Sighted};
-use super::search::{Searched, TOLERANCE, search};
+use super::search::{LOOSE, Searched, TOLERANCE, search_anew, search_near};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::minimum::golden_section;
 use hadar::parallel;
 use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, LeastKnown, Stretch, lower_bound_along};
 
-/// Tolerance of worst cases of which only the scene is wanted: what is proved is proved of stretches.
-const LOOSE: f64 = 0.5;
 /// Golden sections of the distance, each to 0.62 of what it was.
 const GOLDEN_STEPS: usize = 12;
 /// Levels of halving; stretches that are bounded, and boxes that are looked at, at most; and after how many stretches it is
@@ -170,7 +168,7 @@ impl TellApart {
             distance: f64::INFINITY,
             ..best.pair.clone()
         };
-        let found = search(&seen, anew, LOOSE)?;
+        let found = search_anew(&seen, anew, LOOSE)?;
         if found.pair.distance < best.pair.distance {
             return Ok(Searched { between: Some(Box::new(seen)), ..found });
         }
@@ -196,7 +194,7 @@ impl TellApart {
         golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
             let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
             let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
-            let searched = search(&sighted, anew, LOOSE)?;
+            let searched = search_near(&sighted, anew, LOOSE)?;
             let distance = searched.pair.distance;
             if distance < best.pair.distance {
                 best = Searched { between: Some(Box::new(sighted)), ..searched };

@@ -146,13 +146,21 @@ impl Sighted {
         self.study.bands.widths_cm1().into_iter().map(|width| kappa * width).collect()
     }
 
-    /// The nearest of a few scenes for every alternative.
-    pub(crate) fn estimates(&self, sighted: usize) -> Result<(Vec<Estimate>, u64)> {
-        let places = scattered(&self.ranges);
+    /// The nearest of a few scenes for every alternative: of those that are `known` of the same materials from elsewhere, or of many.
+    pub(crate) fn estimates(&self, sighted: usize, known: &[Estimate]) -> Result<(Vec<Estimate>, u64)> {
         let estimate = |alternative: usize| {
             let surface = &self.study.alternatives[alternative];
             let mut solver = self.solver();
             let mut best: Option<Estimate> = None;
+            let mut places: Vec<State> = Vec::new();
+            for pair in known.iter().filter(|pair| pair.alternative == alternative) {
+                if !places.contains(&pair.state) {
+                    places.push(pair.state.clone());
+                }
+            }
+            if places.is_empty() {
+                places = scattered(&self.ranges);
+            }
             for state in &places {
                 let found = solver.with_counting(
                     &self.study.target.emissivity,
@@ -165,11 +173,11 @@ impl Sighted {
                     best = Some(Estimate { sighted, alternative, distance, state, nearest });
                 }
             }
-            Ok(best)
+            Ok((best, places.len() as u64))
         };
-        let found: Vec<Option<Estimate>> = parallel::try_map(self.study.alternatives.len(), estimate)?;
-        let searched = (places.len() * found.len()) as u64;
-        Ok((found.into_iter().flatten().collect(), searched))
+        let found: Vec<(Option<Estimate>, u64)> = parallel::try_map(self.study.alternatives.len(), estimate)?;
+        let searched = found.iter().map(|(_, searched)| searched).sum();
+        Ok((found.into_iter().filter_map(|(best, _)| best).collect(), searched))
     }
 
     pub(crate) fn solver(&self) -> NearestSolver<'_> {

@@ -13,6 +13,7 @@ use hadar::policy::{Quantity, Solution};
 use hadar::scene::State;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use std::borrow::Cow;
 
 const SEED: u64 = 1;
 
@@ -117,16 +118,13 @@ impl TellApart {
 
     /// The worst of a few scenes before a camera, and its distance.
     pub(super) fn worst_of(&self, candidate: &Candidate, camera: &Camera) -> Result<Option<(Scene, f64)>> {
-        let mut worst: Option<Estimate> = None;
-        for (index, sighted) in candidate.sighted.iter().enumerate() {
-            let seen =
-                sighted.before(camera, self.seen_from_m(candidate, sighted, camera), &self.envelope)?;
-            for pair in seen.estimates(index)?.0 {
-                if worst.as_ref().is_none_or(|known| pair.distance < known.distance) {
-                    worst = Some(pair);
-                }
-            }
-        }
+        let seen = |index: usize| {
+            let sighted = &candidate.sighted[index];
+            let from_m = self.seen_from_m(candidate, sighted, camera);
+            Ok(Cow::Owned(sighted.before(camera, from_m, &self.envelope)?))
+        };
+        let estimates = candidate.estimates(seen)?;
+        let worst = estimates.into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance));
         Ok(worst.map(|Estimate { sighted, alternative, state, distance, .. }| {
             (Scene { sighted: candidate.sighted[sighted].clone(), alternative, state }, distance)
         }))

@@ -23,10 +23,11 @@ use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::{Camera, Readout};
 use hadar::order;
-use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
+use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case, worst_case_near};
 use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
 use hadar_scenario::rule::{StopSpec, Verdict};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
@@ -35,6 +36,8 @@ pub(super) const TOLERANCE: f64 = 0.01;
 const FINEST: f64 = 1e-4;
 /// Relative difference of distances that is rounding.
 const ROUNDING: f64 = 1e-9;
+/// Tolerance from which on a pair is searched from its estimate alone, and of worst cases of which only the scene is wanted.
+pub(super) const LOOSE: f64 = 0.1;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
@@ -386,14 +389,11 @@ impl TellApart {
         counts: &dyn Fn(&Surface, &Surface) -> bool,
         progress: &dyn Fn(usize),
     ) -> Result<Option<(Searched, Vec<Estimate>)>> {
-        let mut pairs: Vec<Estimate> = Vec::new();
-        for (index, sighted) in candidate.sighted.iter().enumerate() {
-            let (estimates, searched) = sighted.estimates(index)?;
-            demand::computed(Thing::NearestSearches, searched);
-            let Study { target, alternatives, .. } = &sighted.study;
-            pairs
-                .extend(estimates.into_iter().filter(|pair| counts(target, &alternatives[pair.alternative])));
-        }
+        let mut pairs = candidate.estimates(|index| Ok(Cow::Borrowed(&candidate.sighted[index])))?;
+        pairs.retain(|pair| {
+            let Study { target, alternatives, .. } = &candidate.sighted[pair.sighted].study;
+            counts(target, &alternatives[pair.alternative])
+        });
         order::ascending(&mut pairs, |a| a.distance);
         let count = pairs.len();
         let mut found: Vec<Searched> = Vec::with_capacity(count);
@@ -502,18 +502,58 @@ impl TellApart {
     }
 }
 
-/// The worst case of one pair, no worse than its estimate.
-pub(super) fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
-    let surface = &sighted.study.alternatives[pair.alternative];
+impl Candidate {
+    /// An estimate of every pair as `seen`, the scenes that are the nearest from one distance being tried from the others.
+    pub(super) fn estimates<'s>(
+        &self,
+        seen: impl Fn(usize) -> Result<Cow<'s, Sighted>>,
+    ) -> Result<Vec<Estimate>> {
+        let mut all: Vec<Estimate> = Vec::new();
+        for (index, sighted) in self.sighted.iter().enumerate() {
+            let target = |index: usize| &self.sighted[index].study.target.name;
+            let of_target = all.iter().filter(|pair| *target(pair.sighted) == sighted.study.target.name);
+            let known: Vec<Estimate> = of_target.cloned().collect();
+            let (estimates, searched) = seen(index)?.estimates(index, &known)?;
+            demand::computed(Thing::NearestSearches, searched);
+            all.extend(estimates);
+        }
+        Ok(all)
+    }
+}
+
+/// The worst case of one pair, no worse than its estimate: from that alone where a bound far below it is enough, else from many scenes.
+fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
+    if tolerance < LOOSE {
+        search_anew(sighted, pair, tolerance)
+    } else {
+        search_near(sighted, pair, tolerance)
+    }
+}
+
+/// From many scenes.
+pub(super) fn search_anew(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
+    let scene = sighted.scene(&sighted.study.alternatives[pair.alternative]);
     let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
-    let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
-        worst_case(&sighted.scene(surface), &sighted.ranges, &effort)?;
+    Ok(searched(pair, worst_case(&scene, &sighted.ranges, &effort)?))
+}
+
+/// From the estimate, whose distance may be that of another scene.
+pub(super) fn search_near(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
+    let scene = sighted.scene(&sighted.study.alternatives[pair.alternative]);
+    let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
+    let worst = worst_case_near(&scene, &sighted.ranges, [&pair.state, &pair.nearest], &effort)?;
+    Ok(searched(pair, worst))
+}
+
+/// The worst case of a pair with what it took.
+fn searched(pair: Estimate, worst: WorstCase) -> Searched {
+    let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } = worst;
     demand::computed(Thing::WorstCases, 1);
     demand::computed(Thing::NearestSearches, evaluations);
     demand::computed(Thing::Boxes, boxes);
     let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
     let lower_bound = lower_bound.map(|bound| bound.min(pair.distance));
-    Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound, boxes })
+    Searched { pair, between: None, certificate: Some(certificate), lower_bound, boxes }
 }
 
 fn limiting(

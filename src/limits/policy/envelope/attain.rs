@@ -134,15 +134,32 @@ pub(super) fn attain_from(
     start: Point,
     below: f64,
 ) -> Result<(Option<Attained>, u64)> {
-    let scene = &model.scene;
     let (point, distance) = joint::descend(model, whole, start);
     if distance >= below {
         return Ok((None, 0));
     }
+    let found = attained_at(model, ranges, &point)?;
+    let evaluations = found.evaluations;
+    Ok(((found.distance < below).then_some(found), evaluations))
+}
+
+/// What a descent from a point leads to.
+pub(super) fn attain_near(
+    (model, whole): &(Model<'_>, Region),
+    ranges: &Ranges,
+    start: Point,
+) -> Result<Attained> {
+    let (point, _) = joint::descend(model, whole, start);
+    attained_at(model, ranges, &point)
+}
+
+/// The nearest state in the scene of a point, and its distance.
+fn attained_at(model: &Model<'_>, ranges: &Ranges, point: &Point) -> Result<Attained> {
+    let scene = &model.scene;
     let mut trial = Trial { scene, ranges, solver: scene.solver(), evaluations: 0 };
-    let Tried { place, distance, nearest } = trial.from(model, &point)?;
-    let found = Attained { distance, state: ranges.scene_at(&place), nearest, evaluations: 0 };
-    Ok(((distance < below).then_some(found), trial.evaluations))
+    let Tried { place, distance, nearest } = trial.from(model, point)?;
+    let evaluations = trial.evaluations;
+    Ok(Attained { distance, state: ranges.scene_at(&place), nearest, evaluations })
 }
 
 /// From one of the best scenes downhill: with the alternative's state together where that can be, then along the ranges.

@@ -12,7 +12,7 @@
 use super::linear::{COLUMNS, Gram, SOURCES};
 use super::model::{Model, Point, Region};
 use super::relation::Relation;
-use super::series::planck_series;
+use crate::planck;
 use crate::sum::dot;
 
 /// Steps at most.
@@ -158,8 +158,9 @@ pub(super) fn residual(model: &Model<'_>, point: &Point) -> Residual {
     // Derivatives of N and of N′.
     let mut slopes: Vec<[Vec<f64>; 2]> = Vec::new();
     let nodes = model.scene.bands.nodes_cm1();
+    let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
     for (source, [t, v, w]) in model.sources.iter().zip(point.values) {
-        let [value, slope, ..] = planck_series(nodes, t, 1.0);
+        planck::photon_radiance_and_slope_into(nodes, t, &mut value, &mut slope);
         let [seen, known, alone] = [&source.target, &source.alternative, &source.alone]
             .map(|strength| model.counts(strength, &value));
         let [own, other] = [&source.own, &source.other].map(|strength| model.counts(strength, &value));

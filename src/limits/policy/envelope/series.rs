@@ -10,6 +10,7 @@
 //! most B(T_c + R)(h/R)⁴/(1 − h/R).
 
 use crate::planck;
+use crate::simd::dispatched;
 use crate::units::SECOND_RADIATION_CM_K;
 
 /// Coefficients of a cubic in t, |t| ≤ 1.
@@ -17,20 +18,28 @@ pub(super) const TERMS: usize = 4;
 
 /// B and the coefficients of t, t², t³ at the nodes `nu_cm1`, T = `centre_k` + t·`half_k`.
 pub(super) fn planck_series(nu_cm1: &[f64], centre_k: f64, half_k: f64) -> [Vec<f64>; TERMS] {
-    let mut value = vec![0.0; nu_cm1.len()];
-    planck::photon_radiance_into(nu_cm1, centre_k, &mut value);
-    let mut terms = [value, vec![0.0; nu_cm1.len()], vec![0.0; nu_cm1.len()], vec![0.0; nu_cm1.len()]];
-    let share = half_k / centre_k;
-    for (j, nu) in nu_cm1.iter().enumerate() {
-        let x = SECOND_RADIATION_CM_K * nu / centre_k;
-        let n = 1.0 / x.exp_m1();
-        let [p1, p2, p3] = [x, x * (0.5 * x - 1.0), x * (x * (x / 6.0 - 1.0) + 1.0)];
-        let scale = terms[0][j] * (1.0 + n);
-        terms[1][j] = scale * p1 * share;
-        terms[2][j] = scale * (p2 + n * p1 * p1) * share * share;
-        terms[3][j] = scale * (p3 + 2.0 * n * p1 * p2 + n * n * p1 * p1 * p1) * share * share * share;
-    }
+    let mut terms = [(); TERMS].map(|()| vec![0.0; nu_cm1.len()]);
+    planck::photon_radiance_into(nu_cm1, centre_k, &mut terms[0]);
+    terms_into(nu_cm1, centre_k, half_k / centre_k, terms.each_mut().map(|term| &mut term[..]));
     terms
+}
+
+dispatched! {
+    /// The coefficients of t, t², t³ from B, which stands in the first place: n is B over the density of modes.
+    fn terms_into<'a>(nu_cm1: &'a [f64], centre_k: f64, share: f64, terms: [&'a mut [f64]; TERMS]) {
+        let per_mode = planck::mode_density(1.0);
+        let [value, first, second, third] = terms;
+        let out = value.iter().zip(first).zip(second.iter_mut().zip(third));
+        for (nu, ((value, first), (second, third))) in nu_cm1.iter().zip(out) {
+            let x = SECOND_RADIATION_CM_K * nu / centre_k;
+            let n = value / (per_mode * nu * nu);
+            let (p1, p2, p3) = (x, x * (0.5 * x - 1.0), x * (x * (x / 6.0 - 1.0) + 1.0));
+            let scale = value * (1.0 + n);
+            *first = scale * p1 * share;
+            *second = scale * (p2 + n * p1 * p1) * share * share;
+            *third = scale * (p3 + 2.0 * n * p1 * p2 + n * n * p1 * p1 * p1) * share * share * share;
+        }
+    }
 }
 
 /// (h/R)⁴/(1 − h/R): what the remainder is of the value at T_c + R; infinite unless h < R.
