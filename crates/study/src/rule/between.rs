@@ -17,14 +17,15 @@ use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, LeastKnown, St
 
 /// Golden sections of the distance, each to 0.62 of what it was.
 const GOLDEN_STEPS: usize = 12;
-/// Levels of halving; stretches that are bounded, and boxes that are looked at, at most; and after how many stretches it is
-/// looked whether that is reached.
+/// Levels of halving; stretches that are bounded, and boxes that are looked at, at most, and where a scene that decides is known already;
+/// and after how many stretches it is looked whether that is reached.
 const LEVELS: u32 = 14;
 const STRETCHES: u64 = 6_000;
-const ALL_BOXES: u64 = 300_000;
+const ALL_BOXES: u64 = 2_000_000;
+const BOXES_OF_A_NO: u64 = 60_000;
 const TOGETHER: usize = 64;
-/// Boxes for one stretch at first, besides twice those of a distance, twice as many at each level; and at most.
-const FIRST_BOXES: u64 = 64;
+/// Boxes for one stretch, besides twice those of a distance, and at most: what takes more is sooner done in halves.
+const FEW_BOXES: u64 = 64;
 const MOST_BOXES: u64 = 20_000;
 /// Shares of the requirement below which nothing more is proved, and nothing looked for: how far below matters little.
 const FAR_BELOW: f64 = 0.01;
@@ -75,7 +76,7 @@ impl TellApart {
         counts: &dyn Fn(&Surface, &Surface) -> bool,
     ) -> Result<(Searched, Option<f64>)> {
         // A stretch is no easier than a distance: what could not be proved there is not tried here.
-        let first = FIRST_BOXES + 2 * worst.boxes;
+        let boxes = (FEW_BOXES + 2 * worst.boxes).min(MOST_BOXES);
         let hard = worst.certificate != Some(Certificate::BranchAndBound);
         if worst.pair.distance < NOTHING * self.required {
             return Ok((worst, None));
@@ -86,7 +87,7 @@ impl TellApart {
         }
         let mut waiting = self.pieces(candidate, counts);
         let (mut proved, mut left, mut looked_at, mut spent) = (f64::INFINITY, f64::INFINITY, 0, 0);
-        for level in 0..LEVELS {
+        for _ in 0..LEVELS {
             // What is enough for the verdict is enough.
             let enough = if alone { self.required / (1.0 - TOLERANCE) } else { f64::INFINITY };
             let least = if alone { self.required } else { FAR_BELOW * self.required };
@@ -95,10 +96,10 @@ impl TellApart {
             if waiting.is_empty() || known.distance < least {
                 break;
             }
-            let boxes = (first << level).min(MOST_BOXES);
+            let affordable = if known.distance < self.required { BOXES_OF_A_NO } else { ALL_BOXES };
             let mut failed = Vec::new();
             for pieces in waiting.chunks(TOGETHER) {
-                if looked_at > STRETCHES || spent > ALL_BOXES {
+                if looked_at > STRETCHES || spent > affordable {
                     // As far as they are known from the stretch that they are halves of.
                     left = pieces.iter().fold(left, |left, piece| left.min(piece.bound));
                     continue;

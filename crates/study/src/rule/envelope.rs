@@ -39,7 +39,7 @@ const SAME: f64 = 1e-12;
 const LOST: f64 = 5e-6;
 /// Dimensions up to which the corners are among the scenes of an estimate, and scenes beside them.
 const CORNERS: usize = 6;
-const SCENES: usize = 32;
+pub(super) const SCENES: usize = 32;
 
 /// One camera, one material of the target, one distance: all scenes between, with what counts in each.
 #[derive(Debug, Clone)]
@@ -146,20 +146,24 @@ impl Sighted {
         self.study.bands.widths_cm1().into_iter().map(|width| kappa * width).collect()
     }
 
-    /// The nearest of a few scenes for every alternative: of those that are `known` of the same materials from elsewhere, or of many.
-    pub(crate) fn estimates(&self, sighted: usize, known: &[Estimate]) -> Result<(Vec<Estimate>, u64)> {
+    /// The nearest of a few scenes for every alternative: of those that are `known` of the same materials, perhaps from elsewhere, and of the
+    /// corners with so many `between` them, if any are asked for.
+    pub(crate) fn estimates(
+        &self,
+        sighted: usize,
+        known: &[Estimate],
+        between: Option<usize>,
+    ) -> Result<(Vec<Estimate>, u64)> {
+        let scattered = between.map(|scenes| scattered(&self.ranges, scenes)).unwrap_or_default();
         let estimate = |alternative: usize| {
             let surface = &self.study.alternatives[alternative];
             let mut solver = self.solver();
             let mut best: Option<Estimate> = None;
-            let mut places: Vec<State> = Vec::new();
+            let mut places = scattered.clone();
             for pair in known.iter().filter(|pair| pair.alternative == alternative) {
                 if !places.contains(&pair.state) {
                     places.push(pair.state.clone());
                 }
-            }
-            if places.is_empty() {
-                places = scattered(&self.ranges);
             }
             for state in &places {
                 let found = solver.with_counting(
@@ -247,13 +251,17 @@ pub(crate) fn scene_at(ranges: &Ranges, place: &[f64]) -> Option<State> {
     (state.lighting.iter().sum::<f64>() <= 1.0 + SAME).then_some(state)
 }
 
-/// Corners and a few scenes between them.
-fn scattered(ranges: &Ranges) -> Vec<State> {
-    scattered_places(ranges).iter().filter_map(|place| scene_at(ranges, place)).collect()
+/// Corners and so many scenes between them.
+fn scattered(ranges: &Ranges, scenes: usize) -> Vec<State> {
+    places(ranges, scenes).iter().filter_map(|place| scene_at(ranges, place)).collect()
 }
 
-/// Their places in the unit cube, in the order of [`all`].
+/// Places of a few scenes in the unit cube, in the order of [`all`].
 pub(crate) fn scattered_places(ranges: &Ranges) -> Vec<Vec<f64>> {
+    places(ranges, SCENES)
+}
+
+fn places(ranges: &Ranges, scenes: usize) -> Vec<Vec<f64>> {
     let ranges_all = all(ranges);
     let free: Vec<usize> = (0..ranges_all.len()).filter(|&i| ranges_all[i][0] < ranges_all[i][1]).collect();
     let lay = |value: &dyn Fn(usize) -> f64| {
@@ -262,7 +270,7 @@ pub(crate) fn scattered_places(ranges: &Ranges) -> Vec<Vec<f64>> {
         place
     };
     let corners = 0..if free.len() <= CORNERS { 1usize << free.len() } else { 0 };
-    let scenes = 0..if free.is_empty() { 0 } else { SCENES };
+    let scenes = 0..if free.is_empty() { 0 } else { scenes };
     let lattice = GoldenLattice::new(vec![0.5; free.len()]);
     let places = corners.map(|corner| lay(&|i| ((corner >> i) & 1) as f64)).chain(scenes.map(|index| {
         let point = lattice.point(index);
@@ -284,7 +292,7 @@ mod tests {
     fn scenes_stay_within_the_ranges() {
         let ranges =
             Ranges::new([300.0, 310.0], vec![[0.1, 0.9], [0.0, 0.5]], vec![[260.0, 280.0]; 2]).unwrap();
-        let states = scattered(&ranges);
+        let states = scattered(&ranges, SCENES);
         // Of 2^5 corners those with V = 0.9 + 0.5 are none.
         assert!(states.len() > 24 + 16, "{}", states.len());
         for state in &states {
@@ -294,6 +302,6 @@ mod tests {
         }
         assert_eq!(brightest(&ranges).lighting, [0.9, 0.5]);
         let point = Ranges::new([300.0; 2], vec![[0.5; 2]], vec![[280.0; 2]]).unwrap();
-        assert_eq!(scattered(&point).len(), 1);
+        assert_eq!(scattered(&point, SCENES).len(), 1);
     }
 }

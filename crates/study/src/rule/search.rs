@@ -7,7 +7,7 @@
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
-use super::envelope::{Estimate, Sighted, brightest, darkest, unlit};
+use super::envelope::{Estimate, SCENES as SCATTERED, Sighted, brightest, darkest, unlit};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged, Uncertain};
 use crate::condition::Condition;
@@ -105,9 +105,12 @@ impl TellApart {
         let place = |key: &str| self.rule.camera_place(candidate.named.index, key);
         let uncertain = self.uncertain(candidate, &place)?;
         let alone = alone && uncertain.is_none();
-        let (worst, near) = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
+        let (worst, pairs) = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
             Error::malformed("there is no pair of materials", "name one in alternatives.materials")
         })?;
+        let least = pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min);
+        let near: Vec<Estimate> =
+            pairs.iter().filter(|pair| pair.distance <= NEAR * least).cloned().collect();
         let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
@@ -159,7 +162,7 @@ impl TellApart {
             let local = at.local(at.unknowns.clone(), surface, f64::INFINITY)?;
             fragile = shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance;
             if let Some(camera) = at.camera.as_ref().filter(|_| distance < self.required) {
-                fixes = Some(self.fixes(candidate, &at, camera, surface)?);
+                fixes = Some(self.fixes(candidate, &pairs, &at, (camera, surface))?);
             }
         }
         let conditions =
@@ -281,7 +284,13 @@ impl TellApart {
 
     /// What each figure of the camera would have to be in the limiting scene and in those that are the worst of a few at its solution, and
     /// what that would spoil.
-    fn fixes(&self, candidate: &Candidate, at: &Study, camera: &Camera, surface: &Surface) -> Result<Fixes> {
+    fn fixes(
+        &self,
+        candidate: &Candidate,
+        pairs: &[Estimate],
+        at: &Study,
+        (camera, surface): (&Camera, &Surface),
+    ) -> Result<Fixes> {
         let task = at.task(camera);
         // Where the target is and how fast it moves is the rule's to say.
         let mut quantities = at.solutions_of(camera, surface, &Quantity::OF_CAMERA)?;
@@ -289,7 +298,7 @@ impl TellApart {
             for _ in 0..SCENES {
                 let Some(value) = solution.value else { break };
                 let changed = task.forward(*quantity, value).camera;
-                let Some((scene, distance)) = self.worst_of(candidate, &changed)? else { break };
+                let Some((scene, distance)) = self.worst_of(candidate, pairs, &changed)? else { break };
                 if distance >= self.required * (1.0 - ROUNDING) {
                     break;
                 }
@@ -381,7 +390,7 @@ impl TellApart {
         warnings
     }
 
-    /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
+    /// The worst of all pairs, and what each has come to, or a scene that is below the requirement where no more is asked for.
     fn worst(
         &self,
         candidate: &Candidate,
@@ -389,7 +398,7 @@ impl TellApart {
         counts: &dyn Fn(&Surface, &Surface) -> bool,
         progress: &dyn Fn(usize),
     ) -> Result<Option<(Searched, Vec<Estimate>)>> {
-        let mut pairs = candidate.estimates(|index| Ok(Cow::Borrowed(&candidate.sighted[index])))?;
+        let mut pairs = candidate.estimates(&[], |index| Ok(Cow::Borrowed(&candidate.sighted[index])))?;
         pairs.retain(|pair| {
             let Study { target, alternatives, .. } = &candidate.sighted[pair.sighted].study;
             counts(target, &alternatives[pair.alternative])
@@ -409,10 +418,9 @@ impl TellApart {
                 all = false;
                 break;
             }
-            let sighted = &candidate.sighted[pair.sighted];
             let enough = if alone { decisive } else { best };
             let mut tolerance = self.tolerance(enough, pair.distance);
-            let mut searched = search(sighted, pair, tolerance)?;
+            let mut searched = candidate.search(&found, pair, tolerance)?;
             best = best.min(searched.pair.distance);
             // A worst case below the estimate may leave a bound that does not reach what is enough.
             let short = |searched: &Searched, enough: f64, finest: f64| {
@@ -424,7 +432,7 @@ impl TellApart {
             let finest = self.finest(searched.pair.distance);
             if tolerance > finest && short(&searched, enough, finest) {
                 tolerance = self.tolerance(enough, searched.pair.distance);
-                searched = search(sighted, searched.pair, tolerance)?;
+                searched = candidate.search(&found, searched.pair, tolerance)?;
                 best = best.min(searched.pair.distance);
             }
             found.push(searched);
@@ -432,17 +440,12 @@ impl TellApart {
         }
         let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
         let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
-        let near: Vec<Estimate> = found
-            .iter()
-            .map(|searched| &searched.pair)
-            .filter(|pair| pair.distance <= NEAR * best)
-            .cloned()
-            .collect();
+        let pairs: Vec<Estimate> = found.iter().map(|searched| searched.pair.clone()).collect();
         let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
         let Some(worst) = worst else { return Ok(None) };
         if !all {
             // A scene below the requirement, and other pairs not looked at.
-            return Ok(Some((Searched::estimated(worst.pair), near)));
+            return Ok(Some((Searched::estimated(worst.pair), pairs)));
         }
         let (worst, lower) = match (candidate.between.is_empty(), worst.pair.distance > 0.0) {
             (false, true) => {
@@ -452,7 +455,7 @@ impl TellApart {
             _ => (worst, lower),
         };
         if alone && worst.pair.distance < self.required {
-            return Ok(Some((Searched { lower_bound: None, certificate: None, ..worst }, near)));
+            return Ok(Some((Searched { lower_bound: None, certificate: None, ..worst }, pairs)));
         }
         let distance = worst.pair.distance;
         let certificate = match (worst.certificate, lower) {
@@ -463,7 +466,7 @@ impl TellApart {
             (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
         };
         let lower_bound = lower.map(|bound| bound * candidate.share);
-        Ok(Some((Searched { lower_bound, certificate, ..worst }, near)))
+        Ok(Some((Searched { lower_bound, certificate, ..worst }, pairs)))
     }
 
     /// What is to be proved where no more is asked for: the demand, whatever bunching that is left out would add to the variance.
@@ -503,30 +506,46 @@ impl TellApart {
 }
 
 impl Candidate {
-    /// An estimate of every pair as `seen`, the scenes that are the nearest from one distance being tried from the others.
+    /// The worst case of one pair, no worse than its estimate: from that alone where a bound far below it is enough, or from what was
+    /// `found` of the same materials from elsewhere if that is proved to suffice, else from many scenes.
+    fn search(&self, found: &[Searched], pair: Estimate, tolerance: f64) -> Result<Searched> {
+        let sighted = &self.sighted[pair.sighted];
+        if tolerance >= LOOSE {
+            return search_near(sighted, pair, tolerance);
+        }
+        let of = |pair: &Estimate| (&self.sighted[pair.sighted].study.target.name, pair.alternative);
+        if let Some(known) = found.iter().find(|known| of(&known.pair) == of(&pair)) {
+            let Estimate { state, nearest, .. } = known.pair.clone();
+            let start = Estimate { distance: f64::INFINITY, state, nearest, ..pair.clone() };
+            let near = search_near(sighted, start, tolerance)?;
+            let is_proved = near.certificate == Some(Certificate::BranchAndBound);
+            if is_proved && near.pair.distance <= pair.distance {
+                return Ok(near);
+            }
+        }
+        search_anew(sighted, pair, tolerance)
+    }
+
+    /// An estimate of every pair as `seen`: from many scenes, or from the corners and those that are `known`; what is nearest from one
+    /// distance is tried from the others.
     pub(super) fn estimates<'s>(
         &self,
+        known: &[Estimate],
         seen: impl Fn(usize) -> Result<Cow<'s, Sighted>>,
     ) -> Result<Vec<Estimate>> {
+        let scenes = if known.is_empty() { SCATTERED } else { 0 };
+        let target = |index: usize| &self.sighted[index].study.target.name;
         let mut all: Vec<Estimate> = Vec::new();
-        for (index, sighted) in self.sighted.iter().enumerate() {
-            let target = |index: usize| &self.sighted[index].study.target.name;
-            let of_target = all.iter().filter(|pair| *target(pair.sighted) == sighted.study.target.name);
-            let known: Vec<Estimate> = of_target.cloned().collect();
-            let (estimates, searched) = seen(index)?.estimates(index, &known)?;
+        for index in 0..self.sighted.len() {
+            let same = |pair: &&Estimate| target(pair.sighted) == target(index);
+            let first = !all.iter().any(|pair| same(&pair));
+            let of_target = if first { known } else { &all };
+            let of_target: Vec<Estimate> = of_target.iter().filter(same).cloned().collect();
+            let (estimates, searched) = seen(index)?.estimates(index, &of_target, first.then_some(scenes))?;
             demand::computed(Thing::NearestSearches, searched);
             all.extend(estimates);
         }
         Ok(all)
-    }
-}
-
-/// The worst case of one pair, no worse than its estimate: from that alone where a bound far below it is enough, else from many scenes.
-fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
-    if tolerance < LOOSE {
-        search_anew(sighted, pair, tolerance)
-    } else {
-        search_near(sighted, pair, tolerance)
     }
 }
 

@@ -100,6 +100,39 @@ fn a_person_and_a_robot_are_proved_to_one_per_cent() {
     }
 }
 
+/// Wherever a search begins: what it proves is below what many scenes attain, and what it attains above what they prove.
+#[test]
+fn bounds_hold_from_wherever_the_search_begins() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    for unknowns in
+        [vec![Nuisance::Temperature, Nuisance::Lighting], vec![Nuisance::Temperature, Nuisance::Gain]]
+    {
+        let bands = Bands::uniform(800.0, 1250.0, 50.0).unwrap();
+        let mut setting = Setting::new(bands, ["skin", "aluminium"], 1, "ideal-pnrd");
+        setting.unknowns = Unknowns::new(unknowns).unwrap();
+        let ranges = evening();
+        let many = setting.worst(&ranges);
+        let proved = many.lower_bound.unwrap();
+        for tolerance in [0.01, 0.5] {
+            for _ in 0..6 {
+                let [a, b, c, d] = [(); 4].map(|()| rng.random::<f64>());
+                let state = ranges.scene_at(&[a, b, c]);
+                let nearest = State { temperature_k: 250.0 + 200.0 * d, gain: 0.5 + a, ..state.clone() };
+                let effort = Effort { relative_tolerance: tolerance, ..Effort::default() };
+                let near = worst_case_near(&setting.scene(), &ranges, [&state, &nearest], &effort).unwrap();
+                let lower = near.lower_bound.unwrap();
+                assert!(lower <= many.distance && proved <= near.distance, "{near:?} {many:?}");
+                assert!(lower <= near.distance, "{near:?}");
+                let is_proved = near.certificate == Certificate::BranchAndBound;
+                assert!(!is_proved || lower >= (1.0 - tolerance) * near.distance, "{near:?}");
+                assert!(near.evaluations < many.evaluations / 4, "{near:?} {many:?}");
+                let there = setting.distance(&near.state);
+                assert!(there <= near.distance * (1.0 + 1e-9), "{there} {near:?}");
+            }
+        }
+    }
+}
+
 /// No lattice of scenes finds anything below what is proved, nor below what is attained by more than the tolerance.
 #[test]
 fn a_lattice_of_scenes_finds_nothing_below_the_bound() {

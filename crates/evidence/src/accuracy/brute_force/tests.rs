@@ -28,6 +28,15 @@ fn bounds_that_were_too_high_are_not() {
     }
 }
 
+/// What two of 15 180 scenes got wrong: distances a little more than 1e-12 of the target's own separation from nothing were called nothing.
+#[test]
+fn next_to_nothing_is_told_from_nothing() {
+    for scene in [3_891, 8_526] {
+        let report = run(1000, 41, Some(scene));
+        assert_eq!((report.sets[0].failures, report.sets[0].error_wrong), (0, 0), "{report:?}");
+    }
+}
+
 /// One case by its number is the one of the whole run, on any number of threads, but for times.
 #[test]
 fn a_case_is_repeated_by_its_number() {

@@ -31,6 +31,13 @@ impl Comparison<'_> {
         (NO_GAIN + rounding * (1.0 + terms / distance), terms)
     }
 
+    /// The separation of the target from nothing at all.
+    pub(in super::super) fn from_nothing(&self, target: &Target<'_>) -> f64 {
+        let dark = vec![0.0; self.work.root.len()];
+        let bands = [self.target.signal(), &dark, &self.work.root, &self.work.noise];
+        square_of_terms(target.counts, bands, 0.0).sqrt()
+    }
+
     /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
     fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
         crate::stop::check();
