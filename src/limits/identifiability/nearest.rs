@@ -323,7 +323,7 @@ impl<'a> NearestSolver<'a> {
                     let is_rounding =
                         best.distance <= NOTHING_OF_TERMS * terms || relative_error > NOTHING_BUT_ROUNDING;
                     let is_nothing =
-                        || best.distance <= NEXT_TO_NOTHING * self.comparison.from_nothing(&target);
+                        || best.distance <= NEXT_TO_NOTHING * self.comparison.against_nothing(&target);
                     if terms.is_finite() && is_rounding && is_nothing() {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);

@@ -32,7 +32,7 @@ impl Comparison<'_> {
     }
 
     /// The separation of the target from nothing at all.
-    pub(in super::super) fn from_nothing(&self, target: &Target<'_>) -> f64 {
+    pub(in super::super) fn against_nothing(&self, target: &Target<'_>) -> f64 {
         let dark = vec![0.0; self.work.root.len()];
         let bands = [self.target.signal(), &dark, &self.work.root, &self.work.noise];
         square_of_terms(target.counts, bands, 0.0).sqrt()
