@@ -154,16 +154,19 @@ impl Sighted {
         known: &[Estimate],
         between: Option<usize>,
     ) -> Result<(Vec<Estimate>, u64)> {
-        let scattered = between.map(|scenes| scattered(&self.ranges, scenes)).unwrap_or_default();
+        let corners = between.map(|scenes| scattered(&self.ranges, scenes)).unwrap_or_default();
         let estimate = |alternative: usize| {
             let surface = &self.study.alternatives[alternative];
             let mut solver = self.solver();
             let mut best: Option<Estimate> = None;
-            let mut places = scattered.clone();
+            let mut places = corners.clone();
             for pair in known.iter().filter(|pair| pair.alternative == alternative) {
                 if !places.contains(&pair.state) {
                     places.push(pair.state.clone());
                 }
+            }
+            if places.is_empty() {
+                places = scattered(&self.ranges, SCENES);
             }
             for state in &places {
                 let found = solver.with_counting(
