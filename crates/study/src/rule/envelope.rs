@@ -273,6 +273,8 @@ fn places(ranges: &Ranges, scenes: usize) -> Vec<Vec<f64>> {
         place
     };
     let corners = 0..if free.len() <= CORNERS { 1usize << free.len() } else { 0 };
+    // Where there are too many corners scenes stand for them.
+    let scenes = if free.len() > CORNERS { scenes.max(SCENES) } else { scenes };
     let scenes = 0..if free.is_empty() { 0 } else { scenes };
     let lattice = GoldenLattice::new(vec![0.5; free.len()]);
     let places = corners.map(|corner| lay(&|i| ((corner >> i) & 1) as f64)).chain(scenes.map(|index| {

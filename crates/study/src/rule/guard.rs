@@ -2,7 +2,7 @@
 
 use super::apart::{Candidate, TellApart};
 use super::approach::Approach;
-use super::envelope::{Estimate, Sighted};
+use super::envelope::{Estimate, SCENES, Sighted};
 use super::search::Searched;
 use super::uncertainty::{Errors, MarginUncertainty, Uncertain};
 use crate::Study;
@@ -64,7 +64,7 @@ impl TellApart {
         let distance = worst.pair.distance;
         let mut scenes = self.scenes(candidate, worst, near);
         for camera in uncertain.ends()? {
-            let found = self.worst_of(candidate, &[], &camera)?.map(|(scene, _)| scene);
+            let found = self.worst_of(candidate, &[], [Some(SCENES); 2], &camera)?.map(|(scene, _)| scene);
             scenes.extend(found.filter(|found| !scenes.iter().any(|known| known.is_like(found))));
         }
         let ripple = self
@@ -116,11 +116,12 @@ impl TellApart {
         scenes
     }
 
-    /// The worst of a few scenes before a camera, those that are `known` and the corners or many, and its distance.
+    /// The worst of a few scenes before a camera ([`Candidate::estimates`]), and its distance.
     pub(super) fn worst_of(
         &self,
         candidate: &Candidate,
         known: &[Estimate],
+        scenes: [Option<usize>; 2],
         camera: &Camera,
     ) -> Result<Option<(Scene, f64)>> {
         let seen = |index: usize| {
@@ -128,7 +129,7 @@ impl TellApart {
             let from_m = self.seen_from_m(candidate, sighted, camera);
             Ok(Cow::Owned(sighted.before(camera, from_m, &self.envelope)?))
         };
-        let estimates = candidate.estimates(known, seen)?;
+        let estimates = candidate.estimates(known, scenes, seen)?;
         let worst = estimates.into_iter().min_by(|a, b| a.distance.total_cmp(&b.distance));
         Ok(worst.map(|Estimate { sighted, alternative, state, distance, .. }| {
             (Scene { sighted: candidate.sighted[sighted].clone(), alternative, state }, distance)

@@ -274,7 +274,7 @@ impl TellApart {
             sighted.study.range = range;
         }
         let found = self.worst(&wider, true, &|_, _| true, &|_| ())?;
-        Ok(found.is_none_or(|(worst, _)| worst.pair.distance >= self.required))
+        Ok(found.is_none_or(|(worst, _)| worst.lower_bound.unwrap_or(worst.pair.distance) >= self.required))
     }
 
     fn proviso(&self, candidate: &Candidate) -> Option<Proviso> {
@@ -298,7 +298,10 @@ impl TellApart {
             for _ in 0..SCENES {
                 let Some(value) = solution.value else { break };
                 let changed = task.forward(*quantity, value).camera;
-                let Some((scene, distance)) = self.worst_of(candidate, pairs, &changed)? else { break };
+                let Some((scene, distance)) = self.worst_of(candidate, pairs, [Some(0), None], &changed)?
+                else {
+                    break;
+                };
                 if distance >= self.required * (1.0 - ROUNDING) {
                     break;
                 }
@@ -398,7 +401,8 @@ impl TellApart {
         counts: &dyn Fn(&Surface, &Surface) -> bool,
         progress: &dyn Fn(usize),
     ) -> Result<Option<(Searched, Vec<Estimate>)>> {
-        let mut pairs = candidate.estimates(&[], |index| Ok(Cow::Borrowed(&candidate.sighted[index])))?;
+        let mut pairs = candidate
+            .estimates(&[], [Some(SCATTERED), None], |index| Ok(Cow::Borrowed(&candidate.sighted[index])))?;
         pairs.retain(|pair| {
             let Study { target, alternatives, .. } = &candidate.sighted[pair.sighted].study;
             counts(target, &alternatives[pair.alternative])
@@ -430,8 +434,12 @@ impl TellApart {
             };
             let enough = if alone { decisive } else { best };
             let finest = self.finest(searched.pair.distance);
-            if tolerance > finest && short(&searched, enough, finest) {
+            while tolerance > finest && short(&searched, enough, finest) {
+                let before = tolerance;
                 tolerance = self.tolerance(enough, searched.pair.distance);
+                if tolerance >= before {
+                    break;
+                }
                 searched = candidate.search(&found, searched.pair, tolerance)?;
                 best = best.min(searched.pair.distance);
             }
@@ -510,15 +518,21 @@ impl Candidate {
     /// `found` of the same materials from elsewhere if that is proved to suffice, else from many scenes.
     fn search(&self, found: &[Searched], pair: Estimate, tolerance: f64) -> Result<Searched> {
         let sighted = &self.sighted[pair.sighted];
-        if tolerance >= LOOSE {
-            return search_near(sighted, pair, tolerance);
-        }
         let of = |pair: &Estimate| (&self.sighted[pair.sighted].study.target.name, pair.alternative);
-        if let Some(known) = found.iter().find(|known| of(&known.pair) == of(&pair)) {
-            let Estimate { state, nearest, .. } = known.pair.clone();
-            let start = Estimate { distance: f64::INFINITY, state, nearest, ..pair.clone() };
+        let start = if tolerance >= LOOSE {
+            Some(pair.clone())
+        } else {
+            let known = found.iter().map(|known| &known.pair).find(|known| of(known) == of(&pair)).cloned();
+            known.map(|Estimate { state, nearest, .. }| Estimate {
+                distance: f64::INFINITY,
+                state,
+                nearest,
+                ..pair.clone()
+            })
+        };
+        if let Some(start) = start {
             let near = search_near(sighted, start, tolerance)?;
-            let is_proved = near.certificate == Some(Certificate::BranchAndBound);
+            let is_proved = !matches!(near.certificate, Some(Certificate::Bounded { .. }));
             if is_proved && near.pair.distance <= pair.distance {
                 return Ok(near);
             }
@@ -526,14 +540,14 @@ impl Candidate {
         search_anew(sighted, pair, tolerance)
     }
 
-    /// An estimate of every pair as `seen`: from many scenes, or from the corners and those that are `known`; what is nearest from one
-    /// distance is tried from the others.
+    /// An estimate of every pair as `seen`: from those that are `known`, and the corners with so many scenes between them from the first
+    /// distance and elsewhere, if any; what is nearest from one distance is tried from the others.
     pub(super) fn estimates<'s>(
         &self,
         known: &[Estimate],
+        [scenes, elsewhere]: [Option<usize>; 2],
         seen: impl Fn(usize) -> Result<Cow<'s, Sighted>>,
     ) -> Result<Vec<Estimate>> {
-        let scenes = if known.is_empty() { SCATTERED } else { 0 };
         let target = |index: usize| &self.sighted[index].study.target.name;
         let mut all: Vec<Estimate> = Vec::new();
         for index in 0..self.sighted.len() {
@@ -541,7 +555,8 @@ impl Candidate {
             let first = !all.iter().any(|pair| same(&pair));
             let of_target = if first { known } else { &all };
             let of_target: Vec<Estimate> = of_target.iter().filter(same).cloned().collect();
-            let (estimates, searched) = seen(index)?.estimates(index, &of_target, first.then_some(scenes))?;
+            let (estimates, searched) =
+                seen(index)?.estimates(index, &of_target, if first { scenes } else { elsewhere })?;
             demand::computed(Thing::NearestSearches, searched);
             all.extend(estimates);
         }
