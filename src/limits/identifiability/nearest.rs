@@ -52,8 +52,8 @@ const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
 /// Share of the terms that a separation is made of below which a distance is nothing but rounding: fourteen digits cancel.
 const NOTHING_OF_TERMS: f64 = 1e-14;
-/// The same of the separation of the target from nothing: where terms are far larger than the target is bright, a distance may be far
-/// from nothing and yet be their rounding, which its error then says.
+/// The same of the separation of the target from nothing: between that and all of it a distance may be far from nothing and yet be the
+/// rounding of terms far larger than the target is bright, which its error then says.
 const NEXT_TO_NOTHING: f64 = 1e-12;
 /// How many times a distance its error is estimated to be where it is nothing but rounding: deep in the Wien tail
 /// the estimate is hundreds of times too large, and a distance called 0 is a claim.
@@ -322,8 +322,8 @@ impl<'a> NearestSolver<'a> {
                     best.lower = if surely > 0.0 { surely } else { 0.0 };
                     let is_rounding =
                         best.distance <= NOTHING_OF_TERMS * terms || relative_error > NOTHING_BUT_ROUNDING;
-                    let is_nothing =
-                        || best.distance <= NEXT_TO_NOTHING * self.comparison.against_nothing(&target);
+                    let own = || self.comparison.against_nothing(&target);
+                    let is_nothing = || !(NEXT_TO_NOTHING * own()..=own()).contains(&best.distance);
                     if terms.is_finite() && is_rounding && is_nothing() {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
