@@ -15,6 +15,7 @@ mod expected;
 mod guard;
 mod ideal;
 mod not_in_force;
+mod pairs;
 mod resolution;
 mod results;
 mod safety;

@@ -8,7 +8,8 @@
 use super::super::{Study, Surface};
 use super::apart::{Candidate, DISTANCES, TellApart, steps};
 use super::envelope::{Estimate, Sighted};
-use super::search::{LOOSE, Searched, TOLERANCE, search_anew, search_near};
+use super::pairs::{LOOSE, Searched, search_anew, search_near};
+use super::search::TOLERANCE;
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::minimum::golden_section;

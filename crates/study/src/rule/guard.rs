@@ -3,7 +3,7 @@
 use super::apart::{Candidate, TellApart};
 use super::approach::Approach;
 use super::envelope::{Estimate, SCENES, Sighted};
-use super::search::Searched;
+use super::pairs::Searched;
 use super::uncertainty::{Errors, MarginUncertainty, Uncertain};
 use crate::Study;
 use crate::size::sensitivity::{linear, ripple::Ripple, scatter::Scatter};

@@ -44,6 +44,6 @@ pub(crate) fn trade_off(curve: &TradeOff, camera: &str) -> String {
     let none = if allowed { "" } else { " Nothing shown keeps within all limits." };
     format!(
         "All else as {camera} has it. There is signal enough {side} the curve; dotted and grey lines are limits beside shot \
-         noise, of which pixel = λF alone forbids nothing.{none}"
+         noise, of which λF alone forbids nothing.{none}"
     )
 }
