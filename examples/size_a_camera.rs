@@ -38,6 +38,7 @@ fn main() -> hadar::Result<()> {
         distance_m: Some(30.0),
         farthest_m: None,
         size_m: None,
+        of_object: false,
     };
     println!(
         "{}: statistical distance d = {:.4}, demanded {}",

@@ -12,7 +12,8 @@
 //!
 //! Assumptions: every band is read with the same exposure; linear response; photon bunching neglected
 //! (occupancy per mode ≪ 1) unless it is asked for. Averaged frames add photons, Johnson noise and (fully
-//! correlated) flicker noise as one longer exposure does; read noise and quantisation come with every frame.
+//! correlated) flicker noise as one longer exposure does; read noise and quantisation come with every frame; what pixels, rows
+//! and columns have in common is in [`pattern`].
 //!
 //! What may be stated of a camera is one table ([`figures`]), from which [`presets`] and scenarios are read; [`Camera`] is
 //! what it takes to count.
@@ -31,6 +32,7 @@ pub mod equivalents;
 pub mod figures;
 mod made;
 pub mod noise;
+pub mod pattern;
 pub mod presets;
 mod readout;
 pub mod view;
@@ -45,5 +47,6 @@ pub use equivalents::Equivalents;
 pub use figures::{CameraSpec, Efficiency, FASTEST_F_NUMBER};
 pub use made::REFERENCE_K;
 pub use noise::NoiseSpec;
+pub use pattern::{Pattern, PatternFigures};
 pub use readout::Readout;
-pub use view::{Light, View};
+pub use view::{Extent, Light, View};

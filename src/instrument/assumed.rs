@@ -18,6 +18,7 @@ impl Assumed {
     /// Keys of all figures that something may stand for, those first that a 'yes' hangs on most.
     pub const FIGURES: &'static [&'static str] = &[
         "flicker_fraction",
+        "fixed_pattern",
         "spectral_range",
         "netd_f_number",
         "exposure",

@@ -20,6 +20,9 @@
 //! noise': what goes beyond N of the band) and 8 W times every line of a reading. That is the multiplex advantage, W/8 of a
 //! sequential instrument's electronic variance in the same time, and its price where photons are the noise.
 //!
+//! Of an object counts and variance are those of the sum over its n pixels: n times every line; what pixels, rows and columns have in
+//! common has lines of its own ([`super::pattern`]).
+//!
 //! Bands that are read together are exposed and read once: the lines of photons add up, dark counts and those below come once.
 //!
 //! Assumptions: electronic noise of the bands is independent, also between mirror positions; a converter's steps are small
@@ -69,7 +72,7 @@ pub const SHOT: &str = "shot noise";
 pub const BUNCHING: &str = "photon bunching";
 
 impl Camera {
-    /// Counts per unit of band signal of the target: étendue × efficiencies × time × the share of the pixel it fills, m² sr s.
+    /// Counts of a pixel per unit of band signal of the target: étendue × efficiencies × time × the share of the pixel it fills, m² sr s.
     #[must_use]
     pub fn counts_per_radiance(&self, bands: &Bands, view: &View) -> f64 {
         // An interferometer sees every band all the time.
@@ -82,10 +85,10 @@ impl Camera {
             * view.fill
     }
 
-    /// Counts per unit of band signal, and the variance of each band that does not depend on what the target is.
+    /// Counts of all pixels of the view per unit of band signal, and the variance of each band that does not depend on what the target is.
     #[must_use]
     pub fn counting(&self, bands: &Bands, view: &View) -> Counting {
-        let counts_per_radiance = self.counts_per_radiance(bands, view);
+        let counts_per_radiance = view.extent.pixels() * self.counts_per_radiance(bands, view);
         let mut var_added = Vec::new();
         for line in self.added_noise(bands, view) {
             if var_added.is_empty() {
@@ -107,7 +110,7 @@ impl Camera {
         var
     }
 
-    /// Every line but the target's own shot noise, band by band; those of no variance are left out.
+    /// Every line but the target's own shot noise, band by band, of the sum over the pixels of the view; those of no variance are left out.
     #[must_use]
     pub fn added_noise(&self, bands: &Bands, view: &View) -> Vec<BandLine> {
         let kappa = self.counts_per_radiance(bands, view);
@@ -121,9 +124,11 @@ impl Camera {
         // Of every reading: as it is, or as the interferogram spreads it.
         let spread = if interferometer { 8.0 * bands.len() as f64 } else { 1.0 };
         let every = |var: f64| vec![var * spread; bands.len()];
-        let mut lines = Vec::new();
-        let mut push = |line: BandLine| {
+        let pixels = view.extent.pixels();
+        let mut lines: Vec<BandLine> = Vec::new();
+        let mut push = |mut line: BandLine| {
             if line.var_counts.iter().any(|var| *var > 0.0) {
+                line.var_counts.iter_mut().for_each(|var| *var *= pixels);
                 lines.push(line);
             }
         };
@@ -178,6 +183,12 @@ impl Camera {
         let step = self.quantisation_step_counts().unwrap_or(0.0);
         let rounding = every(frames * step * step / 12.0);
         push(of_reading("quantisation", rounding, "frames", "full_well, quantisation_bits"));
+        for mut line in self.shared_noise(bands.len(), view) {
+            if line.var_counts.iter().any(|var| *var > 0.0) {
+                line.var_counts.iter_mut().for_each(|var| *var *= spread);
+                lines.push(line);
+            }
+        }
         lines
     }
 
@@ -205,7 +216,7 @@ impl Camera {
     /// The noise of an average band as labelled lines, which sum to its total variance.
     #[must_use]
     pub fn noise_budget(&self, bands: &Bands, signal: &[f64], view: &View) -> Vec<NoiseLine> {
-        let kappa = self.counts_per_radiance(bands, view);
+        let kappa = view.extent.pixels() * self.counts_per_radiance(bands, view);
         let shot = BandLine {
             label: SHOT,
             var_counts: signal.iter().map(|signal| kappa * signal).collect(),

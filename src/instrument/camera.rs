@@ -9,7 +9,7 @@
 use super::assumed::{Assumed, PAPER_RANGE_CM1};
 use super::counting::Counting;
 use super::figures::every_figure;
-use super::{EfficiencyCurve, NoiseSpec, Readout, View};
+use super::{EfficiencyCurve, NoiseSpec, Pattern, Readout, View};
 use crate::error::Result;
 use crate::planck;
 use crate::spectrum::Bands;

@@ -62,7 +62,7 @@ pub struct Equivalents {
 }
 
 /// What an NETD is stated for.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct NetdConditions {
     /// Temperature of the blackbody, K.
     pub temperature_k: f64,
@@ -247,7 +247,7 @@ fn reading(camera: &Camera) -> Camera {
 }
 
 /// dN/dT under these conditions, counts per K.
-fn per_kelvin(camera: &Camera, at: NetdConditions) -> f64 {
+pub(super) fn per_kelvin(camera: &Camera, at: NetdConditions) -> f64 {
     let stated = Camera {
         f_number: at.f_number,
         optics_efficiency: at.optics_efficiency,

@@ -8,7 +8,9 @@
 //! All other figures are taken as they are ([`Taken`]), there and back.
 
 use super::assumed::{Assumed, PAPER_RANGE_CM1};
+use super::equivalents::NetdConditions;
 use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, every_figure};
+use super::pattern::Pattern;
 use super::presets::{Missing, Preset};
 use super::{Camera, CameraSpec, Efficiency, EfficiencyCurve, NoiseSpec, Readout};
 
@@ -102,9 +104,13 @@ impl Preset {
             assumed.push(Assumed::favourable("spectral_range", format!("{low} to {high} cm^-1")));
             PAPER_RANGE_CM1
         });
-        let is_noisy = noise != NoiseSpec::None && noise != (NoiseSpec::Counts { sigma_counts: 0.0 });
+        let is_noisy = noise.is_some();
         if figures.flicker_fraction.is_none() && is_noisy {
             assumed.push(Assumed::favourable("flicker_fraction", "0"));
+        }
+        let unstated = figures.pattern.unstated(true);
+        if is_noisy && !unstated.is_empty() {
+            assumed.push(Assumed::favourable("fixed_pattern", format!("0 ({})", unstated.join(", "))));
         }
         let readout = figures.readout.unwrap_or_else(|| match figures.spectral_bands {
             // Filters before a camera of one band are exposed one after the other.
@@ -124,6 +130,14 @@ impl Preset {
             assumed.push(Assumed::favourable("frame_rate", "no pause between exposures"));
         }
         self.open_figures([exposure_s, pixel_m], is_noisy, &mut assumed);
+        let (at, (stated, _)) = (self.noise_camera(), self.noise_in_full());
+        let reference_temperature_k = figures.reference_temperature_k.unwrap_or(REFERENCE_K);
+        let pattern_at = NetdConditions {
+            temperature_k: stated.netd_temperature_k.unwrap_or(reference_temperature_k),
+            f_number: stated.netd_f_number.or(at.f_number).unwrap_or(f_number),
+            optics_efficiency: stated.netd_optics_efficiency.unwrap_or_else(|| at.optics_efficiency.taken()),
+            pixel_m: stated.netd_pixel_m.or(at.pixel_m).unwrap_or(pixel_m),
+        };
         let own = Own {
             name: self.name.clone(),
             description: self.description.clone(),
@@ -131,6 +145,7 @@ impl Preset {
             assumed,
             efficiency_curves: self.efficiency_curves.clone(),
             noise,
+            pattern: Pattern::new(figures.pattern, pattern_at),
             frame_rate_hz: figures.frame_rate_hz,
         };
         Ok(Camera {
@@ -142,7 +157,7 @@ impl Preset {
             noise_exposure_s: self.noise_exposure_s().unwrap_or(exposure_s),
             readout,
             frames,
-            reference_temperature_k: figures.reference_temperature_k.unwrap_or(REFERENCE_K),
+            reference_temperature_k,
             spectral_range_cm1,
             ..Camera::as_stated(figures, own)
         })
@@ -345,7 +360,20 @@ impl CameraSpec {
         Self {
             frame_rate_hz: camera.frame_rate_hz,
             noise: NoiseFigures::of(&camera.noise),
+            pattern: camera.pattern.stated_at(camera, camera.pattern_conditions()),
             ..Self::as_taken(camera)
+        }
+    }
+}
+
+impl Camera {
+    /// What a noise in K would be stated for beside this camera's: the conditions of its NETD, or its own.
+    fn pattern_conditions(&self) -> NetdConditions {
+        match self.noise {
+            NoiseSpec::Netd { temperature_k, f_number, optics_efficiency, pixel_m, .. } => {
+                NetdConditions { temperature_k, f_number, optics_efficiency, pixel_m }
+            }
+            _ => NetdConditions::of(self, self.reference_temperature_k),
         }
     }
 }

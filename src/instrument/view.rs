@@ -9,6 +9,90 @@
 //!
 //! Source: paper S7–S9.
 
+use crate::error::{Error, Result};
+
+/// No array is wider.
+const MOST_PIXELS_ACROSS: f64 = 1e5;
+
+/// Pixels that an object covers, whose counts are added up: rows by columns, at least one of each.
+///
+/// ```
+/// use hadar::instrument::Extent;
+/// assert_eq!(Extent::new([30.0, 10.0])?.pixels(), 300.0);
+/// assert_eq!(Extent::square(400.0)?.sides(), [20.0, 20.0]);
+/// assert!(Extent::new([30.0, 0.0]).is_err());
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Extent {
+    rows: f64,
+    columns: f64,
+}
+
+impl Default for Extent {
+    fn default() -> Self {
+        Self::ONE
+    }
+}
+
+impl Extent {
+    /// One pixel.
+    pub const ONE: Self = Self { rows: 1.0, columns: 1.0 };
+
+    /// So many rows and columns.
+    ///
+    /// # Errors
+    /// Fewer than one of them, or more than an array has.
+    pub fn new(sides: [f64; 2]) -> Result<Self> {
+        if let Some(side) = sides.into_iter().find(|side| !(1.0..=MOST_PIXELS_ACROSS).contains(side)) {
+            return Err(Error::out_of_range(
+                "rows or columns of an object",
+                side,
+                "pixels",
+                "from 1 to 100000",
+            ));
+        }
+        let [rows, columns] = sides;
+        Ok(Self { rows, columns })
+    }
+
+    /// So many pixels, as many rows as columns.
+    ///
+    /// # Errors
+    /// As [`Extent::new`].
+    pub fn square(pixels: f64) -> Result<Self> {
+        Self::new([pixels.sqrt(); 2])
+    }
+
+    /// Those that a square of side `size_m` surely fills wherever it lies on the array, one at least: its image has s = size/footprint
+    /// pixels across, a blur of radius `blur_pixels` takes as much at either edge, and an edge within a pixel takes that one: s − 2b − 2,
+    /// which changes without steps and is at most one less than the whole pixels that there are.
+    ///
+    /// ```
+    /// use hadar::instrument::Extent;
+    /// // 0.5 m of 25 mm each are 20 pixels; a blur of 1.5 at either edge leaves 17, of which 15 are whole wherever it lies.
+    /// assert!((Extent::inside(0.5, 0.025, 1.5).pixels() - 225.0).abs() < 1e-9);
+    /// assert_eq!(Extent::inside(0.5, 0.4, 1.4), Extent::ONE);
+    /// ```
+    #[must_use]
+    pub fn inside(size_m: f64, footprint_m: f64, blur_pixels: f64) -> Self {
+        let side = (size_m / footprint_m - 2.0 * blur_pixels - 2.0).clamp(1.0, MOST_PIXELS_ACROSS);
+        if side.is_nan() { Self::ONE } else { Self { rows: side, columns: side } }
+    }
+
+    /// Rows and columns.
+    #[must_use]
+    pub const fn sides(self) -> [f64; 2] {
+        [self.rows, self.columns]
+    }
+
+    /// Their number.
+    #[must_use]
+    pub fn pixels(self) -> f64 {
+        self.rows * self.columns
+    }
+}
+
 /// Light of one origin that tells nothing of the target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light {
@@ -18,7 +102,7 @@ pub struct Light {
     pub radiance: Vec<f64>,
 }
 
-/// What a pixel sees.
+/// What a pixel sees, or each pixel of an object.
 ///
 /// ```
 /// use hadar::instrument::View;
@@ -31,6 +115,8 @@ pub struct View {
     pub distance_m: Option<f64>,
     /// Share of the pixel's footprint that the target fills, in (0, 1].
     pub fill: f64,
+    /// Pixels of the object that see the same and whose counts are added up.
+    pub extent: Extent,
     /// Other light on the pixel.
     pub light: Vec<Light>,
     /// Signal of the target in each band where it fills the pixel, photons s⁻¹ m⁻² sr⁻¹: what the noise of an
@@ -56,6 +142,7 @@ impl View {
         Self {
             distance_m,
             fill: 1.0,
+            extent: Extent::ONE,
             light: Vec::new(),
             signal: Vec::new(),
             open_widths_cm1: Vec::new(),

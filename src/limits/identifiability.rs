@@ -12,6 +12,7 @@
 //! * [`bracket`]: rigorous bounds on the error between known states, two or many;
 //! * [`decision`]: bounds of the probability of a right answer between known states, quickly and for any number of counts;
 //! * [`ratio`]: the error between two known states itself, from the law of their likelihood ratio;
+//! * [`shared`]: errors that all readings of an object share;
 //! * [`bayes`]: what priors do to the distance and to the probability.
 
 pub mod bayes;
@@ -29,6 +30,7 @@ pub mod nearest;
 pub mod ratio;
 mod rectangle;
 pub mod selection;
+pub mod shared;
 mod space;
 
 pub(super) use self::space::{ENVIRONMENT_K, LARGEST_LN_GAIN};

@@ -124,6 +124,10 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
     let Some((pair, surface)) = limiting else { return Ok(drawn) };
     let (target, other) = (pair.target.as_str(), pair.alternative.as_str());
     drawn.extend(identifiability(study, result, pair, surface)?);
+    if let Some((curve, object)) = study.object_curve(surface)?.zip(result.object.as_ref()) {
+        let required = result.requirement.distance;
+        drawn.push(figures::object(&curve, object, [target, other], required));
+    }
     if let Some(map) = study.photon_map(surface)? {
         let state = study.state();
         let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));

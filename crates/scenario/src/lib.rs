@@ -11,6 +11,7 @@
 use std::collections::BTreeMap;
 
 pub use hadar::fisher::Nuisance;
+use hadar::instrument::Extent;
 pub use hadar::instrument::{CameraSpec, Efficiency, Readout};
 pub use hadar::material::{ClassSpec, Extrapolation, MaterialRef, Spread};
 
@@ -137,6 +138,13 @@ impl Scenario {
     pub fn units(&self) -> Units {
         Units::of(&self.source)
     }
+
+    /// What the verdict is of: where nothing is said, the object if its pixels are stated.
+    #[must_use]
+    pub fn scope(&self) -> Scope {
+        let stated = if self.target.pixels.is_some() { Scope::Object } else { Scope::Pixel };
+        self.requirement.of.unwrap_or(stated)
+    }
 }
 
 impl PartialEq for Scenario {
@@ -169,8 +177,31 @@ pub struct Target {
     pub distance_m: Option<f64>,
     /// Side of the target as the camera sees it, m; above 0. One that fills the pixel if none.
     pub size_m: Option<f64>,
+    /// Pixels that it fills, in the place of a size.
+    pub pixels: Option<PixelsFilled>,
     /// How its spectrum is continued beyond its data.
     pub extrapolate: Option<Extrapolation>,
+}
+
+/// How many pixels a target fills.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PixelsFilled {
+    /// So many, as many rows as columns.
+    All(u32),
+    /// Rows and columns.
+    Sides([u32; 2]),
+}
+
+impl PixelsFilled {
+    /// Rows and columns, which the keys have checked.
+    #[must_use]
+    pub fn extent(self) -> Extent {
+        let extent = match self {
+            Self::All(pixels) => Extent::square(f64::from(pixels)),
+            Self::Sides(sides) => Extent::new(sides.map(f64::from)),
+        };
+        extent.unwrap_or_default()
+    }
 }
 
 /// What is behind a target that does not fill a pixel (`[background]`); lit as the target is.
@@ -265,6 +296,20 @@ hadar::named! {
     name
 }
 
+hadar::named! {
+    /// What a verdict is of.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Scope {
+        /// One pixel on the target.
+        #[default]
+        Pixel = "pixel",
+        /// All pixels that the target fills, together.
+        Object = "object",
+    }
+    /// The name in a scenario.
+    name
+}
+
 /// What is demanded (`[requirement]`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Requirement {
@@ -272,6 +317,8 @@ pub struct Requirement {
     pub reliability: Reliability,
     /// The distance that must reach it.
     pub by: DistanceKind,
+    /// What must reach it: one pixel or the whole object; the object where `target.pixels` is stated and nothing else is said.
+    pub of: Option<Scope>,
     /// Speed of the vehicle, m s⁻¹; above 0.
     pub speed_m_s: Option<f64>,
     /// Time within which all bands of all frames must be read, s; above 0.
@@ -283,6 +330,7 @@ impl Default for Requirement {
         Self {
             reliability: Reliability::Distance(1.0),
             by: DistanceKind::Nearest,
+            of: None,
             speed_m_s: None,
             time_s: None,
         }

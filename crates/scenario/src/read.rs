@@ -13,7 +13,7 @@ use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
     Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
 };
-use super::{camera, class};
+use super::{PixelsFilled, Scope, camera, class};
 use hadar::error::{Error, Result};
 
 pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
@@ -56,13 +56,23 @@ pub(super) fn of_root(
 
 pub(super) fn target(entry: &Entry<'_>) -> Result<Target> {
     let section = entry.section()?;
+    section.at_most_one(&["size", "pixels"])?;
     Ok(Target {
         material: material(&section.require("material")?)?,
         temperature_k: section.require("temperature")?.quantity()?,
         distance_m: section.quantity("distance")?,
         size_m: section.quantity("size")?,
+        pixels: section.read("pixels", pixels_filled)?,
         extrapolate: extrapolation(&section)?,
     })
+}
+
+fn pixels_filled(entry: &Entry<'_>) -> Result<PixelsFilled> {
+    if entry.is_list() {
+        let [rows, columns] = entry.pair("[40, 10]")?;
+        return Ok(PixelsFilled::Sides([rows.count("40")?, columns.count("10")?]));
+    }
+    Ok(PixelsFilled::All(entry.count("400")?))
 }
 
 fn background(entry: &Entry<'_>) -> Result<Background> {
@@ -213,6 +223,7 @@ pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
             (None, None, None) => default.reliability,
         },
         by: section.choice("by", &DistanceKind::ALL.map(|kind| (kind.name(), kind)))?.unwrap_or(default.by),
+        of: section.choice("of", &Scope::ALL.map(|scope| (scope.name(), scope)))?,
         speed_m_s: section.quantity("speed")?,
         time_s: section.quantity("time")?,
     })

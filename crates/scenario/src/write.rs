@@ -9,8 +9,8 @@ use super::decompose::category::categories_written;
 use super::entries::{Document, Entries};
 use super::paths::Paths;
 use super::{
-    Alternatives, Background, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability,
-    Requirement, Scenario, Target, Unknown, camera, class,
+    Alternatives, Background, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, PixelsFilled,
+    Reliability, Requirement, Scenario, Scope, Target, Unknown, camera, class,
 };
 use hadar::units::Dimension;
 
@@ -36,11 +36,16 @@ impl Scenario {
 }
 
 fn target(target: &Target, paths: Paths<'_>) -> Entries {
+    let pixels = target.pixels.map(|pixels| match pixels {
+        PixelsFilled::All(all) => Value::from(i64::from(all)),
+        PixelsFilled::Sides(sides) => Value::from(sides.map(i64::from).to_vec()),
+    });
     Entries::default()
         .put("material", paths.material(&target.material))
         .put_quantity("temperature", Dimension::Temperature, Some(target.temperature_k))
         .put_quantity("distance", Dimension::Length, target.distance_m)
         .put_quantity("size", Dimension::Length, target.size_m)
+        .put_if("pixels", pixels)
         .put_if("extrapolate", target.extrapolate.map(Extrapolation::name))
 }
 
@@ -103,6 +108,7 @@ pub(super) fn requirement(requirement: &Requirement) -> Entries {
     };
     entries
         .put("by", requirement.by.name())
+        .put_if("of", requirement.of.map(Scope::name))
         .put_quantity("speed", Dimension::Speed, requirement.speed_m_s)
         .put_quantity("time", Dimension::Time, requirement.time_s)
 }

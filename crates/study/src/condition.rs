@@ -7,6 +7,7 @@
 //! |---|---|
 //! | of the camera | [`hadar::instrument::Camera::assumed`]: asked for, the worst, or [`Condition::Assumed`] |
 //! | `target.distance`, `target.size` | the target fills a pixel: [`Condition::FillsPixel`] |
+//! | `requirement.of` | the verdict is of one pixel; of an object [`Condition::AlikePixels`] and [`Condition::FrameNoise`] |
 //! | `background` | asked for where the target does not fill its pixel |
 //! | `[atmosphere]` | the air takes nothing away: [`Condition::NoAir`] |
 //! | `[[environment]]` | nothing lights the target: [`Condition::NoSurroundings`], or no more than is there: [`Condition::DarkRest`] |
@@ -34,6 +35,8 @@ hadar::named! {
         Setting = "setting",
         /// An alternative that was left out.
         Omitted = "omitted",
+        /// What the verdict is of.
+        Scope = "scope",
     }
     /// The name in JSON, e.g. `proviso`.
     name
@@ -139,10 +142,28 @@ conditions! {
         /// Share of the draws.
         share_met: f64,
     } = "emissivities", Proviso, "sensitivity.emissivity_error";
+    /// The emissivities of an object's materials are known better than to an error, the same in all of its pixels, with which what is proved
+    /// does not reach the requirement.
+    SharedErrors {
+        /// Root mean square.
+        error: f64,
+        /// Statistical distance with such errors, at most.
+        distance: f64,
+    } = "shared-emissivity-errors", Proviso, "sensitivity.emissivity_error";
     /// The emissivity of what is measured is exactly as entered.
     EmissivityKnown = "emissivity-known", Assumed, "sensitivity.emissivity_error";
     /// What is ranged looks as in the one scene that is rendered.
     OneScene = "one-scene", Assumed, "stereo";
+    /// The pixels that are added up are the target's, and all see the same of it.
+    AlikePixels {
+        /// How many.
+        pixels: f64,
+    } = "alike-pixels", Scope, "requirement.of";
+    /// Rows, columns and frames have no noise of their own beside that of the pixels.
+    FrameNoise {
+        /// Keys of the camera that are not stated.
+        figures: Vec<&'static str>,
+    } = "frame-noise", Assumed, "camera.frame_noise";
     /// The target fills the pixel.
     FillsPixel {
         /// Side of what the pixel sees, m, where the distance is known.
@@ -333,7 +354,7 @@ impl Condition {
             Self::StillScene { time_s } | Self::Waits { time_s } => Taken::Number(*time_s),
             Self::DarkRest { share } => Taken::Number(*share),
             Self::Constants { emissivities } => Taken::Pair(*emissivities),
-            Self::Emissivities { error, .. } => Taken::Number(*error),
+            Self::Emissivities { error, .. } | Self::SharedErrors { error, .. } => Taken::Number(*error),
             Self::Assumed { counts: Some(counts), .. } => Taken::Number(*counts),
             Self::Assumed { figure, .. } => Taken::Text(&figure.taken),
             Self::Bunching { occupancy } => Taken::Number(*occupancy),
@@ -343,6 +364,8 @@ impl Condition {
             Self::InOnePixel { fill } => Taken::Number(*fill),
             Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
+            Self::AlikePixels { pixels } => Taken::Number(*pixels),
+            Self::FrameNoise { figures } => Taken::Texts(figures.clone()),
             Self::LeftOut { materials } => Taken::Texts(materials.iter().map(String::as_str).collect()),
             Self::Setting { value, .. } => Taken::Text(value),
             Self::Spoiled { by } => Taken::Text(by.code()),

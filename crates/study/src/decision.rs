@@ -92,6 +92,11 @@ impl Study {
             false => detection::error_bracket(found.bounds()[0]).upper.max(between.error_lower),
         };
         let [lower, distance] = [most, between.error_lower].map(distance_of);
+        // The law of few counts knows nothing of errors that readings share.
+        let [lower, distance] = match self.errors_shared() {
+            Some(_) => [lower.min(found.lower), distance.min(found.distance)],
+            None => [lower, distance],
+        };
         by(Statistical { distance, lower, relative_error: Some(0.0) }, between.law)
     }
 

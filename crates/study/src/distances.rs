@@ -198,11 +198,20 @@ impl Study {
         };
         match kind {
             DistanceKind::Nearest => {
-                let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
+                let mut solver = self.nearest_solver();
+                let found = solver.with_counting(target, other, &self.state, counting)?;
                 let lower = self.sure(found.distance, found.lower);
                 let relative_error = Some(found.relative_error + integrals(found.distance));
                 let NearestDistance { distance, state, .. } = found;
-                Ok((Statistical { distance, lower, relative_error }, Some(state)))
+                let found = (Statistical { distance, lower, relative_error }, state);
+                let (found, state) = match self.errors_shared() {
+                    Some(spec) => {
+                        let seen = (&self.bands, counting);
+                        self.with_shared_errors(&mut solver, other, seen, found, (spec, false))?
+                    }
+                    None => found,
+                };
+                Ok((found, Some(state)))
             }
             DistanceKind::Local => local(self.unknowns.clone()),
             DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),

@@ -56,6 +56,7 @@ pub mod render;
 mod resolve;
 mod rests_on;
 mod rule;
+mod shared_errors;
 mod shared_unknown;
 mod shortfall;
 mod sight;
@@ -101,8 +102,9 @@ pub use simulate::{
     SimulationPlan, Standing, TestSpectra, Thermometry, ThermometryRow, true_temperatures,
 };
 pub use size::{
-    Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
-    RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    Answer, CameraResult, CeilingShare, Elasticities, EmissivityErrors, Finding, InformationCurves,
+    ObjectAnswer, ObjectCurve, PhotonMap, RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing,
+    Solutions, Spectra, Verdict, VerdictAlone,
 };
 pub use surface::Surface;
 

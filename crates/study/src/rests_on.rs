@@ -11,7 +11,7 @@ use hadar::instrument::{Assumed, Camera, Readout};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::spectrum::Bands;
-use hadar_scenario::{DistanceKind, Setting};
+use hadar_scenario::{DistanceKind, Scope, Setting};
 use std::collections::{HashMap, HashSet};
 
 /// Share of draws of the emissivities that settles a question.
@@ -62,7 +62,11 @@ impl Study {
         found.extend(
             self.one_numbers(&pair.alternative).map(|emissivities| Condition::Constants { emissivities }),
         );
-        found.extend(self.of_pair(camera, bounds_lower(pair), reached.errors));
+        let is_object = self.scenario.scope() == Scope::Object;
+        found.extend(self.of_pair(camera, bounds_lower(pair), reached.errors.filter(|_| !is_object)));
+        if let (true, Some(other)) = (is_object && met, self.alternative(&pair.alternative)) {
+            found.extend(self.undone_by_errors(other)?);
+        }
         if met {
             found.extend(self.ranges_that_decide(true, &|range| self.holds_in(range))?);
         }
@@ -90,9 +94,17 @@ impl Study {
         if let Some((index, pair)) = hardest {
             let own = self.against(index);
             let alternative = own.alternatives.get(index);
-            let errors = alternative.map(|other| own.emissivity_errors(camera, other, index)).transpose()?;
+            let is_object = self.scenario.scope() == Scope::Object;
+            let of_pixel = alternative.filter(|_| !is_object);
+            let errors = of_pixel.map(|other| own.emissivity_errors(camera, other, index)).transpose()?;
             let errors = errors.map(|found| [found.error, found.share_met]);
             found.extend(own.of_pair(camera, bounds_lower(pair), errors));
+            for other in alternative.into_iter().filter(|_| is_object) {
+                found.extend(own.undone_by_errors(other)?);
+            }
+        }
+        if self.scenario.scope() == Scope::Object && others.clone().next().is_some() {
+            found.push(Condition::EmissivityKnown);
         }
         // Distances alone are compared here.
         let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
@@ -162,6 +174,9 @@ impl Study {
         let mut found = more;
         found.extend(self.of_camera(camera, brightest));
         found.extend(self.of_scene(camera, asked));
+        if self.scenario.scope() == Scope::Object {
+            found.push(Condition::EmissivityKnown);
+        }
         found.retain(|one| one.counts(met));
         hardest_first(&mut found);
         found
@@ -196,7 +211,16 @@ impl Study {
         if scenario.requirement.by != DistanceKind::Nearest {
             found.push(Condition::NoLimit);
         }
-        if scenario.target.size_m.is_none() {
+        // The farther, the fewer.
+        let pixels = self.extent(camera, asked.distance_m).pixels();
+        if scenario.scope() == Scope::Object {
+            found.push(Condition::AlikePixels { pixels });
+        }
+        let figures = camera.pattern.unstated(false);
+        if pixels > 1.0 && !figures.is_empty() && camera.noise.is_some() {
+            found.push(Condition::FrameNoise { figures });
+        }
+        if scenario.target.size_m.is_none() && scenario.scope() == Scope::Pixel {
             let footprint_m = asked.distance_m.map(|z| camera.footprint_m(z));
             found.push(Condition::FillsPixel { footprint_m });
         }

@@ -5,19 +5,23 @@
 //!
 //! * the air on the path, (1 − τ) B(T_air) (its part of the pixel is all of it);
 //! * what is behind a target that fills the share φ of the pixel, (1 − φ) τ S_behind, lit as the target is;
+//! * of an object every pixel sees the same, and the blur of the lens, the first dark ring 1.22 λF of its longest wavelength λ, takes
+//!   away what is near its edges;
 //! * filters in front of the sensor throw its own emission back, R_q B(T_sensor), and emit themselves,
 //!   (1 − T_q − R_q) B(T_filter), over all of the detector's spectral range (S8, S9).
 //!
-//! Source: paper S7–S9 and S11–S12.
+//! Source: paper S7–S9 and S11–S12; M. Born, E. Wolf, Principles of Optics, 8.5.2 (the first dark ring).
 
 use super::Study;
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::view::fill;
-use hadar::instrument::{Camera, Light, NoiseSpec, View};
+use hadar::instrument::{Camera, Extent, Light, NoiseSpec, View};
 use hadar::planck;
+use hadar::policy::caps::longest_wavelength_m;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
+use hadar_scenario::Scope;
 
 /// The bands as they reach a camera, and what its pixel sees beside the target.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +43,9 @@ pub(super) struct Along {
     /// The least counts per radiance, and the most added variance.
     pub(super) counting: Counting,
 }
+
+/// Radius of the first dark ring of a point over λF.
+const DARK_RING: f64 = 1.22;
 
 /// Bands as they reach a camera from a distance, and what the path emits at their nodes.
 #[derive(Debug, Clone, Copy)]
@@ -116,7 +123,9 @@ impl Study {
         // Étendue × fill rises, then falls.
         let fill = |z: f64| View { fill: self.fill(camera, Some(z)), ..View::at(Some(z)) };
         let kappa = |z: f64| camera.counts_per_radiance(&near, &fill(z));
-        counting.counts_per_radiance = kappa(near_m).min(kappa(far_m));
+        // Of an object the fewest pixels: with more of them the sum tells no less.
+        let pixels = self.extent(camera, Some(far_m)).pixels();
+        counting.counts_per_radiance = pixels * kappa(near_m).min(kappa(far_m));
         let sag = open.transmitted_at_nodes(&sag);
         Ok(Along { near, middle, far, sag, counting })
     }
@@ -155,6 +164,13 @@ impl Study {
         let refuse = |key: &str, found: &str, instead: &str| {
             Err(Error::malformed(found, instead).at(scenario.place(key)))
         };
+        if scenario.scope() == Scope::Object
+            && scenario.target.pixels.is_none()
+            && scenario.target.size_m.is_none()
+        {
+            let instead = "write size = \"0.5 m\" and distance = \"30 m\" in [target], or pixels = 400";
+            return refuse("requirement.of", "an object of which nobody says how large it is", instead);
+        }
         if scenario.target.size_m.is_some() {
             if scenario.target.distance_m.is_none() {
                 return refuse(
@@ -199,6 +215,7 @@ impl Study {
     /// and light of the path grow with distance, what target and background send and the share that the target fills fall.
     fn view(&self, camera: &Camera, [near, far]: [Seen<'_>; 2]) -> View {
         let mut view = View::at(far.distance_m);
+        view.extent = self.extent(camera, far.distance_m);
         view.fill = self.fill(camera, near.distance_m);
         if !far.air.is_empty() {
             let open = camera.received(&self.open_bands);
@@ -229,6 +246,22 @@ impl Study {
             view.occupancy = camera.counts_per_mode(&self.open_bands, &view);
         }
         view
+    }
+
+    /// Pixels of the target whose counts are added up: one, but of an object those that it fills.
+    pub(super) fn extent(&self, camera: &Camera, distance_m: Option<f64>) -> Extent {
+        let target = &self.scenario.target;
+        if self.scenario.scope() == Scope::Pixel {
+            return Extent::ONE;
+        }
+        let of_size = |(size_m, distance_m)| {
+            let ring_m = DARK_RING * longest_wavelength_m(&self.open_bands) * camera.f_number;
+            Extent::inside(size_m, camera.footprint_m(distance_m), ring_m / camera.pixel_m)
+        };
+        match target.pixels {
+            Some(filled) => filled.extent(),
+            None => target.size_m.zip(distance_m).map_or(Extent::ONE, of_size),
+        }
     }
 
     /// Share of the pixel that the target fills.

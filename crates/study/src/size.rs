@@ -8,10 +8,11 @@ use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
-use hadar_scenario::{DistanceKind, Scenario};
+use hadar_scenario::{DistanceKind, Scenario, Scope};
 use serde::ser::{SerializeMap, Serializer};
 
 mod curves;
+mod object;
 mod reach;
 pub(crate) mod sensitivity;
 mod solved;
@@ -20,6 +21,7 @@ mod verdict;
 
 pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
+pub use object::{CeilingShare, ObjectAnswer, ObjectCurve};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
 pub use verdict::{Answer, Finding, Verdict, VerdictAlone};
@@ -36,6 +38,9 @@ pub struct Sizing {
     pub requirement: RequirementResult,
     /// What this camera delivers; `None` without a camera.
     pub camera: Option<CameraResult>,
+    /// What all pixels of the object say together, and where that ends; `None` of a pixel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub object: Option<ObjectAnswer>,
     /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera, or where it was not asked for.
     pub solve_for: Option<Solutions>,
     /// What the verdict hangs on; `None` without a camera, or where it was not asked for.
@@ -191,6 +196,7 @@ impl Study {
         let (surface, photon_radiance) = (&own.alternatives[index], own.photon_radiance());
         let requirement = own.requirement(pair, index, photon_radiance);
         let camera = own.camera_result(photon_radiance);
+        let object = own.object(surface)?;
         let solve_for = match &own.camera {
             Some(camera) if asked.solutions => Some(own.solutions(camera, surface)?),
             _ => None,
@@ -225,6 +231,7 @@ impl Study {
             verdict,
             requirement,
             camera,
+            object,
             solve_for,
             sensitivity,
             trade_offs: None,
@@ -287,7 +294,7 @@ impl Study {
             noise_counts: (var / self.bands.len() as f64).sqrt(),
             gamma_per_band: gamma,
             etendue_m2_sr: camera.etendue_m2_sr(distance_m),
-            hardware_m2_s: camera.hardware_m2_s(gamma),
+            hardware_m2_s: self.extent(camera, distance_m).pixels() * camera.hardware_m2_s(gamma),
             least_distance: policy::least_distance(self.required, photons, gamma),
             acquisition_s: camera.acquisition_s(self.bands.len()),
             footprint_m: distance_m.map(|z| camera.footprint_m(z)),
@@ -307,6 +314,7 @@ impl Study {
             distance_m,
             farthest_m: self.atmosphere.as_ref().map(|air| air.table.longest_m()),
             size_m: self.scenario.target.size_m,
+            of_object: self.scenario.scope() == Scope::Object,
         }
     }
 

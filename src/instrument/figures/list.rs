@@ -172,6 +172,15 @@ macro_rules! every_figure {
             "Exposure for which the noise is stated; that of the frame where it is not stated.",
             "scaling of the noise from its exposure to the camera's").condition_of(&NOISES);
 
+        @CameraSpec {
+            /// Noise that pixels, rows, columns and frames share.
+            pattern: PatternFigures,
+        }
+        @Camera {
+            /// Noise that pixels, rows, columns and frames share.
+            #[serde(skip_serializing_if = "Pattern::is_none")]
+            pattern: Pattern,
+        }
         /// Share of the noise variance at that exposure which is flicker.
         flicker_fraction: Option<f64>,
         /// Share of the noise variance at that exposure which is flicker, in [0, 1].
@@ -179,7 +188,38 @@ macro_rules! every_figure {
         row("flicker_fraction", "flicker share of noise variance", Kind::Number(SHARE, slot!(flicker_fraction)), "0.5",
             "Share of the electronic noise variance at noise_exposure that is flicker, which frames do not average out; 0 where \
              it is not stated.",
-            "share of the variance that frames do not average").always_shown();
+            "share of the variance that frames do not average").always_shown(),
+        row("fixed_pattern", "fixed pattern", Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.pixel_k)),
+            "\"20 mK\"",
+            "Deviation from pixel to pixel that a correction of non-uniformity leaves and no number of frames averages away (sigma_VH), at \
+             the conditions of the NETD; 0 where it is not stated, which is a condition of a verdict.",
+            "noise of pixels, rows, columns and frames"),
+        row("row_noise", "row noise", Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.row_k)),
+            "\"14 mK\"",
+            "Deviation from row to row that stays (sigma_V), as fixed_pattern: the pixels of a row of an object share it.",
+            "noise of pixels, rows, columns and frames"),
+        row("column_noise", "column noise", Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.column_k)),
+            "\"14 mK\"",
+            "Deviation from column to column that stays (sigma_H), as row_noise.",
+            "noise of pixels, rows, columns and frames"),
+        row("temporal_row_noise", "temporal row noise",
+            Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.temporal_row_k)), "\"5 mK\"",
+            "Deviation from row to row that is another one in every frame (sigma_TV), beside the NETD; 0 where it is not stated, which is a \
+             condition of a verdict on an object.",
+            "noise of pixels, rows, columns and frames"),
+        row("temporal_column_noise", "temporal column noise",
+            Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.temporal_column_k)), "\"5 mK\"",
+            "Deviation from column to column that is another one in every frame (sigma_TH), as temporal_row_noise.",
+            "noise of pixels, rows, columns and frames"),
+        row("frame_noise", "frame noise", Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.frame_k)),
+            "\"5 mK\"",
+            "Deviation of a whole frame (sigma_T), as temporal_row_noise: all pixels of an object share it.",
+            "noise of pixels, rows, columns and frames"),
+        row("pattern_drift", "drift of the pattern", Kind::Quantity(Dimension::Time, ABOVE_ZERO, slot!(pattern.drift_s)),
+            "\"60 s\"",
+            "Time after which what stays of pixels, rows and columns is another pattern (correlation time; a shutter makes one anew); never \
+             where it is not stated.",
+            "share of a pattern that the mean over frames keeps");
 
         /// Counts per second without any light.
         dark_rate_per_s: Option<f64>,

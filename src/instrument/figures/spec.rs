@@ -2,7 +2,7 @@
 
 use super::list::every_figure;
 use super::noise::NoiseFigures;
-use crate::instrument::Readout;
+use crate::instrument::{PatternFigures, Readout};
 use std::path::PathBuf;
 use std::sync::Arc;
 

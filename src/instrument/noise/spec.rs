@@ -72,6 +72,12 @@ impl NoiseSpec {
         )
     }
 
+    /// Whether there is any.
+    #[must_use]
+    pub fn is_some(&self) -> bool {
+        !matches!(self, Self::None) && *self != Self::Counts { sigma_counts: 0.0 }
+    }
+
     /// A table of noise from rows (wavenumber in cm⁻¹, σ in counts) in any order.
     ///
     /// # Errors

@@ -23,6 +23,8 @@ use crate::root::crossing_between;
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
+/// What of an array stays.
+const LASTING: &str = "fixed patterns, row and column noise";
 /// Relative step by which a solution may be moved so that it meets the demand in spite of rounding.
 const SAFE_SIDE: f64 = 1e-11;
 /// Share by which a speed stays below that of a whole pixel.
@@ -42,6 +44,12 @@ impl CameraTask<'_> {
             Quantity::Frames => return self.solve_frames(distance),
             Quantity::Distance => return distance::solve(self, distance),
             Quantity::Speed => return self.solve_speed(distance),
+            // A larger pixel sees more photons, and fewer pixels see the object.
+            Quantity::Pixel if self.of_object && self.size_m.is_some() => {
+                let reason =
+                    "the size of the pixel changes how many of them see the object: try others".to_owned();
+                return Ok(Solution::new(None, self.camera.pixel_m, f64::NAN, Some(reason)));
+            }
             Quantity::Exposure | Quantity::Pixel | Quantity::FNumber | Quantity::Noise => {}
         }
         let camera = self.value(quantity);
@@ -64,8 +72,15 @@ impl CameraTask<'_> {
             let reason = match quantity {
                 _ if ceiling == 0.0 => NEVER.into(),
                 Quantity::FNumber => format!("no lens in air is faster than f/{FASTEST_F_NUMBER}"),
+                Quantity::Exposure if self.camera.pattern.has_fixed() => {
+                    format!("{LASTING} grow as fast as the signal: no exposure is long enough")
+                }
                 Quantity::Exposure if self.camera.flicker_fraction > 0.0 => {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
+                }
+                Quantity::Noise if !self.camera.pattern.is_none() => {
+                    "shot noise, patterns of the array and what else adds noise are too much: no detector is quiet enough"
+                        .into()
                 }
                 Quantity::Exposure => "no exposure that was tried is long enough".into(),
                 Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
@@ -105,6 +120,9 @@ impl CameraTask<'_> {
         if !enough(ceiling) {
             let why = match ceiling {
                 0.0 => NEVER,
+                _ if self.camera.pattern.has_fixed() => {
+                    "fixed patterns, row and column noise do not average out: no number of frames is enough"
+                }
                 _ if self.camera.flicker_fraction > 0.0 => {
                     "flicker noise does not average out: no number of frames is enough"
                 }

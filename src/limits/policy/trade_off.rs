@@ -336,6 +336,7 @@ mod tests {
             farthest_m: None,
             distance_m: Some(30.0),
             size_m: None,
+            of_object: false,
         };
         let given =
             Circumstances { bands: &bands, speed_m_s: Some(10.0), time_s: None, brightest: &|_| Ok(0.0) };

@@ -1,4 +1,4 @@
-//! The four plots of the main job, each with its table.
+//! The plots of the main job, each with its table.
 //!
 //! Every function takes results and gives a figure with the CSV of just what it shows.
 
@@ -7,7 +7,7 @@ use crate::plot::{self, Axis, HeatMap, LineFigure, Marker, Panel, Rule, Series, 
 use crate::table::Table;
 use crate::words::size::captions;
 use hadar::spectrum::Bands;
-use hadar_study::{InformationCurves, PhotonMap, Spectra, Surface};
+use hadar_study::{InformationCurves, ObjectAnswer, ObjectCurve, PhotonMap, Spectra, Surface};
 
 /// Curves of a picture: as many as there are colours.
 const CURVES: usize = 7;
@@ -195,6 +195,42 @@ pub fn identifiability(
         figure = figure.marker(Marker::new(name.clone(), *photons, *bits));
     }
     Plot { name: "identifiability".into(), figure: figure.into(), table }
+}
+
+/// The statistical distance of an object over its readings, frames varied, with its ceiling and what is required.
+#[must_use]
+pub fn object(curve: &ObjectCurve, object: &ObjectAnswer, pair: [&str; 2], required: f64) -> Plot {
+    let [target, alternative] = pair;
+    let columns = [
+        ("frames", &curve.frames),
+        ("readings", &curve.readings),
+        ("distance_of_object", &curve.of_object),
+        ("distance_of_pixel", &curve.of_pixel),
+        ("distance_of_independent_readings", &curve.independent),
+    ];
+    let table = Table::of_columns(columns);
+    let (x, frames) = (&curve.readings, &curve.frames);
+    let top = curve.of_object.iter().copied().fold(required, f64::max);
+    let low = curve.of_pixel.iter().copied().filter(|d| *d > 0.0).fold(required, f64::min);
+    let mut figure = LineFigure::new(
+        format!("{target} against {alternative}: {} pixels over frames", plot::number(object.pixels.round())),
+        Axis::log("readings (pixels × frames)"),
+        Axis::log("statistical distance d").range(low / 1.5, top * 4.0),
+    )
+    .subtitle(captions::OBJECT)
+    .series(Series::line("all pixels of the object", x.clone(), curve.of_object.clone()))
+    .series(Series::line("one pixel of it", frames.clone(), curve.of_pixel.clone()).style(Style::Dotted))
+    .series(
+        Series::line("readings without anything in common", x.clone(), curve.independent.clone())
+            .style(Style::Dashed),
+    )
+    .rule(Rule::horizontal(required, format!("required: d = {required:.3}")));
+    if let Some([_, ceiling]) = object.ceiling_bounds {
+        figure = figure.rule(Rule::horizontal(ceiling, format!("frames without end: d = {ceiling:.2}")));
+    }
+    let here = object.pixels * f64::from(object.frames);
+    figure = figure.marker(Marker::new("this camera", here, object.distance_bounds[1]));
+    Plot { name: "object".into(), figure: figure.into(), table }
 }
 
 /// What a camera collects from the scene, and what that is worth.

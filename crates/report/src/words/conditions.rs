@@ -80,6 +80,12 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "noise_exposure" => format!("its noise is that of an exposure of {taken}"),
         "spectral_range" => format!("its detector sees {taken} and no more"),
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),
+        "fixed_pattern" => {
+            return format!(
+                "correction leaves no pattern of pixels, rows and columns that frames do not average away ({} not stated)",
+                taken.trim_start_matches("0 (").trim_end_matches(')')
+            );
+        }
         "readout" => format!("its readout is {taken}"),
         "frame_rate" => "exposures follow each other without a pause".into(),
         "full_well" => match counts {
@@ -106,6 +112,18 @@ impl Say for Condition {
             Self::Emissivities { error, share_met } => format!(
                 "the emissivities are known better than to {error} rms ({} of draws with such errors meet the requirement)",
                 share(*share_met)
+            ),
+            Self::SharedErrors { error, distance } => format!(
+                "the emissivities are known better than to {error} rms (with such errors, which all pixels share, d is {} at most)",
+                significant(*distance, 2)
+            ),
+            Self::AlikePixels { pixels } => format!(
+                "the {} pixels that are added up are found, and all of them see the same of the target",
+                significant(*pixels, 3)
+            ),
+            Self::FrameNoise { figures } => format!(
+                "rows, columns and frames of the array have no noise of their own from frame to frame ({} not stated)",
+                figures.join(", ")
             ),
             Self::Assumed { figure, counts } if figure.favourable => holds(figure, *counts),
             Self::Assumed { figure, .. } => figure.say(),
@@ -165,7 +183,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 25] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 28] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -190,6 +208,22 @@ pub(crate) const EXPLAINED: [[&str; 3]; 25] = [
         "emissivities",
         "Errors of the emissivities as they usually are would undo the answer.",
         "Measure these emissivities, and state sensitivity.emissivity_error.",
+    ],
+    [
+        "shared-emissivity-errors",
+        "Errors of the emissivities as they usually are would undo the answer: all pixels of an object share them, and no number of pixels or \
+         frames averages them away.",
+        "Measure these emissivities, and state sensitivity.emissivity_error, which the verdict then has in it.",
+    ],
+    [
+        "alike-pixels",
+        "The counts of all pixels of an object are added up: they must be known to be its own, and see the same of it.",
+        "Segment the image first; ask of one pixel (requirement.of = \"pixel\") where the object is of several materials or temperatures.",
+    ],
+    [
+        "frame-noise",
+        "Nobody states what rows, columns and frames have in common from frame to frame, which the pixels of an object do not average away.",
+        "State camera.temporal_row_noise, temporal_column_noise and frame_noise, by the sheet or by `hadar calibrate noise`.",
     ],
     [
         "image",

@@ -79,6 +79,14 @@ fn of_pixels(finding: &Finding, reached: f64) -> String {
     })
 }
 
+/// Of an object: that all of its pixels decide together.
+fn by_pixels(finding: &Finding) -> String {
+    match finding.pixels.filter(|_| finding.of_object) {
+        Some(pixels) => format!(" by its {} pixels together", significant(pixels, 3)),
+        None => String::new(),
+    }
+}
+
 /// What was found of one pair of spectra.
 fn answered(finding: &Finding) -> String {
     let Finding { camera, target, .. } = finding;
@@ -121,8 +129,9 @@ fn answered(finding: &Finding) -> String {
         Answer::Judged { undecided: true, reached: Some(reached), proved: Some(proved), .. } => {
             let [proved, reached] = [proved, reached].map(|d| reliability(*d));
             format!(
-                "Undecided: whether {camera} can tell {target} from {other} with {wanted} reliability; {proved} are proved, and no state \
-                 was found in which it is less than {reached}."
+                "Undecided: whether {camera} can tell {target} from {other} with {wanted} reliability{}; {proved} are proved, and no state \
+                 was found in which it is less than {reached}.",
+                by_pixels(finding)
             )
         }
         Answer::Judged { enough, spoiled, reached, few_counts, .. } => {
@@ -134,14 +143,18 @@ fn answered(finding: &Finding) -> String {
             let end = match reached {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
                 Some(reached) => {
-                    let one = if finding.pixels.is_some() { "a pixel" } else { "it" };
-                    let all = of_pixels(finding, *reached);
+                    let (one, all) = match finding.pixels {
+                        Some(_) if finding.of_object => ("they", String::new()),
+                        Some(_) => ("a pixel", of_pixels(finding, *reached)),
+                        None => ("it", String::new()),
+                    };
                     let few = if *few_counts { ", by the own law of counts so few" } else { "" };
                     format!("; {one} reaches {} at most{few}{all}.", reliability(*reached))
                 }
                 None => ".".into(),
             };
-            format!("{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability{end}")
+            let by = by_pixels(finding);
+            format!("{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability{by}{end}")
         }
     }
 }
@@ -234,6 +247,7 @@ mod tests {
             classes: None,
             conditions: Vec::new(),
             pixels: None,
+            of_object: false,
         }
     }
 

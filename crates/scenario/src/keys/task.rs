@@ -51,6 +51,14 @@ const TARGET_KEYS: &[Key] = &[
         "Side of the target as the camera sees it.",
         "share of the pixel that it fills; ranges of sizing practice",
     ),
+    Key::row(
+        "pixels",
+        Value::Either(&[Value::Count([1, 100_000_000]), Value::Pair(&Value::Count([1, 100_000]))]),
+        Means("those of size at its distance"),
+        "400",
+        "Pixels that the target fills, a number or rows and columns, in the place of size; the verdict is then of the object.",
+        "counts of all of them are added up; noise that rows, columns and frames share",
+    ),
     EXTRAPOLATE,
 ];
 /// `[target]`.
@@ -322,6 +330,14 @@ const REQUIREMENT_KEYS: &[Key] = &[
         "\"local\"",
         "The distance that decides: to the nearest state of the alternative, or one of its tangents at the target.",
         "search over T and V; S27; S29",
+    ),
+    Key::row(
+        "of",
+        Value::Choice(&["pixel", "object"]),
+        Means("the object where target.pixels is stated, else a pixel"),
+        "\"object\"",
+        "What must be told: by one pixel, or by all pixels that the target fills, with the noise that they share.",
+        "counts of all pixels of the target are added up",
     ),
     Key::row(
         "speed",

@@ -207,7 +207,10 @@ impl Study {
         demand::add(&self.looked_up);
         let failed = if self.has_classes() {
             self.classes.iter().position(|answer| answer.told_apart != Some(true))
-        } else if kind == DistanceKind::Nearest && self.counts_are_many(&self.bands, &counting) {
+        } else if kind == DistanceKind::Nearest
+            && self.errors_shared().is_none()
+            && self.counts_are_many(&self.bands, &counting)
+        {
             let emissivities: Vec<&[f64]> =
                 std::iter::once(&self.target).chain(&self.alternatives).map(|m| &m.emissivity[..]).collect();
             let scene = self.library_scene();

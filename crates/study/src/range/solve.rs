@@ -99,7 +99,7 @@ impl RangeStudy {
         .of_all(first.baseline_m.clone());
         let Some(camera) = &self.camera else { return Ok(Some(DepthSolutions { baseline_m, ..first })) };
 
-        let noise = self.exposure_noise(camera);
+        let noise = self.exposure_noise(camera)?;
         let stretch = noise.exposure_s / noise.noise_exposure_s;
         let growth = |factor: f64| instrument::noise::growth(stretch * factor, noise.flicker_fraction);
         let frame = camera.frame_s().map(|frame_s| (frame_s / camera.exposure_s, frame_is_over(frame_s)));
@@ -150,12 +150,12 @@ impl RangeStudy {
         }))
     }
 
-    fn exposure_noise(&self, camera: &instrument::Camera) -> ExposureNoise {
-        ExposureNoise {
+    fn exposure_noise(&self, camera: &instrument::Camera) -> Result<ExposureNoise> {
+        Ok(ExposureNoise {
             exposure_s: camera.exposure_s,
             noise_exposure_s: camera.noise_exposure_s / f64::from(camera.frames),
-            flicker_fraction: camera.flicker_fraction,
-        }
+            flicker_fraction: camera.lasting_share()?,
+        })
     }
 
     /// Each quantity for one window, seen in a rendered pair or in cubes.
@@ -192,7 +192,7 @@ impl RangeStudy {
                 self.var_diffraction_m2(aperture_m)
             })
         });
-        let exposure = camera.map(|camera| task.exposure(self.exposure_noise(camera)));
+        let exposure = camera.map(|camera| task.exposure(self.exposure_noise(camera)?));
         Ok(Some(DepthSolutions {
             signal: DECIDES,
             depth_m,

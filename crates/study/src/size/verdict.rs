@@ -13,10 +13,7 @@ use hadar::fisher::Nuisance;
 use hadar::identifiability::Status;
 use hadar::identifiability::decision::DecisionLaw;
 use hadar::instrument::Camera;
-use hadar_scenario::{DistanceKind, Scenario};
-
-/// What a verdict is of.
-const PIXEL: &str = "pixel";
+use hadar_scenario::{DistanceKind, Scenario, Scope};
 
 /// The answer to 'can this camera do it' by the cheapest proofs, and no more.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -42,7 +39,7 @@ pub struct Verdict {
     pub fails_by: Vec<Shortfall>,
     /// Yes, no, or that neither is shown; `None` without a camera.
     pub answer: Option<YesNo>,
-    /// What it is of: one pixel.
+    /// What it is of: one pixel, or the object.
     pub scope: &'static str,
     /// The answer, in JSON a sentence.
     pub sentence: Finding,
@@ -96,6 +93,8 @@ pub struct Finding {
     pub conditions: Vec<Condition>,
     /// Pixels on the target, where it is more than one.
     pub pixels: Option<f64>,
+    /// Whether all of them decide together.
+    pub of_object: bool,
 }
 
 /// What was found.
@@ -196,13 +195,14 @@ impl Study {
             alternative,
             conditions: conditions.clone(),
             pixels: self.pixels_on_target(camera),
+            of_object: self.scenario.scope() == Scope::Object,
         };
         let by_distance = (!check.identifiable).then_some(Shortfall::Distance);
         let verdict = Verdict {
             met: Some(false),
             fails_by: by_distance.into_iter().chain(spoiled).collect(),
             answer: Some(YesNo::No),
-            scope: PIXEL,
+            scope: self.scenario.scope().name(),
             sentence,
             statistical_distance: None,
             statistical_distance_nearest: None,
@@ -265,6 +265,8 @@ impl Study {
             pair.proof == NearestProof::Proved && self.scenario.requirement.by == DistanceKind::Nearest;
         // What few counts decide is bounded between two states by photons alone, without what priors say of these.
         let proved = proved && !(few_counts && self.unknowns.has_priors());
+        // With shared errors the contrast of one state stands for those of all.
+        let proved = proved && self.errors_shared().is_none();
         let found_by = if proved { Grade::Proved } else { Grade::Searched };
         let grade = answer.map(|_| found_by.under(&conditions));
         let sentence = Finding {
@@ -278,12 +280,13 @@ impl Study {
             classes: self.classes.get(index).cloned().map(Box::new),
             conditions: conditions.clone(),
             pixels: self.camera.as_ref().and_then(|camera| self.pixels_on_target(camera)),
+            of_object: self.scenario.scope() == Scope::Object,
         };
         Ok(Verdict {
             met,
             fails_by,
             answer,
-            scope: PIXEL,
+            scope: self.scenario.scope().name(),
             sentence,
             statistical_distance: distance,
             statistical_distance_nearest: limit,
@@ -300,6 +303,9 @@ impl Study {
     /// Pixels on a target of a known size, where it is more than one.
     fn pixels_on_target(&self, camera: &Camera) -> Option<f64> {
         let target = &self.scenario.target;
+        if self.scenario.scope() == Scope::Object {
+            return Some(self.extent(camera, target.distance_m).pixels());
+        }
         let across = target.size_m? / camera.footprint_m(target.distance_m?);
         (across > 1.0).then_some(across * across)
     }

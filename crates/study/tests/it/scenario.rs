@@ -7,8 +7,8 @@ use hadar::instrument::figures::NoiseFigures;
 use hadar::units::Spectral;
 use hadar_scenario::{
     Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec, ClassSpec,
-    DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout,
-    Reliability, Requirement, Scenario, Source, Spread, Target, Unknown,
+    DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance,
+    PixelsFilled, Readout, Reliability, Requirement, Scenario, Scope, Source, Spread, Target, Unknown,
 };
 use hadar_testing::seeded;
 use proptest::prelude::*;
@@ -68,6 +68,7 @@ fn the_example_is_the_case_of_the_paper() {
             temperature_k: 310.15,
             distance_m: Some(30.0),
             size_m: None,
+            pixels: None,
             extrapolate: None,
         },
         background: None,
@@ -97,6 +98,7 @@ fn the_example_is_the_case_of_the_paper() {
         requirement: Requirement {
             reliability: Reliability::Distance(1.0),
             by: DistanceKind::Nearest,
+            of: None,
             speed_m_s: Some(13.4112),
             time_s: None,
         },
@@ -224,6 +226,13 @@ fn material() -> impl Strategy<Value = MaterialRef> {
         "[a-z][a-z0-9-]{0,12}".prop_map(MaterialRef::Name),
         "[a-zA-Zé \"'#][a-z0-9 ]{0,6}[a-z](\\.csv)?".prop_map(move |file| MaterialRef::File(absolute(file))),
     ]
+}
+
+fn filled() -> impl Strategy<Value = Option<PixelsFilled>> {
+    proptest::option::of(prop_oneof![
+        (1u32..1_000_000).prop_map(PixelsFilled::All),
+        [1u32..1000, 1u32..1000].prop_map(PixelsFilled::Sides),
+    ])
 }
 
 fn extrapolate() -> impl Strategy<Value = Option<Extrapolation>> {
@@ -397,6 +406,7 @@ prop_compose! {
         by in proptest::sample::select(DistanceKind::ALL.to_vec()),
         skip_uncovered in any::<bool>(),
         speed_m_s in proptest::option::of(above_zero()),
+        (of, filled) in (proptest::option::of(proptest::sample::select(Scope::ALL.to_vec())), filled()),
         (ranged, width, envelope_materials, near, classes) in (
             any::<bool>(), 0.0..1.0, proptest::option::of(proptest::collection::btree_set(material(), 1..3)),
             proptest::option::of(above_zero()), proptest::collection::btree_map("[a-z]{1,6}", class(), 0..3),
@@ -421,7 +431,15 @@ prop_compose! {
         Scenario {
             title,
             classes,
-            target: Target { material, temperature_k, distance_m, size_m, extrapolate: target_extrapolate },
+            target: Target {
+                material,
+                temperature_k,
+                distance_m,
+                size_m,
+                // A size says how many there are.
+                pixels: filled.filter(|_| size_m.is_none()),
+                extrapolate: target_extrapolate,
+            },
             background,
             environment,
             alternatives: Alternatives {
@@ -435,7 +453,7 @@ prop_compose! {
             bands,
             unknown,
             camera,
-            requirement: Requirement { reliability, by, speed_m_s, time_s: speed_m_s.map(f64::recip) },
+            requirement: Requirement { reliability, by, of, speed_m_s, time_s: speed_m_s.map(f64::recip) },
             envelope,
             sensitivity: None,
             categories: Vec::new(),

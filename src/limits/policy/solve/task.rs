@@ -23,6 +23,8 @@ pub struct CameraTask<'a> {
     pub farthest_m: Option<f64>,
     /// Side of the target, m; it fills the pixel, however large, where `None`.
     pub size_m: Option<f64>,
+    /// Whether all pixels that it fills count together.
+    pub of_object: bool,
 }
 
 impl CameraTask<'_> {

@@ -18,7 +18,15 @@ fn seen(camera: &Camera) -> Counting {
 }
 
 fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
-    CameraTask { camera, bands, required, distance_m: Some(30.0), farthest_m: None, size_m: None }
+    CameraTask {
+        camera,
+        bands,
+        required,
+        distance_m: Some(30.0),
+        farthest_m: None,
+        size_m: None,
+        of_object: false,
+    }
 }
 
 #[test]

@@ -34,7 +34,15 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
     camera.exposure_s = draw.scale(1e-9, 1e3);
     let distance_m = draw.chance(0.5).then(|| draw.scale(0.1, 1e5));
     let required = draw.scale(1e-3, 40.0);
-    let task = CameraTask { camera: &camera, bands, required, distance_m, farthest_m: None, size_m: None };
+    let task = CameraTask {
+        camera: &camera,
+        bands,
+        required,
+        distance_m,
+        farthest_m: None,
+        size_m: None,
+        of_object: false,
+    };
     let quantity = Quantity::OF_CAMERA[draw.below(Quantity::OF_CAMERA.len())];
     let view = View::at(distance_m);
     let mut distance = |trial: &Trial| {

@@ -187,7 +187,15 @@ fn requirement(inputs: &Value, vector: &Value) -> Answers {
     let name = vector["answers"].as_object().unwrap().keys().next().unwrap();
     let quantity = Quantity::ALL.into_iter().find(|quantity| quantity.key() == name).unwrap();
     let bands = &scene.bands;
-    let task = CameraTask { camera: &camera, bands, required, distance_m, farthest_m: None, size_m: None };
+    let task = CameraTask {
+        camera: &camera,
+        bands,
+        required,
+        distance_m,
+        farthest_m: None,
+        size_m: None,
+        of_object: false,
+    };
     let mut solver = LocalSolver::new(bands, &scene.surroundings, scene.unknowns.clone());
     let solution = task.solve(quantity, |trial: &Trial| {
         let counting = trial.camera.counting(bands, &View::at(trial.distance_m));

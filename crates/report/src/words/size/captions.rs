@@ -17,6 +17,9 @@ pub(crate) fn emissivities(target: &str, shown: &[&str], all: usize) -> String {
 pub(crate) const INFORMATION: &str =
     "Information log₂ 2P; 1 bit is certainty. The camera's photons grow with its exposure.";
 
+/// Below the distance of an object over its readings.
+pub(crate) const OBJECT: &str = "More frames to the right. What pixels, rows, columns and emissivities have in common no number of frames averages away.";
+
 /// Below the two spectra that look alike.
 pub(crate) fn nearest(alternative: &str, celsius: f64, lighting: &[f64], equal: bool) -> String {
     let lighting: Vec<String> = lighting.iter().map(|v| format!("{v:.3}")).collect();

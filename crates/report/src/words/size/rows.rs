@@ -5,6 +5,7 @@ use crate::words::probability::probability;
 use crate::words::size::no_limit;
 use hadar::identifiability::decision::DecisionLaw;
 use hadar::policy::{Quantity, Solution};
+use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_study::{PairResult, Sizing, Study};
 
@@ -90,6 +91,50 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
     rows
 }
 
+/// What all pixels of the object say together; nothing of one pixel.
+#[must_use]
+pub fn of_object(result: &Sizing) -> Vec<Row> {
+    let Some(object) = &result.object else { return Vec::new() };
+    let mut rows = Vec::new();
+    let mut row = |label, value, key| rows.push(Row { label, value, key });
+    let readings = object.pixels * f64::from(object.frames);
+    let sides = [object.rows, object.columns].map(|side| significant(side, 3)).join(" x ");
+    let frames = if object.frames > 1 { format!(", {} frames", object.frames) } else { String::new() };
+    row(
+        "pixels that it fills",
+        format!("{} ({sides}{frames})", significant(object.pixels, 3)),
+        "object.pixels",
+    );
+    let one = between(object.distance_of_one_bounds, 2);
+    row("d of one pixel in one frame", one, "object.distance_of_one_bounds");
+    row("d of all readings", between(object.distance_bounds, 2), "object.distance_bounds");
+    let worth = format!("{} of {}", significant(object.effective_readings, 2), significant(readings, 3));
+    row("worth so many independent readings", worth, "object.effective_readings");
+    match object.ceiling_bounds {
+        Some(ceiling) => {
+            let shares = object.ceiling_made_of.iter();
+            let shares: Vec<String> =
+                shares.map(|one| format!("{} {}", one.label, share(one.share))).collect();
+            row("d with frames without end", between(ceiling, 2), "object.ceiling_bounds");
+            row("  what is left there", shares.join(", "), "object.ceiling_made_of");
+        }
+        None => row(
+            "d with frames without end",
+            "grows as the root of the frames".into(),
+            "object.ceiling_bounds",
+        ),
+    }
+    if let Some(frames) = object.frames_worth {
+        row("frames that reach 90 % of that", fixed(frames, 0), "object.frames_worth");
+    }
+    let errors = match object.emissivity_error {
+        Some(error) => format!("{error} rms, the same in all pixels, are in these figures"),
+        None => "not in these figures (state [sensitivity])".into(),
+    };
+    row("errors of the emissivities", errors, "object.emissivity_error");
+    rows
+}
+
 /// What would do, quantity by quantity; where nothing helps for one and the same reason a single one without a name.
 #[must_use]
 pub fn solved(result: &Sizing, units: Units) -> Vec<Solved> {
@@ -143,6 +188,7 @@ fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> 
         (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
             format!("any: {reason}")
         }
+        (None, Some(reason)) if solution.statistical_distance.is_nan() => format!("not solved: {reason}"),
         (None, Some(reason)) => {
             format!("none suffices: {reason} (reaches d = {})", significant(solution.statistical_distance, 2))
         }

@@ -42,6 +42,14 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         }
         out.push('\n');
     }
+    let of_object = rows::of_object(result);
+    if !of_object.is_empty() {
+        let _ = writeln!(out, "All readings of the object together");
+        for row in of_object {
+            let _ = writeln!(out, "  {:<34} {}", row.label, row.value);
+        }
+        out.push('\n');
+    }
     out.push_str(&classes::text(&result.classes));
     out.push_str(&solutions(result, study.units()));
     out.push_str(&sensitivity(result));

@@ -13,6 +13,7 @@ use super::scatter::Scatter;
 use crate::{Study, Surface};
 use hadar::fisher::Counting;
 use hadar::scene::State;
+use hadar::spectrum::Bands;
 
 /// Deviation of d.
 pub(crate) fn sigma(
@@ -36,8 +37,6 @@ pub(crate) fn gradients(
     distance: f64,
 ) -> [Vec<f64>; 2] {
     let (bands, surroundings) = (&study.bands, &study.surroundings);
-    let nodes = bands.nodes_cm1().len();
-    let (none, full) = (vec![0.0; nodes], vec![1.0; nodes]);
     let kappa = counting.counts_per_radiance;
     let surfaces = [(&study.target, &study.state), (alternative, nearest)];
     let roots = surfaces.map(|(surface, state)| {
@@ -45,21 +44,27 @@ pub(crate) fn gradients(
         let root = signal.iter().enumerate().map(|(w, s)| (kappa * s + counting.var_added(w)).sqrt());
         root.collect::<Vec<f64>>()
     });
-    let per_band = bands.sum_nodes(&full);
+    let per_band = bands.sum_nodes(&vec![1.0; bands.nodes_cm1().len()]);
     [0, 1].map(|which| {
         let (_, state) = surfaces[which];
         let sign = if which == 0 { 1.0 } else { -1.0 };
-        // A surface is as bright as its emissivity says, between a perfect mirror and a blackbody.
-        let (mirror, black) = (surroundings.signal(&none, state), surroundings.signal(&full, state));
         let of_band = (0..bands.len()).flat_map(|w| {
             let r = roots[0][w] - roots[1][w];
             let slope = sign * kappa * r / (2.0 * distance * roots[which][w]);
             std::iter::repeat_n(slope, per_band[w] as usize)
         });
-        let contrast = black.iter().zip(&mirror).map(|(black, mirror)| black - mirror);
-        let weighed = contrast.zip(bands.weights_cm1()).map(|(contrast, weight)| contrast * weight);
+        let weighed = contrast(study, bands, state);
         of_band.zip(weighed).map(|(slope, weighed)| slope * weighed).collect()
     })
+}
+
+/// ∂S_w/∂e_j = w_j (B − X)(ν_j) at every node of the bands: a surface is as bright as its emissivity says, between a perfect mirror and a
+/// blackbody.
+pub(crate) fn contrast(study: &Study, bands: &Bands, state: &State) -> Vec<f64> {
+    let nodes = bands.nodes_cm1().len();
+    let [mirror, black] = [0.0, 1.0].map(|e| study.surroundings.signal(&vec![e; nodes], state));
+    let contrast = black.iter().zip(&mirror).map(|(black, mirror)| black - mirror);
+    contrast.zip(bands.weights_cm1()).map(|(contrast, weight)| contrast * weight).collect()
 }
 
 impl Scatter<'_> {

@@ -49,7 +49,7 @@ impl Scatter<'_> {
 
 impl Study {
     /// How the target's emissivity, and that of alternative `index`, scatter: as their classes say, else as `spec` does.
-    pub(super) fn scatters(
+    pub(crate) fn scatters(
         &self,
         index: usize,
         spec: SensitivitySpec,

@@ -1,0 +1,367 @@
+//! Noise in three dimensions: what readings of one array have in common, beside the noise that each pixel has for itself.
+//!
+//! A reading of pixel (v, h) in frame t is its signal plus independent deviations that differ from pixel to pixel (VH), from row to
+//! row (V), from column to column (H), and from frame to frame of each (TVH, TV, TH, T). A NETD is TVH; the other six are here. Of
+//! the sum over h rows and w columns of an object in one frame the variance is
+//!
+//! | term | key | variance, counts² | grows as |
+//! |---|---|---|---|
+//! | σ_VH | `fixed_pattern` | h w σ² | t² |
+//! | σ_V | `row_noise` | h w² σ² | t² |
+//! | σ_H | `column_noise` | h² w σ² | t² |
+//! | σ_TV | `temporal_row_noise` | h w² σ² | t |
+//! | σ_TH | `temporal_column_noise` | h² w σ² | t |
+//! | σ_T | `frame_noise` | h² w² σ² | t |
+//!
+//! so that the mean of N frames has σ_TVH²/(Nhw) + σ_VH²/(hw) + σ_TV²/(Nh) + σ_TH²/(Nw) + σ_V²/h + σ_H²/w + σ_T²/N. They are
+//! stated in K as the NETD is, and σ = K dN/dT counts of a reading follows at its conditions. A pattern that is a new one after
+//! the time τ has (2τ/t)(1 − (τ/t)(1 − exp(−t/τ))) of its variance left in the mean over t.
+//!
+//! Assumptions: the terms are independent, also between bands (each filter has a pattern of its own); a pattern is an offset, the
+//! same at all signals. Offsets that are one pattern in all bands take away one direction of the spectrum alone.
+//!
+//! Source: J. D'Agostino, C. Webb, Proc. SPIE 1488, 110 (1991), doi:10.1117/12.45794 (three-dimensional noise).
+
+use super::budget::BandLine;
+use super::equivalents::{NetdConditions, per_kelvin};
+use super::{Camera, View};
+use crate::error::Result;
+
+/// What is stated of noise that readings share, K at the conditions of the NETD.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Deserialize, serde::Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatternFigures {
+    /// σ_VH, from pixel to pixel, K.
+    pub pixel_k: Option<f64>,
+    /// σ_V, from row to row, K.
+    pub row_k: Option<f64>,
+    /// σ_H, from column to column, K.
+    pub column_k: Option<f64>,
+    /// σ_TV, from row to row and frame to frame, K.
+    pub temporal_row_k: Option<f64>,
+    /// σ_TH, from column to column and frame to frame, K.
+    pub temporal_column_k: Option<f64>,
+    /// σ_T, from frame to frame, K.
+    pub frame_k: Option<f64>,
+    /// Time after which the fixed ones are new ones, s; never where `None`.
+    pub drift_s: Option<f64>,
+}
+
+/// A term of the noise in three dimensions.
+#[derive(Debug)]
+struct Term {
+    label: &'static str,
+    key: &'static str,
+    is_fixed: bool,
+    /// Whether rows, and columns, have their own.
+    of_each: [bool; 2],
+}
+
+const fn term(label: &'static str, key: &'static str, is_fixed: bool, of_each: [bool; 2]) -> Term {
+    Term { label, key, is_fixed, of_each }
+}
+
+/// In the order of the fields.
+const TERMS: [Term; 6] = [
+    term("fixed pattern", "fixed_pattern", true, [true, true]),
+    term("row noise", "row_noise", true, [true, false]),
+    term("column noise", "column_noise", true, [false, true]),
+    term("temporal row noise", "temporal_row_noise", false, [true, false]),
+    term("temporal column noise", "temporal_column_noise", false, [false, true]),
+    term("frame noise", "frame_noise", false, [false, false]),
+];
+
+impl PatternFigures {
+    const fn sigmas_k(&self) -> [Option<f64>; 6] {
+        [self.pixel_k, self.row_k, self.column_k, self.temporal_row_k, self.temporal_column_k, self.frame_k]
+    }
+
+    /// Keys of those of one kind, fixed or from frame to frame, that are not stated.
+    #[must_use]
+    pub fn unstated(&self, is_fixed: bool) -> Vec<&'static str> {
+        let silent = TERMS.iter().zip(self.sigmas_k()).filter(|(_, sigma_k)| sigma_k.is_none());
+        silent.filter(|(term, _)| term.is_fixed == is_fixed).map(|(term, _)| term.key).collect()
+    }
+
+    const fn of_sigmas(
+        [pixel_k, row_k, column_k, temporal_row_k, temporal_column_k, frame_k]: [Option<f64>; 6],
+        drift_s: Option<f64>,
+    ) -> Self {
+        Self { pixel_k, row_k, column_k, temporal_row_k, temporal_column_k, frame_k, drift_s }
+    }
+}
+
+/// The noise that readings of a camera share.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Pattern {
+    /// What is stated of it.
+    #[serde(flatten)]
+    stated: PatternFigures,
+    /// For what.
+    at: NetdConditions,
+}
+
+impl Pattern {
+    /// What is stated, and the conditions for which it is.
+    #[must_use]
+    pub const fn new(stated: PatternFigures, at: NetdConditions) -> Self {
+        Self { stated, at }
+    }
+
+    /// Keys of those of one kind, fixed or from frame to frame, that nobody stated.
+    #[must_use]
+    pub fn unstated(&self, is_fixed: bool) -> Vec<&'static str> {
+        self.stated.unstated(is_fixed)
+    }
+
+    fn sigmas_k(&self) -> [f64; 6] {
+        self.stated.sigmas_k().map(Option::unwrap_or_default)
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.sigmas_k() == [0.0; 6]
+    }
+
+    /// Whether there is some that no number of frames averages away.
+    #[must_use]
+    pub fn has_fixed(&self) -> bool {
+        self.stated.drift_s.is_none() && self.sigmas_k()[..3].iter().any(|sigma_k| *sigma_k > 0.0)
+    }
+
+    /// As it would be stated for other conditions; what is not stated stays so.
+    #[must_use]
+    pub(super) fn stated_at(&self, camera: &Camera, at: NetdConditions) -> PatternFigures {
+        if self.is_none() || at == self.at {
+            return self.stated;
+        }
+        let factor = per_kelvin(camera, self.at) / per_kelvin(camera, at);
+        PatternFigures::of_sigmas(self.stated.sigmas_k().map(|k| k.map(|k| k * factor)), self.stated.drift_s)
+    }
+
+    /// Share of the variance of a pattern that is left in the mean over a time, s.
+    fn left_after(&self, time_s: f64) -> f64 {
+        let Some(drift_s) = self.stated.drift_s else { return 1.0 };
+        let x = time_s / drift_s;
+        // (2/x)(1 − (1 − e⁻ˣ)/x) loses its digits near 0, where it is 1 − x/3 + x²/12.
+        if x < 1e-4 { 1.0 - x / 3.0 } else { 2.0 / x * (1.0 + (-x).exp_m1() / x) }
+    }
+}
+
+impl Camera {
+    /// The noise that readings share as lines of the budget of each of so many bands, one variance for all of them, counts² of the sum over
+    /// the pixels of the view.
+    pub(super) fn shared_noise(&self, bands: usize, view: &View) -> Vec<BandLine> {
+        let pattern = &self.pattern;
+        if pattern.is_none() {
+            return Vec::new();
+        }
+        let per_kelvin = per_kelvin(self, pattern.at);
+        let stretch = self.integration_s() / self.noise_exposure_s;
+        let left = pattern.left_after(self.integration_s());
+        let [rows, columns] = view.extent.sides();
+        let pixels = rows * columns;
+        let mut lines = Vec::new();
+        for (term, sigma_k) in TERMS.iter().zip(pattern.sigmas_k()) {
+            let [of_row, of_column] = term.of_each;
+            let alike = (if of_row { 1.0 } else { rows }) * (if of_column { 1.0 } else { columns });
+            let grown = if term.is_fixed { stretch * stretch * left } else { stretch };
+            let var = (sigma_k * per_kelvin).powi(2) * grown * pixels * alike;
+            lines.push(BandLine {
+                label: term.label,
+                var_counts: vec![var; bands],
+                scaling: if term.is_fixed { "t^2" } else { "t" },
+                source: term.key,
+                with_photons: false,
+            });
+        }
+        lines
+    }
+
+    /// Share of the variance of the electronic noise of a band, at the exposure for which it is stated, that grows as the square of the
+    /// time: flicker and fixed patterns. Of one pixel, mean over bands of 1 cm⁻¹ in its range.
+    ///
+    /// # Errors
+    /// As [`Camera::own_bands`].
+    pub fn lasting_share(&self) -> Result<f64> {
+        if self.pattern.is_none() {
+            return Ok(self.flicker_fraction);
+        }
+        let bands = &self.received(&self.own_bands()?);
+        let once = Self { exposure_s: self.noise_exposure_s, frames: 1, ..self.clone() };
+        let mean = |lines: &[f64]| lines.iter().sum::<f64>() / lines.len() as f64;
+        let sigma = once.reading_sigma(bands).unwrap_or_default();
+        let own = if sigma.is_empty() { 0.0 } else { mean(&sigma.iter().map(|s| s * s).collect::<Vec<_>>()) };
+        let [mut lasting, mut all] = [self.flicker_fraction * own, own];
+        for line in once.shared_noise(1, &View::default()) {
+            all += line.var_counts[0];
+            if line.scaling == "t^2" {
+                lasting += line.var_counts[0];
+            }
+        }
+        Ok(if all > 0.0 { lasting / all } else { 0.0 })
+    }
+}
+
+#[cfg(all(test, feature = "library"))]
+mod tests {
+    use super::*;
+    use crate::instrument::{Extent, presets};
+    use crate::spectrum::Bands;
+    use rand::SeedableRng;
+    use rand::rngs::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    fn boson() -> Camera {
+        let mut preset = presets::find("flir-boson-640-14mm").unwrap();
+        preset.figures.f_number = Some(1.0);
+        preset.camera().unwrap().checked().unwrap()
+    }
+
+    fn bands() -> Bands {
+        Bands::uniform(800.0, 1200.0, 200.0).unwrap()
+    }
+
+    /// Deviation of the mean over an object in K: that of the sum over its pixels, over what 1 K makes of it.
+    fn sigma_k(camera: &Camera, extent: Extent, labels: &[&str]) -> f64 {
+        let view = View { extent, ..View::at(None) };
+        let lines = camera.added_noise(&bands(), &view);
+        let var: f64 =
+            lines.iter().filter(|line| labels.contains(&line.label)).map(|line| line.var_counts[0]).sum();
+        let stretch = camera.integration_s() / camera.noise_exposure_s;
+        var.sqrt() / (extent.pixels() * stretch * per_kelvin(camera, camera.pattern.at))
+    }
+
+    /// Table 13 of the Boson's sheet: 40 mK a pixel, 14 mK rows and columns each. By hand: a pixel of 60 averaged frames √(2·14² + 40²/60)
+    /// = 20.5 mK; 30 × 10 pixels √(14²/30 + 14²/10 + 40²/(60·300)) = 5.12 mK, and no less with a hundred times as many frames.
+    #[test]
+    fn rows_and_columns_do_not_average_away() {
+        let of = |frames: u32, sides: [f64; 2]| {
+            let camera = Camera { frames, ..boson() };
+            let labels = ["Johnson noise", "row noise", "column noise", "fixed pattern"];
+            1e3 * sigma_k(&camera, Extent::new(sides).unwrap(), &labels)
+        };
+        // A NETD holds the shot noise of its photons, some 0.1 % of it.
+        assert!((of(60, [1.0, 1.0]) / 20.463 - 1.0).abs() < 3e-4, "{}", of(60, [1.0, 1.0]));
+        assert!((of(60, [30.0, 10.0]) / 5.1206 - 1.0).abs() < 1e-4, "{}", of(60, [30.0, 10.0]));
+        assert!((of(6000, [30.0, 10.0]) / 5.1121 - 1.0).abs() < 1e-4, "{}", of(6000, [30.0, 10.0]));
+    }
+
+    /// Cubes drawn reading by reading, with every term of its own size; four deviations of a variance of 4000 sums.
+    #[test]
+    fn sums_over_drawn_cubes_scatter_as_the_budget_says() {
+        let (rows, columns, frames, draws) = (4usize, 3usize, 5usize, 4000);
+        let terms_k = [0.03, 0.02, 0.025, 0.04, 0.035, 0.015];
+        let stated = PatternFigures::of_sigmas(terms_k.map(Some), None);
+        let own = boson();
+        let camera = Camera {
+            frames: frames as u32,
+            exposure_s: own.noise_exposure_s,
+            pattern: Pattern::new(stated, own.pattern.at),
+            ..own
+        };
+        let extent = Extent::new([rows as f64, columns as f64]).unwrap();
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let mut normals =
+            |count: usize| -> Vec<f64> { (0..count).map(|_| StandardNormal.sample(&mut random)).collect() };
+        let [vh, v, h, tv, th, t] = terms_k;
+        let mut squares = 0.0;
+        for _ in 0..draws {
+            let (of_pixel, of_row, of_column) = (normals(rows * columns), normals(rows), normals(columns));
+            let (rows_t, columns_t, frames_t) =
+                (normals(frames * rows), normals(frames * columns), normals(frames));
+            let mut sum = 0.0;
+            for frame in 0..frames {
+                for row in 0..rows {
+                    for column in 0..columns {
+                        sum += vh * of_pixel[row * columns + column]
+                            + v * of_row[row]
+                            + h * of_column[column]
+                            + tv * rows_t[frame * rows + row]
+                            + th * columns_t[frame * columns + column]
+                            + t * frames_t[frame];
+                    }
+                }
+            }
+            squares += sum * sum;
+        }
+        let readings = (rows * columns * frames) as f64;
+        let drawn = (squares / f64::from(draws)).sqrt() / readings;
+        let labels = TERMS.map(|term| term.label);
+        let budget = sigma_k(&camera, extent, &labels);
+        assert!((drawn / budget - 1.0).abs() < 4.0 * (0.5 / f64::from(draws)).sqrt(), "{drawn} {budget}");
+    }
+
+    /// Against the mean of exp(−|s − s′|/τ) over a square, by a sum over 400 × 400 midpoints.
+    #[test]
+    fn a_pattern_that_drifts_averages_away() {
+        let own = boson();
+        for ratio in [1e-6, 1e-3, 0.5, 3.0, 40.0] {
+            let stated = PatternFigures { drift_s: Some(2.0), ..own.pattern.stated };
+            let found = Pattern::new(stated, own.pattern.at).left_after(2.0 * ratio);
+            let steps = 400;
+            let at = |i: i32| ratio * (f64::from(i) + 0.5) / f64::from(steps);
+            let sum: f64 = (0..steps)
+                .flat_map(|i| (0..steps).map(move |j| (i, j)))
+                .map(|(i, j)| (-(at(i) - at(j)).abs()).exp())
+                .sum();
+            let exact = sum / f64::from(steps * steps);
+            assert!((found / exact - 1.0).abs() < 2e-3, "{ratio}: {found} {exact}");
+        }
+    }
+
+    /// One pixel without patterns is what it was, bit for bit; a pattern never makes anything better, and more pixels or frames never worse.
+    #[test]
+    fn more_readings_are_never_worse_and_patterns_never_better() {
+        let bands = bands();
+        let quality = |camera: &Camera, extent: Extent| {
+            let counting = camera.counting(&bands, &View { extent, ..View::at(None) });
+            counting.counts_per_radiance / counting.var_added[0].sqrt()
+        };
+        let with = |sigmas_k: [f64; 6], drift_s: Option<f64>, frames: u32| {
+            let own = boson();
+            let stated = PatternFigures::of_sigmas(sigmas_k.map(Some), drift_s);
+            Camera { frames, pattern: Pattern::new(stated, own.pattern.at), ..own }
+        };
+        let mut random = ChaCha8Rng::seed_from_u64(11);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        for _ in 0..300 {
+            let sigmas_k = [(); 6].map(|()| (draw() - 1.0).max(0.0) * 0.05);
+            let drift_s = Some(draw().exp()).filter(|_| draw() > 0.0);
+            let frames = (draw().abs() * 50.0) as u32 + 1;
+            let sides = [1.0 + draw().abs() * 20.0, 1.0 + draw().abs() * 20.0];
+            let extent = Extent::new(sides).unwrap();
+            let camera = with(sigmas_k, drift_s, frames);
+            let here = quality(&camera, extent);
+            let silent = quality(&with([0.0; 6], None, frames), extent);
+            assert!(here <= silent * (1.0 + 1e-12));
+            let white = quality(&with([0.0; 6], None, 1), Extent::ONE);
+            let root = (extent.pixels() * f64::from(frames)).sqrt();
+            assert!(
+                (silent / (white * root) - 1.0).abs() < 1e-12,
+                "without anything in common the root of the readings"
+            );
+            for more in [[sides[0] + 1.0, sides[1]], [sides[0], sides[1] + 1.0]] {
+                assert!(quality(&camera, Extent::new(more).unwrap()) >= here * (1.0 - 1e-12));
+            }
+            assert!(quality(&with(sigmas_k, drift_s, frames + 1), extent) >= here * (1.0 - 1e-12));
+            for term in 0..6 {
+                let mut noisier = sigmas_k;
+                noisier[term] += 0.01;
+                assert!(quality(&with(noisier, drift_s, frames), extent) <= here);
+            }
+        }
+    }
+
+    #[test]
+    fn a_pattern_is_stated_again_as_it_was() {
+        let camera = boson();
+        assert_eq!(crate::instrument::CameraSpec::of(&camera).pattern, camera.pattern.stated);
+        // Behind a slower lens 1 K makes fewer counts, and the same counts more K.
+        let mut slow = camera.pattern.at;
+        slow.f_number *= 2.0;
+        let again = camera.pattern.stated_at(&camera, slow);
+        assert!((again.row_k.unwrap() / 56e-3 - 1.0).abs() < 1e-12 && again.pixel_k.is_none());
+    }
+}
