@@ -142,13 +142,14 @@ conditions! {
         /// Share of the draws.
         share_met: f64,
     } = "emissivities", Proviso, "sensitivity.emissivity_error";
-    /// The emissivities of an object's materials are known better than to an error, the same in all of its pixels, with which what is proved
-    /// does not reach the requirement.
+    /// The emissivities of an object's materials are as entered: nobody states their errors, which all of its pixels share.
     SharedErrors {
         /// Root mean square.
         error: f64,
         /// Statistical distance with such errors, at most.
         distance: f64,
+        /// Whether what is proved with them does not reach the requirement.
+        undone: bool,
     } = "shared-emissivity-errors", Proviso, "sensitivity.emissivity_error";
     /// The emissivity of what is measured is exactly as entered.
     EmissivityKnown = "emissivity-known", Assumed, "sensitivity.emissivity_error";

@@ -65,7 +65,7 @@ impl Study {
         let is_object = self.scenario.scope() == Scope::Object;
         found.extend(self.of_pair(camera, bounds_lower(pair), reached.errors.filter(|_| !is_object)));
         if let (true, Some(other)) = (is_object && met, self.alternative(&pair.alternative)) {
-            found.extend(self.undone_by_errors(other)?);
+            found.extend(self.usual_errors(other)?);
         }
         if met {
             found.extend(self.ranges_that_decide(true, &|range| self.holds_in(range))?);
@@ -100,7 +100,7 @@ impl Study {
             let errors = errors.map(|found| [found.error, found.share_met]);
             found.extend(own.of_pair(camera, bounds_lower(pair), errors));
             for other in alternative.into_iter().filter(|_| is_object) {
-                found.extend(own.undone_by_errors(other)?);
+                found.extend(own.usual_errors(other)?);
             }
         }
         if self.scenario.scope() == Scope::Object && others.clone().next().is_some() {

@@ -115,8 +115,8 @@ impl Errors<'_> {
 }
 
 impl Study {
-    /// That errors of the emissivities as they usually are would undo what is told of an object, where the scenario states none.
-    pub(crate) fn undone_by_errors(&self, alternative: &Surface) -> Result<Option<Condition>> {
+    /// What errors of the emissivities as they usually are do to what is told of an object, where the scenario states none.
+    pub(crate) fn usual_errors(&self, alternative: &Surface) -> Result<Option<Condition>> {
         let Some(counting) = self.counting().filter(|_| self.scenario.sensitivity.is_none()) else {
             return Ok(None);
         };
@@ -133,9 +133,8 @@ impl Study {
             (found, state),
             (spec, false),
         )?;
-        let undone = with.lower < self.required;
-        Ok(undone
-            .then_some(Condition::SharedErrors { error: spec.emissivity_error, distance: with.distance }))
+        let (undone, distance) = (with.lower < self.required, with.distance);
+        Ok(Some(Condition::SharedErrors { error: spec.emissivity_error, distance, undone }))
     }
 
     /// The errors that are stated and that count: of an object.

@@ -113,7 +113,11 @@ impl Say for Condition {
                 "the emissivities are known better than to {error} rms ({} of draws with such errors meet the requirement)",
                 share(*share_met)
             ),
-            Self::SharedErrors { error, distance } => format!(
+            Self::SharedErrors { error, distance, undone: false } => format!(
+                "the emissivities are as entered (with errors of {error} rms, which all pixels share, d is {} at most, and enough)",
+                significant(*distance, 2)
+            ),
+            Self::SharedErrors { error, distance, .. } => format!(
                 "the emissivities are known better than to {error} rms (with such errors, which all pixels share, d is {} at most)",
                 significant(*distance, 2)
             ),
@@ -211,8 +215,8 @@ pub(crate) const EXPLAINED: [[&str; 3]; 28] = [
     ],
     [
         "shared-emissivity-errors",
-        "Errors of the emissivities as they usually are would undo the answer: all pixels of an object share them, and no number of pixels or \
-         frames averages them away.",
+        "Nobody states how well the emissivities are known: all pixels of an object share their errors, and no number of pixels or frames \
+         averages them away.",
         "Measure these emissivities, and state sensitivity.emissivity_error, which the verdict then has in it.",
     ],
     [

@@ -7,6 +7,7 @@ mod companion;
 mod conditions;
 mod fuzz_readers;
 mod keys;
+mod object;
 mod ordered;
 mod published;
 mod rule_air;

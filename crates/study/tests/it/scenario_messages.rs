@@ -114,9 +114,9 @@ fn a_key_that_is_not_known_or_out_of_range_is_named() {
         r#"extrapolate = "yes""# =>
             r#"a.toml:4: target.extrapolate: `yes` is not known here; write "hold" or "linear""#,
         "zzz = 1" =>
-            "a.toml:4: target: there is no key `zzz`; what may stand here is `material`, `temperature`, `distance`, `size` or `extrapolate`",
+            "a.toml:4: target: there is no key `zzz`; what may stand here is `material`, `temperature`, `distance`, `size`, `pixels` or `extrapolate`",
         r#""a\nb" = 1"# =>
-            r#"a.toml:4: target: there is no key `a\nb`; what may stand here is `material`, `temperature`, `distance`, `size` or `extrapolate`"#,
+            r#"a.toml:4: target: there is no key `a\nb`; what may stand here is `material`, `temperature`, `distance`, `size`, `pixels` or `extrapolate`"#,
         "[targets]" =>
             "a.toml:4: there is no key `targets`; the nearest are `target`, `alternatives`",
         "title = 5" =>

@@ -309,7 +309,11 @@ fn assumptions_that_fail_are_warned_of() {
     let boson =
         SCENE.replace("\"flir-a325sc\"", "\"flir-boson-640-14mm\"\nf_number = 1.0\nreadout = \"sequential\"");
     assert!(codes(&size(&boson)).contains(&"camera-figure-assumed"));
-    let stated = size(&SCENE.replace("netd =", "full_well = 1e12\nquantisation_bits = 16\nnetd ="));
+    let stated = size(&SCENE.replace(
+        "netd =",
+        "full_well = 1e12\nquantisation_bits = 16\n\
+         fixed_pattern = \"0 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\nnetd =",
+    ));
     assert!(!codes(&stated).contains(&"camera-figure-assumed"));
     // A pixel as large as the blur, and bunching that is in the noise.
     let sharp = size(&SCENE.replace("netd =", "pixel = \"20 um\"\nnetd ="));
