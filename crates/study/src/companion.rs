@@ -21,6 +21,7 @@ use hadar::policy::practice::observer::Law;
 use hadar::policy::practice::resolution::{BACKGROUND_K, PERCEPTION, Transfer, mrtd_k, netd_k};
 use hadar::policy::practice::{ObserverTask, PIXELS_PER_CYCLE, Subtense};
 use hadar::spectrum::Bands;
+use hadar_scenario::Scope;
 
 /// What a companion table is made of. What is not given makes rows without numbers.
 #[derive(Debug, Clone, Copy)]
@@ -46,6 +47,8 @@ pub struct Told<'a> {
     pub alternative: &'a str,
     /// Statistical distance of one pixel, in all bands and frames, by the nearest distance.
     pub statistical_distance: f64,
+    /// Pixels of an object, where the distance is that of all of them together.
+    pub pixels: Option<f64>,
 }
 
 impl Study {
@@ -74,6 +77,7 @@ impl Study {
             target: &pair.target,
             alternative: &pair.alternative,
             statistical_distance,
+            pixels: self.pixels_of_object(self.scenario.target.distance_m),
         };
         Companion::of(&Given {
             camera: self.camera.as_ref(),
@@ -82,6 +86,14 @@ impl Study {
             distance_m: self.scenario.target.distance_m,
             told: pair.statistical_distance_nearest.map(told),
         })
+    }
+}
+
+impl Study {
+    /// Pixels of the object at a distance; `None` where the verdict is of one pixel.
+    pub(crate) fn pixels_of_object(&self, distance_m: Option<f64>) -> Option<f64> {
+        let camera = self.camera.as_ref().filter(|_| self.scenario.scope() == Scope::Object)?;
+        Some(self.extent(camera, distance_m).pixels())
     }
 }
 
@@ -100,7 +112,9 @@ impl Companion {
         rows.push(seen.netd());
         rows.extend(tasks.map(|task| seen.probability(task)));
         rows.extend(tasks.map(|task| seen.resolvable(task)));
-        rows.extend([seen.material(), seen.material_of_all_pixels()]);
+        // Of an object nothing is known of one pixel of it.
+        rows.extend(given.told.is_none_or(|told| told.pixels.is_none()).then(|| seen.material()));
+        rows.push(seen.material_of_all_pixels());
         Ok(Self {
             camera: given.camera.map(|camera| camera.name.clone()),
             size_m: given.size_m,
@@ -245,6 +259,14 @@ impl<'a> Seen<'a> {
     /// Of all pixels that the target covers: d √A with A areas of a pixel, since a pixel of which it fills the share φ adds no more
     /// than φ d² to d²: its signal is φ of that of a full one, its other noise no less than φ of it.
     fn material_of_all_pixels(&self) -> CompanionRow {
+        if let Some((told, pixels)) = self.given.told.and_then(|told| Some((told, told.pixels?))) {
+            let distance = told.statistical_distance;
+            return CompanionRow::new(Measure::MaterialOfAllPixels, None)
+                .under("pixels", pixels)
+                .of("target", told.target)
+                .of("alternative", told.alternative)
+                .with(Ok(vec![distance, detection::probability(distance)]));
+        }
         // Within one pixel that share is in d already.
         self.bound(Measure::MaterialOfAllPixels, self.across.map(|pixels| pixels.max(1.0)))
     }

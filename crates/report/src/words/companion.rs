@@ -45,7 +45,7 @@ impl Say for Caveat {
             }
             Self::AllAlike => {
                 "no algorithm is right more often by all pixels of a square target whose pixels are all in the state of the \
-                 scenario, their noise independent; a limit, not a promise; material, not shape"
+                 scenario, their noise independent where the verdict is of one; a limit, not a promise; material, not shape"
             }
         };
         words.into()

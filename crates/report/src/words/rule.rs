@@ -115,6 +115,9 @@ impl Say for Quotable {
                  forward at {speed}"
             );
         }
+        if self.of_object {
+            out += ", by all pixels that surely lie on the target together, whose emissivities are known exactly";
+        }
         out += ".";
         if let Some(hardware) = self.hardware_m2_s {
             out += &format!(
@@ -193,10 +196,14 @@ impl Say for Definition {
 /// That it does not tell the pair.
 impl Say for IdealCamera {
     fn say(&self) -> String {
+        let filled = match self.pixels {
+            1.0 => "target filling the pixel".to_owned(),
+            pixels => format!("target filling {} pixels", significant(pixels, 3)),
+        };
         let distance = self.distance_m.map_or_else(String::new, |z| format!(" at {}", self.units.length(z)));
         format!(
             "no camera: a detector that counts every photon and adds no noise, f/{}, pixel {} (the largest of the \
-             cameras), light of {} ({}), target filling the pixel{distance}, does not tell the pair with {} reliability",
+             cameras), light of {} ({}), {filled}{distance}, does not tell the pair with {} reliability",
             self.f_number,
             quantity(self.pixel_m, "m"),
             quantity(self.time_s, "s"),

@@ -19,7 +19,7 @@ use crate::keys::clause as keys;
 use crate::paths::{Paths, material};
 use crate::read::{of_root, requirement};
 use crate::section::{Entry, Section, without_repetition};
-use crate::{Envelope, MaterialRef, Reliability, Requirement, Scenario, Source, write};
+use crate::{Envelope, MaterialRef, Reliability, Requirement, Scenario, Scope, Source, write};
 use hadar::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -145,6 +145,10 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     };
     if demand != Demand::FalseAlarm {
         of_its_own(&mut scenario, &plain);
+    }
+    if kind.is_measured() {
+        // What is measured is so by one pixel, or by geometry.
+        scenario.requirement.of = Some(Scope::Pixel);
     }
     if kind.is_measured() && stop.is_none() {
         // Its requirement is another one; how fast the vehicle drives is the rule's to say.

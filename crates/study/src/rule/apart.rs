@@ -20,6 +20,7 @@ use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::material::Library;
+use hadar_scenario::Scope;
 use hadar_scenario::rule::{Clause, Demand, StopSpec};
 use hadar_scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 
@@ -192,7 +193,12 @@ impl TellApart {
             let LimitingScene { target, alternative, distance_m, .. } = &verdict.limiting;
             // Where the distance does not matter to the limit it does to a picture: the farthest is the hardest.
             let farthest_m = candidate.distance_m.map(|[_, most]| most);
-            let told = Told { target, alternative, statistical_distance: verdict.statistical_distance };
+            let told = Told {
+                target,
+                alternative,
+                statistical_distance: verdict.statistical_distance,
+                pixels: study.pixels_of_object(*distance_m),
+            };
             let companion = Companion::of(&Given {
                 camera: study.camera.as_ref(),
                 bands: &study.bands,
@@ -266,13 +272,16 @@ impl TellApart {
         let hardware_m2_s = hardware.map(|each| each.into_iter().fold(0.0, f64::max));
         let speed_m_s = self.speed_m_s();
         // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
-        let plain = self.scenario.target.size_m.is_none() && self.scenario.atmosphere.is_none();
+        let plain = self.scenario.target.size_m.is_none()
+            && self.scenario.atmosphere.is_none()
+            && self.scenario.scope() == Scope::Pixel;
         let quotable = Quotable {
             envelope: envelope.clone(),
             required: self.required,
             speed_m_s,
             stop: self.stop.map(|spec| StopResult::of(spec.stop())),
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
+            of_object: self.scenario.scope() == Scope::Object,
             units: self.scenario.units(),
         };
         RuleRequirement {

@@ -4,7 +4,7 @@
 //! (f/0.5), with the largest pixel of the rule's cameras, exposed as long as motion blur allows at the rule's speed and
 //! least distance (Δ = 1 for the camera that allows longest), or else as long as the longest integration among them, as
 //! often as the most frames among them; the target fills the pixel at the least distance. It counts
-//! N = κΣS, κ = π A_p t.
+//! N = κΣS, κ = π A_p t, of an object n times as many, n the most pixels of it that any of the cameras has.
 //!
 //! Beside it the share in which errors of the emissivities make up the whole distance, whatever the camera: with an error of
 //! δ in each band of both materials, independent, the spectra move apart by (δ/√2)√(κ Σ C²/S) on average, C = B(T) − X
@@ -57,7 +57,8 @@ impl TellApart {
         let (time_s, why) = self.longest(&cameras);
         let near: &[Study] = self.candidates.first().map_or(&[], |candidate| &candidate.near);
         let etendue = std::f64::consts::PI * pixel_m * pixel_m / (4.0 * FASTEST_F_NUMBER * FASTEST_F_NUMBER);
-        let counting = Counting { counts_per_radiance: etendue * time_s, var_added: Vec::new() };
+        let pixels = near_pixels(near.iter().chain(self.candidates.iter().flat_map(|one| &one.near)));
+        let counting = Counting { counts_per_radiance: pixels * etendue * time_s, var_added: Vec::new() };
         let pairs: Vec<(usize, usize)> = near
             .iter()
             .enumerate()
@@ -105,6 +106,7 @@ impl TellApart {
             why,
             distance_m: near.first().and_then(|study| study.scenario.target.distance_m),
             required: self.required,
+            pixels,
             units: self.scenario.units(),
         };
         Ok(NotIdentifiable {
@@ -144,6 +146,12 @@ impl TellApart {
             }
         }
     }
+}
+
+/// The most pixels that count together before any of the cameras.
+fn near_pixels<'s>(studies: impl Iterator<Item = &'s Study>) -> f64 {
+    let pixels = studies.filter_map(|study| study.pixels_of_object(study.scenario.target.distance_m));
+    pixels.fold(1.0, f64::max)
 }
 
 /// By how much errors of both emissivities move the spectra apart, in units of shot noise.

@@ -77,6 +77,8 @@ pub struct Quotable {
     pub stop: Option<StopResult>,
     /// H_req, m² s; `None` where that figure of the hardware does not tell all.
     pub hardware_m2_s: Option<f64>,
+    /// Whether all pixels of the object tell together, not one.
+    pub of_object: bool,
     /// Units of the sentence.
     pub units: Units,
 }
@@ -293,6 +295,8 @@ pub struct IdealCamera {
     pub distance_m: Option<f64>,
     /// Statistical distance demanded.
     pub required: f64,
+    /// Pixels of the object that count together, the most of the cameras; 1 of a pixel.
+    pub pixels: f64,
     /// Units of the sentence.
     pub units: Units,
 }

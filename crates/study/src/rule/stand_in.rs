@@ -28,6 +28,7 @@ use hadar::policy::envelope::{EnvelopeScene, Ranges};
 use hadar::policy::stand_in::{Effort, Farthest, farthest};
 use hadar::root;
 use hadar::scene::State;
+use hadar_scenario::Scope;
 use hadar_scenario::rule::{Demand, StandInSpec};
 use hadar_scenario::{Date, Envelope, MaterialRef, Scenario, Units};
 
@@ -55,6 +56,8 @@ pub struct StandInAnswer {
     pub temperature_k: f64,
     /// Every camera, person, material and tolerance of the emissivity.
     pub rows: Vec<StandIn>,
+    /// Whether all pixels of the object tell together, not one.
+    pub of_object: bool,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// That the rule does not hold on the day that is asked about.
@@ -192,6 +195,7 @@ impl RuleStudy {
             detection_probability: detection::probability(apart.required),
             person_k,
             temperature_k,
+            of_object: apart.scenario.scope() == Scope::Object,
             rows,
             units: scenario.units(),
         })

@@ -163,7 +163,7 @@ fn what_is_not_known_is_no_number() {
         assert_eq!(unknown, (!known).then_some(Unknown::NoDistance), "{measure:?}");
     }
     let bands = Bands::from_rows([(1000.0, 10.0)]).unwrap();
-    let told = Told { target: "a", alternative: "b", statistical_distance: 1.0 };
+    let told = Told { target: "a", alternative: "b", statistical_distance: 1.0, pixels: None };
     let nothing =
         Given { camera: None, bands: &bands, size_m: Some(1.0), distance_m: Some(1.0), told: Some(told) };
     let without = Companion::of(&nothing).unwrap();

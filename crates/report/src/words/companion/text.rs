@@ -115,6 +115,9 @@ fn value(row: &CompanionRow, units: Units) -> String {
                 _ => None,
             });
             let pixels = match row.measure {
+                Measure::MaterialOfAllPixels if !row.conditions.iter().any(|(name, _)| *name == "frames") => {
+                    format!(" ({} of them, with what they share)", significant(under("pixels"), 3))
+                }
                 Measure::MaterialOfAllPixels => {
                     format!(" ({} of them, all alike; verdicts are of one)", significant(under("pixels"), 3))
                 }
@@ -155,7 +158,7 @@ mod tests {
 
     fn companion(camera: Option<&Camera>, distance_m: f64) -> Companion {
         let bands = Bands::uniform(715.0, 1250.0, 5.0).unwrap();
-        let told = Told { target: "skin", alternative: "aluminium", statistical_distance: 0.5 };
+        let told = Told { target: "skin", alternative: "aluminium", statistical_distance: 0.5, pixels: None };
         let (size_m, distance_m) = (Some(0.6), Some(distance_m));
         Companion::of(&Given { camera, bands: &bands, size_m, distance_m, told: Some(told) }).unwrap()
     }

@@ -41,10 +41,15 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
         ]
     }));
     out.push_str(&aligned(&rows, &[3, 4, 5]));
-    out.push_str(
+    let by = match answer.of_object {
+        true => "all pixels of the object together count in all bands and frames: shape and motion",
+        false => "one pixel counts in all bands and frames: shape, motion and many pixels alike",
+    };
+    let _ = write!(
+        out,
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
          as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \
-         by what one pixel counts in all bands and frames: shape, motion and many pixels alike are other questions, and tell more\n",
+         by what {by} are other questions, and tell more\n"
     );
     let others = answer.warnings.iter().filter(|warning| warning.code() != Code::NotInForce);
     out.push_str(&warnings(&others.cloned().collect::<Vec<_>>()));
