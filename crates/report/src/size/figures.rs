@@ -210,6 +210,9 @@ pub fn object(curve: &ObjectCurve, object: &ObjectAnswer, pair: [&str; 2], requi
     ];
     let table = Table::of_columns(columns);
     let (x, frames) = (&curve.readings, &curve.frames);
+    // As the root of the readings, from the first one on.
+    let (one, last) = (curve.of_pixel[0], x.last().copied().unwrap_or(1.0));
+    let independent = (vec![1.0, last], vec![one, one * last.sqrt()]);
     let top = curve.of_object.iter().copied().fold(required, f64::max);
     let low = curve.of_pixel.iter().copied().filter(|d| *d > 0.0).fold(required, f64::min);
     let mut figure = LineFigure::new(
@@ -221,7 +224,7 @@ pub fn object(curve: &ObjectCurve, object: &ObjectAnswer, pair: [&str; 2], requi
     .series(Series::line("all pixels of the object", x.clone(), curve.of_object.clone()))
     .series(Series::line("one pixel of it", frames.clone(), curve.of_pixel.clone()).style(Style::Dotted))
     .series(
-        Series::line("readings without anything in common", x.clone(), curve.independent.clone())
+        Series::line("readings without anything in common", independent.0, independent.1)
             .style(Style::Dashed),
     )
     .rule(Rule::horizontal(required, format!("required: d = {required:.3}")));

@@ -35,6 +35,10 @@ pub struct NoiseSpec {
     pub gain_spread: bool,
     /// Exposure of a frame, s.
     pub exposure_s: Option<f64>,
+    /// Whether the scene is the same everywhere.
+    pub uniform: bool,
+    /// NETD of a frame, K.
+    pub netd_k: Option<f64>,
 }
 
 file!(NoiseScenario, source, (Kind::Calibrate, MINIMUM, &files::NOISE));
@@ -61,7 +65,9 @@ impl NoiseScenario {
         let noise = Entries::default()
             .put("dark_level", self.noise.dark_level)
             .put("gain_spread", self.noise.gain_spread)
-            .put_quantity("exposure", Dimension::Time, self.noise.exposure_s);
+            .put_quantity("exposure", Dimension::Time, self.noise.exposure_s)
+            .put("uniform", self.noise.uniform)
+            .put_quantity("netd", Dimension::TemperatureDifference, self.noise.netd_k);
         Document::titled(self.title.as_ref()).put("cube", self.cube.written(paths)).put("noise", noise)
     }
 }
@@ -72,5 +78,7 @@ fn noise(entry: &Entry<'_>) -> Result<NoiseSpec> {
         dark_level: section.number("dark_level")?.unwrap_or(0.0),
         gain_spread: section.read("gain_spread", Entry::boolean)?.unwrap_or(false),
         exposure_s: section.quantity("exposure")?,
+        uniform: section.read("uniform", Entry::boolean)?.unwrap_or(false),
+        netd_k: section.quantity("netd")?,
     })
 }

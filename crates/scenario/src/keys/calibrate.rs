@@ -3,8 +3,8 @@
 use super::cube::{AXES, BAD_BANDS, VARIABLE};
 use super::key::Silent::{Is, Means, Refused};
 use super::key::{
-    A_SHARE, COUNT, KELVIN, KELVIN_FROM_ZERO, Key, POSITIVE, POSITIVE_SHARE, TIME, Table, Value, WAVENUMBER,
-    WHOLE,
+    A_SHARE, COUNT, KELVIN, KELVIN_APART, KELVIN_FROM_ZERO, Key, POSITIVE, POSITIVE_SHARE, TIME, Table,
+    Value, WAVENUMBER, WHOLE,
 };
 use hadar::allowed::Allowed;
 
@@ -260,6 +260,22 @@ const NOISE_KEYS: &[Key] = &[
         "\"2 ms\"",
         "Exposure of a frame.",
         "camera figures of the answer",
+    ),
+    Key::row(
+        "uniform",
+        Value::Flag,
+        Is("false"),
+        "true",
+        "Whether the frames see one brightness everywhere (a blackbody, a shutter): then what stays of pixels, rows and columns is the camera's.",
+        "fixed_pattern, row_noise and column_noise of the answer",
+    ),
+    Key::row(
+        "netd",
+        KELVIN_APART,
+        Means("noise that pixels share is told as shares of the NETD"),
+        "\"40 mK\"",
+        "NETD of a frame, which the noise of a pixel from frame to frame amounts to.",
+        "noise of rows, columns and frames in K",
     ),
 ];
 /// `[noise]` that is sought.

@@ -5,7 +5,7 @@ use crate::Warning;
 use hadar::cube::{Cube, Ordered, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
-use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_estimate::calibrate::{Asked, Component, Line, Transfer, photon_transfer, three_dimensional};
 use hadar_formats::cube::Found;
 use hadar_scenario::calibrate::NoiseScenario;
 use serde::Serialize;
@@ -43,6 +43,9 @@ pub struct NoiseFound {
     pub gain_deviation: Option<f64>,
     /// Whether the figures hold for all bands and are told well enough to be used.
     pub usable: bool,
+    /// Variances of the noise in three dimensions, unit² of the cube; `None` of one frame, or where samples are missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub three_dimensional: Option<[Component; 7]>,
     /// What was fitted.
     #[serde(flatten)]
     pub transfer: Transfer,
@@ -92,6 +95,10 @@ impl NoiseStudy {
             )),
         }
         .map_err(place)?;
+        let three_dimensional = match singles.is_empty() {
+            false => three_dimensional(&rows(&singles))?,
+            true => three_dimensional(&rows(&doubles))?,
+        };
         let common = transfer.common;
         let mut warnings = self.frames.warnings();
         if transfer.outliers > OUTLIERS {
@@ -137,6 +144,7 @@ impl NoiseStudy {
             noise_electrons: [common.noise_electrons(), least, most],
             gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
             usable: told && alike && possible,
+            three_dimensional,
             transfer: transfer.among(good, shape.bands()),
             stats: {
                 let mut work = Work::default();
