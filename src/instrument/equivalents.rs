@@ -18,6 +18,8 @@
 //!
 //! Source: paper Table S2 and the text above it, S7.
 
+pub use super::noise::NetdConditions;
+
 use super::{Camera, NoiseSpec, Readout, View};
 use crate::error::Result;
 use crate::planck;
@@ -59,19 +61,6 @@ pub struct Equivalents {
     pub nesr_microflick: f64,
     /// γ = Σσ²/ΣN over bands of 1 cm⁻¹.
     pub gamma_per_band: f64,
-}
-
-/// What an NETD is stated for.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct NetdConditions {
-    /// Temperature of the blackbody, K.
-    pub temperature_k: f64,
-    /// f-number of the optics.
-    pub f_number: f64,
-    /// Share of the photons that they pass.
-    pub optics_efficiency: f64,
-    /// Side of the pixel, m.
-    pub pixel_m: f64,
 }
 
 impl NetdConditions {

@@ -8,8 +8,8 @@
 //! All other figures are taken as they are ([`Taken`]), there and back.
 
 use super::assumed::{Assumed, PAPER_RANGE_CM1};
-use super::equivalents::NetdConditions;
 use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, every_figure};
+use super::noise::NetdConditions;
 use super::pattern::Pattern;
 use super::presets::{Missing, Preset};
 use super::{Camera, CameraSpec, Efficiency, EfficiencyCurve, NoiseSpec, Readout};

@@ -18,7 +18,7 @@
 
 mod spec;
 
-pub use spec::NoiseSpec;
+pub use spec::{NetdConditions, NoiseSpec};
 
 use super::{Camera, View};
 use crate::planck;

@@ -62,6 +62,19 @@ pub enum NoiseSpec {
     },
 }
 
+/// What an NETD is stated for.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct NetdConditions {
+    /// Temperature of the blackbody, K.
+    pub temperature_k: f64,
+    /// f-number of the optics.
+    pub f_number: f64,
+    /// Share of the photons that they pass.
+    pub optics_efficiency: f64,
+    /// Side of the pixel, m.
+    pub pixel_m: f64,
+}
+
 impl NoiseSpec {
     /// Whether it is stated as a figure of the sheet (NETD, D*, NEP, NESR) that counts follow from only at stated conditions.
     #[must_use]

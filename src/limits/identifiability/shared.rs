@@ -25,6 +25,9 @@
 use crate::error::{Error, Result};
 use nalgebra::{Cholesky, DMatrix, DVector};
 
+/// What such errors are called among the lines of a noise.
+pub const EMISSIVITY_ERRORS: &str = "errors of the emissivities";
+
 /// A covariance of the bands, counts², row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedCovariance {

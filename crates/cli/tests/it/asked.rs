@@ -195,8 +195,10 @@ fn a_noise_keeps_the_conditions_of_its_file() {
 fn a_noise_written_again_is_one_of_the_preset() {
     let folder = Folder::with(SCENARIO);
     let reached = |figures: &str| {
-        let camera =
-            format!("preset = \"flir-boson-640-14mm\"\nf_number = 2.0\nreadout = \"sequential\"\n{figures}");
+        let camera = format!(
+            "preset = \"flir-boson-640-14mm\"\nf_number = 2.0\nreadout = \"sequential\"\nrow_noise = \"0 mK\"\n\
+                 column_noise = \"0 mK\"\n{figures}"
+        );
         folder.file("a.toml", &SCENARIO.replace("preset = \"flir-a325sc\"", &camera));
         folder.json(&["size", "a.toml"])["verdict"]["statistical_distance"].as_f64().unwrap()
     };

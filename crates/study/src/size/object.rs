@@ -10,6 +10,7 @@ use super::Study;
 use crate::Surface;
 use crate::size::Reach;
 use hadar::error::Result;
+use hadar::identifiability::shared::EMISSIVITY_ERRORS;
 use hadar::policy::{Quantity, Trial};
 use hadar_scenario::{Scope, SensitivitySpec};
 
@@ -170,7 +171,7 @@ impl Study {
             .collect();
         if let Some(spec) = spec {
             let var = self.var_of_errors(camera, alternative, spec)?;
-            let (label, source) = ("errors of the emissivities", "sensitivity.emissivity_error");
+            let (label, source) = (EMISSIVITY_ERRORS, "sensitivity.emissivity_error");
             left.push(CeilingShare { label, share: var, source });
         }
         let all: f64 = left.iter().map(|line| line.share).sum();
