@@ -360,3 +360,60 @@ fn a_dark_level_that_is_not_said_makes_no_camera() {
         "{refusal}"
     );
 }
+
+/// Frames of a shutter: what pixels and rows share is found, and put into a camera by the NETD, as a scenario reads it.
+#[test]
+fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
+    let folder = Folder::with("");
+    let (rows, columns, bands, frames) = (40, 48, 2, 12);
+    let shape = Shape::new(rows, columns, bands).unwrap();
+    let normals = |stream: u64, count: usize, sigma: f64| -> Vec<f64> {
+        let draws = Draws::new(&Statistics::Poisson, &vec![1e6; count]).unwrap();
+        let mut counts = vec![0.0; count];
+        draws.draw_into(&mut generator(9, stream), &mut counts);
+        counts.iter().map(|n| sigma * (n - 1e6) / 1e3).collect()
+    };
+    let (of_pixel, of_row) = (normals(1, shape.len(), 20.0), normals(2, rows * bands, 14.0));
+    let mut names = Vec::new();
+    for frame in 0..frames {
+        let own = normals(10 + frame, shape.len(), 40.0);
+        let sample =
+            |i: usize| 5e4 + own[i] + of_pixel[i] + of_row[i / (columns * bands) * bands + i % bands];
+        let samples: Vec<f64> = (0..shape.len()).map(sample).collect();
+        write_npy(&folder.path().join(&name), shape, &samples).unwrap();
+        write_npy(&folder.path().join(&name), &Cube::new(shape, samples).unwrap()).unwrap();
+        names.push(format!("{name:?}"));
+    }
+    let file = format!("[cube]\ndata = [{}]\n[noise]\n", names.join(", "));
+    folder.file("shutter.toml", &format!("{file}uniform = true\nnetd = \"40 mK\"\n"));
+    let found = folder.json(&["calibrate", "noise", "shutter.toml", "--out", "shutter"]);
+    let terms = found["three_dimensional"].as_array().unwrap();
+    for (of, truth) in
+        [("tvh", 1600.0), ("vh", 400.0), ("v", 196.0), ("h", 0.0), ("tv", 0.0), ("th", 0.0), ("t", 0.0)]
+    {
+        let term = terms.iter().find(|term| term["of"] == of).unwrap();
+        let [low, high] = [0, 1].map(|end| term["interval"][end].as_f64().unwrap());
+        assert!(low <= truth && truth <= high, "{of}: {term}");
+    }
+    let camera = std::fs::read_to_string(folder.path().join("shutter/camera.toml")).unwrap();
+    let value = |key: &str| -> f64 {
+        let line =
+            camera.lines().find(|line| line.starts_with(key)).unwrap_or_else(|| panic!("{key}: {camera}"));
+        line.split('"').nth(1).unwrap().trim_end_matches(" mK").parse().unwrap()
+    };
+    // Of 40 mK: 20 and 14 of 40 units; a row's from 80 rows, 8 %.
+    assert!(
+        (value("fixed_pattern") - 20.0).abs() < 1.0 && (value("row_noise") - 14.0).abs() < 4.5,
+        "{camera}"
+    );
+    assert!(value("column_noise") < 3.0 && camera.contains("# at most"), "{camera}");
+    let said = folder.run(&["calibrate", "noise", "shutter.toml"]).stdout;
+    assert!(said.starts_with("Beside 40") && said.contains("row to row, staying (v)"), "{said}");
+    // The camera is one that a scenario takes.
+    folder.file("size.toml", &format!("[target]\nmaterial = \"skin\"\ntemperature = \"34 degC\"\n[alternatives]\nmaterials = [\"pmma\"]\n{}\npreset = \"flir-a325sc\"\n", camera.trim_end()));
+    assert!(folder.json(&["size", "size.toml"])["camera"]["pattern"]["row_k"].as_f64().is_some());
+    // Of a scene nobody says to be the same everywhere what stays is not the camera's alone.
+    folder.file("scene.toml", &file);
+    let said = folder.run(&["calibrate", "noise", "scene.toml"]).stdout;
+    assert!(said.contains("the scene is in it") && said.contains("what stays has the scene in it"), "{said}");
+}

@@ -10,7 +10,7 @@ mod terms;
 use self::bands::{bands, scaling};
 use self::exact::exact;
 use self::matrix::{apart, matrix};
-use self::terms::{camera, does_not_tell, no_limit};
+use self::terms::{camera, does_not_tell, no_limit, told_by};
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, significant};
 use crate::text::pairs::pair_table;
@@ -122,7 +122,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };
-        let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
+        let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", told_by(study));
         if let Some(class) = class {
             let _ = writeln!(out, "{}", class.say());
         }
@@ -188,7 +188,7 @@ pub fn check(result: &Check, study: &Study) -> String {
             let class = result.failed.and_then(|index| classes.get(index));
             let other = class.map_or(other, |class| &class.alternative.name);
             let cannot = does_not_tell(study);
-            let by = no_limit(study);
+            let by = told_by(study);
             format!("No: {camera} {cannot} {target} from {other} with {reliability} reliability{by}.\n")
         }
         None => {
@@ -196,7 +196,7 @@ pub fn check(result: &Check, study: &Study) -> String {
                 [one] => classes.first().map_or(&one.name, |class| &class.alternative.name).clone(),
                 all => format!("all {} alternatives", all.len()),
             };
-            let by = no_limit(study);
+            let by = told_by(study);
             let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
             let verdict =
                 format!("{yes}: {camera} tells {target} from {all} with {reliability} reliability{by}.\n");

@@ -144,7 +144,7 @@ fn answered(finding: &Finding) -> String {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
                 Some(reached) => {
                     let (one, all) = match finding.pixels {
-                        Some(_) if finding.of_object => ("they", String::new()),
+                        Some(_) if finding.of_object => ("it", String::new()),
                         Some(_) => ("a pixel", of_pixels(finding, *reached)),
                         None => ("it", String::new()),
                     };

@@ -45,6 +45,8 @@ pub(super) fn solve(
     if beyond >= task.required {
         let reason = if task.farthest_m.is_some() {
             format!("it is met as far as the air is known, {}", quantity(far, "m"))
+        } else if task.of_object && task.size_m.is_none() {
+            "the pixels are stated and not the size: there are so many at any distance".into()
         } else {
             "distance does not matter: the target fills its pixels, and there is no air that would end it"
                 .into()

@@ -76,6 +76,19 @@ pub fn text(result: &NoiseFound) -> String {
 fn sentence(result: &NoiseFound) -> String {
     let [photons, low, high] = result.photons_per_unit;
     let [noise, least, most] = result.noise_electrons;
+    if let (false, true, Some(terms)) =
+        (result.usable, result.scenario.noise.uniform, &result.three_dimensional)
+    {
+        let of = |place: usize| significant(terms[place].sigma()[0], 3);
+        return format!(
+            "Beside {} of each pixel from frame to frame, {} stay from pixel to pixel, {} from row to row and {} from column to column (unit of \
+             the cube); frames of one brightness do not tell photons from electronic noise.",
+            of(0),
+            of(1),
+            of(2),
+            of(3)
+        );
+    }
     if !result.usable {
         return format!(
             "No camera's figures follow from these {} samples: see the warnings; variances of the bands are measured all the same.",
@@ -100,10 +113,11 @@ fn sentence(result: &NoiseFound) -> String {
     )
 }
 
-/// The figures as a scenario's `[camera]` has them; none where they do not hold.
+/// The figures as a scenario's `[camera]` has them; of photons and electronic noise none where they do not hold.
 pub(crate) fn camera(result: &NoiseFound) -> Option<String> {
     if !result.usable {
-        return None;
+        let rows = shared(result);
+        return (!rows.is_empty()).then(|| format!("[camera]\n{rows}"));
     }
     let [photons, ..] = result.photons_per_unit;
     let [noise, least, most] = result.noise_electrons;

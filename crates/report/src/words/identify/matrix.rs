@@ -1,6 +1,6 @@
 //! All materials against all: who can be told from whom.
 
-use super::terms::{camera, no_limit};
+use super::terms::{camera, told_by};
 use crate::table::yes_no;
 use crate::text::columns::{Columns, left, right};
 use crate::text::numbers::{between, listed, shortened, significant};
@@ -20,7 +20,7 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
     let mut out = format!(
         "{camera} tells {} of {pairs} pairs apart with {reliability} reliability, either of them the target{}\n",
         apart.told_apart.len(),
-        no_limit(study)
+        told_by(study)
     );
     if apart.told_apart.is_empty() {
         return out + "  not one pair\n\n";

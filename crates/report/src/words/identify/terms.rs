@@ -1,6 +1,6 @@
 //! What the camera and the limit are called.
 
-use hadar_scenario::DistanceKind;
+use hadar_scenario::{DistanceKind, Scope};
 use hadar_study::Study;
 
 /// The camera by its name, where it has one.
@@ -9,6 +9,15 @@ pub(super) fn camera(study: &Study) -> &str {
         None | Some("camera") => "the camera",
         Some(name) => name,
     }
+}
+
+/// By what materials are told: all pixels of an object, and a reading that is no limit; nothing of a pixel by the nearest.
+pub(super) fn told_by(study: &Study) -> String {
+    let pixels = match study.scenario().scope() {
+        Scope::Object => " by all of its pixels together",
+        Scope::Pixel => "",
+    };
+    format!("{pixels}{}", no_limit(study))
 }
 
 /// What must be added to an answer that is not by the nearest distance.
