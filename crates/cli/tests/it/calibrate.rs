@@ -380,8 +380,8 @@ fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
         let sample =
             |i: usize| 5e4 + own[i] + of_pixel[i] + of_row[i / (columns * bands) * bands + i % bands];
         let samples: Vec<f64> = (0..shape.len()).map(sample).collect();
+        let name = format!("shutter_{frame}.npy");
         write_npy(&folder.path().join(&name), shape, &samples).unwrap();
-        write_npy(&folder.path().join(&name), &Cube::new(shape, samples).unwrap()).unwrap();
         names.push(format!("{name:?}"));
     }
     let file = format!("[cube]\ndata = [{}]\n[noise]\n", names.join(", "));
