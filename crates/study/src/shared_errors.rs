@@ -20,7 +20,7 @@ use hadar::identifiability::shared::{ErrorChain, SharedCovariance, separation_al
 use hadar::instrument::Camera;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
-use hadar_scenario::{Scope, SensitivitySpec};
+use hadar_scenario::{DistanceKind, Scope, SensitivitySpec};
 
 /// The covariance of more bands takes more than a second.
 const MOST_BANDS: usize = 1000;
@@ -117,10 +117,13 @@ impl Errors<'_> {
 impl Study {
     /// What errors of the emissivities as they usually are do to what is told of an object, where the scenario states none.
     pub(crate) fn usual_errors(&self, alternative: &Surface) -> Result<Option<Condition>> {
+        let kind = self.scenario.requirement.by;
+        if kind != DistanceKind::Nearest {
+            return Ok(Some(Condition::EmissivityKnown));
+        }
         let Some(counting) = self.counting().filter(|_| self.scenario.sensitivity.is_none()) else {
             return Ok(None);
         };
-        let kind = self.scenario.requirement.by;
         let (found, Some(state)) = self.statistical_at(kind, alternative, &counting)? else {
             return Ok(Some(Condition::EmissivityKnown));
         };
@@ -137,9 +140,10 @@ impl Study {
         Ok(Some(Condition::SharedErrors { error: spec.emissivity_error, distance, undone }))
     }
 
-    /// The errors that are stated and that count: of an object.
+    /// The errors that are stated and that count: of an object, by the distance that is a limit.
     pub(crate) fn errors_shared(&self) -> Option<SensitivitySpec> {
-        self.scenario.sensitivity.filter(|_| self.scenario.scope() == Scope::Object)
+        let is_limit = self.scenario.requirement.by == DistanceKind::Nearest;
+        self.scenario.sensitivity.filter(|_| is_limit && self.scenario.scope() == Scope::Object)
     }
 
     /// A distance that was found with the emissivities as they are, by readings that share errors of such a spec; where states are followed

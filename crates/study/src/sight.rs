@@ -256,7 +256,9 @@ impl Study {
         }
         let of_size = |(size_m, distance_m)| {
             let ring_m = DARK_RING * longest_wavelength_m(&self.open_bands) * camera.f_number;
-            Extent::inside(size_m, camera.footprint_m(distance_m), ring_m / camera.pixel_m)
+            // By lens or by view, the fewer.
+            let [_, coarser_rad] = camera.pixel_angles_rad();
+            Extent::inside(size_m, coarser_rad * distance_m, ring_m / camera.pixel_m)
         };
         match target.pixels {
             Some(filled) => filled.extent(),
