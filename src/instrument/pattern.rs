@@ -14,7 +14,8 @@
 //! | σ_T | `frame_noise` | h² w² σ² | t |
 //!
 //! so that the mean of N frames has σ_TVH²/(Nhw) + σ_VH²/(hw) + σ_TV²/(Nh) + σ_TH²/(Nw) + σ_V²/h + σ_H²/w + σ_T²/N. They are
-//! stated in K as the NETD is, and σ = K dN/dT counts of a reading follows at its conditions. A pattern that is a new one after
+//! stated in K as the NETD is; the NETD of one pixel holds what changes from frame to frame, so that this counts for an object
+//! alone, and σ = K dN/dT counts of a reading follows at its conditions. A pattern that is a new one after
 //! the time τ has (2τ/t)(1 − (τ/t)(1 − exp(−t/τ))) of its variance left in the mean over t.
 //!
 //! Assumptions: the terms are independent, also between bands (each filter has a pattern of its own); a pattern is an offset, the
@@ -26,7 +27,7 @@ mod spec;
 
 pub use spec::{Pattern, PatternFigures};
 
-use self::spec::TERMS;
+use self::spec::{TERMS, Term};
 use super::budget::BandLine;
 use super::equivalents::per_kelvin;
 use super::noise::NetdConditions;
@@ -59,7 +60,8 @@ impl Camera {
         let [rows, columns] = view.extent.sides();
         let pixels = rows * columns;
         let mut lines = Vec::new();
-        for (term, sigma_k) in TERMS.iter().zip(pattern.sigmas_k()) {
+        let counts = |term: &&Term| term.is_fixed || view.of_object;
+        for (term, sigma_k) in TERMS.iter().zip(pattern.sigmas_k()).filter(|(term, _)| counts(term)) {
             let [of_row, of_column] = term.of_each;
             let alike = (if of_row { 1.0 } else { rows }) * (if of_column { 1.0 } else { columns });
             let grown = if term.is_fixed { stretch * stretch * left } else { stretch };
@@ -121,7 +123,7 @@ mod tests {
 
     /// Deviation of the mean over an object in K: that of the sum over its pixels, over what 1 K makes of it.
     fn sigma_k(camera: &Camera, extent: Extent, labels: &[&str]) -> f64 {
-        let view = View { extent, ..View::at(None) };
+        let view = View { extent, of_object: true, ..View::at(None) };
         let lines = camera.added_noise(&bands(), &view);
         let var: f64 =
             lines.iter().filter(|line| labels.contains(&line.label)).map(|line| line.var_counts[0]).sum();
@@ -212,7 +214,7 @@ mod tests {
     fn more_readings_are_never_worse_and_patterns_never_better() {
         let bands = bands();
         let quality = |camera: &Camera, extent: Extent| {
-            let counting = camera.counting(&bands, &View { extent, ..View::at(None) });
+            let counting = camera.counting(&bands, &View { extent, of_object: true, ..View::at(None) });
             counting.counts_per_radiance / counting.var_added[0].sqrt()
         };
         let with = |sigmas_k: [f64; 6], drift_s: Option<f64>, frames: u32| {

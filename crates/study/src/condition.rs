@@ -160,6 +160,15 @@ conditions! {
         /// How many.
         pixels: f64,
     } = "alike-pixels", Scope, "requirement.of";
+    /// Errors of the emissivities are correlated over a length that nobody states.
+    ErrorsCorrelated {
+        /// The length that is taken, cm⁻¹.
+        length_cm1: f64,
+    } = "errors-correlated", Assumed, "sensitivity.correlation";
+    /// What rows, columns and pixels of an array have in common is another pattern in every band.
+    PatternOfEachBand = "pattern-of-each-band", Assumed, "camera.fixed_pattern";
+    /// The pixels on an object are counted by the lens, where the view contradicts it.
+    PixelsByLens = "pixels-by-lens", Assumed, "camera.field_of_view";
     /// Rows, columns and frames have no noise of their own beside that of the pixels.
     FrameNoise {
         /// Keys of the camera that are not stated.
@@ -362,6 +371,7 @@ impl Condition {
             Self::Modelled { bands } => Taken::Number(*bands as f64),
             Self::BeyondRange { outside, .. } => Taken::Number(*outside as f64),
             Self::Sampled { width_cm1 } => Taken::Number(*width_cm1),
+            Self::ErrorsCorrelated { length_cm1 } => Taken::Number(*length_cm1),
             Self::InOnePixel { fill } => Taken::Number(*fill),
             Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
@@ -376,6 +386,8 @@ impl Condition {
             | Self::NoAir
             | Self::EmissivityKnown
             | Self::OneScene
+            | Self::PatternOfEachBand
+            | Self::PixelsByLens
             | Self::SurroundingsKnown
             | Self::Calibrated
             | Self::NoSurroundings => Taken::Nothing,

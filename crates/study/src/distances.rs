@@ -207,7 +207,7 @@ impl Study {
                 let (found, state) = match self.errors_shared() {
                     Some(spec) => {
                         let seen = (&self.bands, counting);
-                        self.with_shared_errors(&mut solver, other, seen, found, (spec, false))?
+                        self.with_shared_errors(&mut solver, other, seen, found, spec)?
                     }
                     None => found,
                 };

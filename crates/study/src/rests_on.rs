@@ -217,7 +217,20 @@ impl Study {
             found.push(Condition::AlikePixels { pixels });
         }
         let figures = camera.pattern.unstated(false);
-        if pixels > 1.0 && !figures.is_empty() && camera.noise.is_some() {
+        let is_object = scenario.scope() == Scope::Object;
+        if is_object && scenario.target.size_m.is_some() && camera.contradicts_its_view() {
+            found.push(Condition::PixelsByLens);
+        }
+        if !camera.pattern.is_none() && self.bands.len() > 1 {
+            found.push(Condition::PatternOfEachBand);
+        }
+        let length = self.errors_shared().map(|spec| spec.correlation_cm1);
+        let key = "sensitivity.correlation";
+        let is_set = scenario.source.settings.iter().any(|one| one.key == key);
+        if let (Some(length_cm1), false) = (length, is_set || scenario.source.lines.contains_key(key)) {
+            found.push(Condition::ErrorsCorrelated { length_cm1 });
+        }
+        if is_object && !figures.is_empty() && camera.noise.is_some() {
             found.push(Condition::FrameNoise { figures });
         }
         if scenario.target.size_m.is_none() && scenario.scope() == Scope::Pixel {

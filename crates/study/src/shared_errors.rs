@@ -5,8 +5,12 @@
 //! the covariance of `[sensitivity]` or of a class. By [`hadar::identifiability::shared`] the separation is at least the nearest
 //! distance with the sums of absolute covariances in the noise, and at most that of any state with the covariance itself.
 //!
-//! Assumption: the contrast of the alternative is the largest of those of the nearest states without errors and with them; what is so
-//! found is searched, not proved. Of more bands than [`MOST_BANDS`] with nodes within them, or of classes, the upper end is the distance without errors.
+//! The contrast of the alternative depends on its state. In states of which no band counts more than 1 + η of the target's it is bounded, and
+//! so is what the nearest distance says; of any other state one band alone differs by η of its counts. The lower end is the least of
+//! the two, for the best of some η; where gain or temperatures of the surroundings are unknown there is none. The upper end is the least of
+//! states that are found, also with the lighting held: what it misses makes an answer undecided, not a 'yes'.
+//!
+//! Of more bands than [`MOST_BANDS`] with nodes within them, or of classes, the upper end is the distance without errors.
 
 use crate::condition::Condition;
 use crate::distances::Statistical;
@@ -14,18 +18,23 @@ use crate::size::sensitivity::linear::contrast;
 use crate::size::sensitivity::scatter::Scatter;
 use crate::{Study, Surface};
 use hadar::error::Result;
-use hadar::fisher::Counting;
-use hadar::identifiability::nearest::NearestSolver;
+use hadar::fisher::{Counting, Nuisance};
+use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::identifiability::shared::{ErrorChain, SharedCovariance, separation_along};
 use hadar::instrument::Camera;
+use hadar::planck;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
 use hadar_scenario::{DistanceKind, Scope, SensitivitySpec};
 
 /// The covariance of more bands takes more than a second.
 const MOST_BANDS: usize = 1000;
-/// How often the contrast of another nearest state may turn out larger.
-const TURNS: usize = 4;
+/// Shares of the target's counts within which the contrast of an alternative is bounded; the best of them counts.
+const SHARES: [f64; 2] = [0.1, 0.4];
+/// Halvings of a range of temperatures.
+const HALVINGS: usize = 60;
+/// Lightings at which states are looked for.
+const LIGHTINGS: usize = 5;
 
 /// The band of every node.
 fn band_of(bands: &Bands) -> Vec<usize> {
@@ -47,9 +56,13 @@ impl Errors<'_> {
         match self.scatter {
             Scatter::Modes(modes) => {
                 for mode in *modes {
-                    let moved = self.moved(mode, band_of, sums.len());
-                    let all: f64 = moved.iter().map(|m| m.abs()).sum();
-                    sums.iter_mut().zip(&moved).for_each(|(sum, m)| *sum += m.abs() * all);
+                    // Whatever the signs of the counts.
+                    let mut moved = vec![0.0; sums.len()];
+                    for ((band, counts), m) in band_of.iter().zip(&self.counts).zip(mode) {
+                        moved[*band] += (counts * m).abs();
+                    }
+                    let all: f64 = moved.iter().sum();
+                    sums.iter_mut().zip(&moved).for_each(|(sum, m)| *sum += m * all);
                 }
             }
             Scatter::Ripple(ripple) => {
@@ -129,13 +142,8 @@ impl Study {
         };
         let (spec, seen) = (SensitivitySpec::default(), (&self.bands, &counting));
         let mut solver = self.nearest_solver();
-        let (with, _) = self.with_shared_errors(
-            &mut solver,
-            &alternative.emissivity,
-            seen,
-            (found, state),
-            (spec, false),
-        )?;
+        let (with, _) =
+            self.with_shared_errors(&mut solver, &alternative.emissivity, seen, (found, state), spec)?;
         let (undone, distance) = (with.lower < self.required, with.distance);
         Ok(Some(Condition::SharedErrors { error: spec.emissivity_error, distance, undone }))
     }
@@ -146,15 +154,14 @@ impl Study {
         self.scenario.sensitivity.filter(|_| is_limit && self.scenario.scope() == Scope::Object)
     }
 
-    /// A distance that was found with the emissivities as they are, by readings that share errors of such a spec; where states are followed
-    /// from trial to trial nothing is proved of it.
+    /// A distance that was found with the emissivities as they are, by readings that share errors of such a spec.
     pub(crate) fn with_shared_errors(
         &self,
         solver: &mut NearestSolver<'_>,
         alternative: &[f64],
         (bands, counting): (&Bands, &Counting),
         (found, nearest): (Statistical, State),
-        (spec, followed): (SensitivitySpec, bool),
+        spec: SensitivitySpec,
     ) -> Result<(Statistical, State)> {
         if found.distance == 0.0 {
             return Ok((found, nearest));
@@ -162,48 +169,135 @@ impl Study {
         let index = self.alternatives.iter().position(|other| other.emissivity == alternative);
         let [(of_target, _), (of_other, _)] = self.scatters(index.unwrap_or(usize::MAX), spec);
         let band_of = band_of(bands);
-        let counts_of = |state: &State| -> Vec<f64> {
-            contrast(self, bands, state).iter().map(|c| counting.counts_per_radiance * c).collect()
-        };
+        let kappa = counting.counts_per_radiance;
+        let counts_of =
+            |state: &State| -> Vec<f64> { contrast(self, bands, state).iter().map(|c| kappa * c).collect() };
         let own = Errors { scatter: &of_target, counts: counts_of(&self.state) };
-        let mut other = Errors { scatter: &of_other, counts: counts_of(&nearest) };
-        // What priors add to a distance is not in the separation of two states.
-        let is_chain = band_of.len() == bands.len()
-            && [&of_target, &of_other].iter().all(|scatter| matches!(scatter, Scatter::Ripple(_)));
-        let exact = (is_chain || bands.len() <= MOST_BANDS) && !self.unknowns.has_priors();
-        let (mut state, mut lower, mut upper) = (nearest, 0.0, found.distance);
-        for _ in 0..TURNS {
+        let noisy = |other: &Errors<'_>| {
             let mut noisy = counting.clone();
             noisy.var_added.resize(bands.len(), 0.0);
             own.add_sums(&band_of, &mut noisy.var_added);
             other.add_sums(&band_of, &mut noisy.var_added);
-            let own_emissivity = &self.target.emissivity;
-            let bounded = match followed {
-                true => {
-                    solver.refine_with_counting(own_emissivity, alternative, &self.state, &noisy, &state)?
-                }
-                false => solver.with_counting(own_emissivity, alternative, &self.state, &noisy)?,
-            };
-            lower = self.sure(bounded.distance, bounded.lower).min(found.distance);
-            for at in [&state, &bounded.state].into_iter().filter(|_| exact) {
-                let there = Errors { scatter: &of_other, counts: counts_of(at) };
-                let both = [&own, &there];
-                upper = upper.min(self.separation_at(both, alternative, at, (bands, counting), &band_of)?);
+            noisy
+        };
+        // From below: within a share of the target's counts the contrast of the alternative is bounded, beyond it the difference itself.
+        let mut lower: f64 = 0.0;
+        let mut states = vec![nearest.clone()];
+        for share in SHARES {
+            let Some(most) = self.most_contrast(alternative, (bands, counting), share) else { break };
+            let other = Errors { scatter: &of_other, counts: most };
+            let within =
+                solver.with_counting(&self.target.emissivity, alternative, &self.state, &noisy(&other))?;
+            let beyond = self.beyond([&own, &other], alternative, (bands, counting), &band_of, share);
+            lower = lower.max(self.sure(within.distance, within.lower).min(beyond));
+            states.push(within.state);
+        }
+        // From above: any state, with the covariance itself. What priors add to a distance is not in the separation of two states.
+        let is_chain = band_of.len() == bands.len()
+            && [&of_target, &of_other].iter().all(|scatter| matches!(scatter, Scatter::Ripple(_)));
+        let mut upper = found.distance;
+        let mut state = nearest;
+        if (is_chain || bands.len() <= MOST_BANDS) && !self.unknowns.has_priors() {
+            if self.is_unknown(Nuisance::Lighting) {
+                let there = Errors { scatter: &of_other, counts: counts_of(&state) };
+                states.extend(self.at_lightings(alternative, bands, &noisy(&there)));
             }
-            state = bounded.state;
-            let here = counts_of(&state);
-            let grown = here.iter().zip(&other.counts).any(|(a, b)| a.abs() > b.abs() * (1.0 + 1e-6));
-            if !grown {
-                break;
-            }
-            for (kept, here) in other.counts.iter_mut().zip(here) {
-                if here.abs() > kept.abs() {
-                    *kept = here;
+            for at in states {
+                let there = Errors { scatter: &of_other, counts: counts_of(&at) };
+                let d = self.separation_at([&own, &there], alternative, &at, (bands, counting), &band_of)?;
+                if d < upper {
+                    (upper, state) = (d, at);
                 }
             }
         }
-        let lower = lower.min(upper);
+        let lower = lower.min(upper).min(found.lower);
         Ok((Statistical { distance: upper, lower, ..found }, state))
+    }
+
+    /// Nearest states of the alternative with its lighting held.
+    fn at_lightings(&self, alternative: &[f64], bands: &Bands, noisy: &Counting) -> Vec<State> {
+        let objects = self.surroundings.objects().len().max(1) as f64;
+        let [low, high] = self.range.lighting;
+        let high = high.min(1.0 / objects).max(low);
+        let at = |i: usize| {
+            let v = low + (high - low) * i as f64 / (LIGHTINGS - 1) as f64;
+            let range = StateRange { lighting: [v, v], ..self.range };
+            let mut solver = NearestSolver::new(bands, &self.surroundings, self.unknowns.clone(), range);
+            solver.with_counting(&self.target.emissivity, alternative, &self.state, noisy).ok()
+        };
+        (0..LIGHTINGS).filter_map(at).map(|found| found.state).collect()
+    }
+
+    /// The most counts by which an error of 1 at a node of the alternative moves its band, in any state of which no band counts more than
+    /// 1 + `share` of the target's: |B(T) − X| ≤ max(B(T₊), X₊), T₊ the hottest at which its own emission alone counts so much, X₊ the brightest
+    /// that its surroundings can be. `None` where gain or their temperatures are unknown, of which nothing is bounded here.
+    fn most_contrast(
+        &self,
+        alternative: &[f64],
+        (bands, counting): (&Bands, &Counting),
+        share: f64,
+    ) -> Option<Vec<f64>> {
+        if self.is_unknown(Nuisance::Gain) || self.is_unknown(Nuisance::EnvironmentTemperature) {
+            return None;
+        }
+        let nodes = bands.nodes_cm1();
+        let target = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        let mut radiance = vec![0.0; nodes.len()];
+        let mut exceeds = |temperature_k: f64| {
+            planck::photon_radiance_into(nodes, temperature_k, &mut radiance);
+            radiance.iter_mut().zip(alternative).for_each(|(b, e)| *b *= e);
+            bands.weigh(&radiance).iter().zip(&target).any(|(own, most)| *own > (1.0 + share) * most)
+        };
+        let mut ends = self.range.temperature_k;
+        if !self.is_unknown(Nuisance::Temperature) {
+            ends = [self.state.temperature_k; 2];
+        } else if exceeds(ends[1]) {
+            // From above, so that what is found is no colder.
+            for _ in 0..HALVINGS {
+                let middle = (ends[0] * ends[1]).sqrt();
+                ends[usize::from(exceeds(middle))] = middle;
+            }
+        }
+        planck::photon_radiance_into(nodes, ends[1], &mut radiance);
+        for object in 0..self.surroundings.objects().len() {
+            let light = self.surroundings.object_signal(object, &self.state);
+            radiance.iter_mut().zip(light).for_each(|(most, light)| *most = most.max(light));
+        }
+        let kappa = counting.counts_per_radiance;
+        Some(radiance.iter().zip(bands.weights_cm1()).map(|(most, weight)| kappa * most * weight).collect())
+    }
+
+    /// What any state reaches at least of which some band counts more than 1 + `share` of the target's: by that band alone, at that count,
+    /// beyond which the difference grows faster than all of its noise.
+    fn beyond(
+        &self,
+        [own, other]: [&Errors<'_>; 2],
+        alternative: &[f64],
+        (bands, counting): (&Bands, &Counting),
+        band_of: &[usize],
+        share: f64,
+    ) -> f64 {
+        let kappa = counting.counts_per_radiance;
+        let target = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        let (mut of_own, mut of_light, mut per_count) =
+            (vec![0.0; bands.len()], vec![0.0; bands.len()], vec![0.0_f64; bands.len()]);
+        let lights: Vec<Vec<f64>> = (0..self.surroundings.objects().len())
+            .map(|object| self.surroundings.object_signal(object, &self.state))
+            .collect();
+        for (node, band) in band_of.iter().enumerate() {
+            of_own[*band] += own.scatter.sigma(node) * own.counts[node].abs();
+            let sigma = other.scatter.sigma(node);
+            let brightest = lights.iter().map(|light| light[node]).fold(0.0, f64::max);
+            of_light[*band] += sigma * kappa * bands.weights_cm1()[node] * brightest;
+            per_count[*band] = per_count[*band].max(sigma / alternative[node]);
+        }
+        let of_band = |w: usize| {
+            let [own, there] = [kappa * target[w], kappa * target[w] * (1.0 + share)];
+            let root = 0.5 * [own, there].map(|n| (n + counting.var_added(w)).sqrt()).iter().sum::<f64>();
+            let errors = of_own[w] + (per_count[w] * there).max(of_light[w]);
+            0.5 * (there - own) / root.hypot(errors)
+        };
+        (0..bands.len()).map(of_band).fold(f64::INFINITY, f64::min)
     }
 
     /// Variance of an average band by the errors, the alternative in its nearest state, counts².

@@ -216,6 +216,7 @@ impl Study {
     fn view(&self, camera: &Camera, [near, far]: [Seen<'_>; 2]) -> View {
         let mut view = View::at(far.distance_m);
         view.extent = self.extent(camera, far.distance_m);
+        view.of_object = self.scenario.scope() == Scope::Object;
         view.fill = self.fill(camera, near.distance_m);
         if !far.air.is_empty() {
             let open = camera.received(&self.open_bands);
@@ -256,9 +257,7 @@ impl Study {
         }
         let of_size = |(size_m, distance_m)| {
             let ring_m = DARK_RING * longest_wavelength_m(&self.open_bands) * camera.f_number;
-            // By lens or by view, the fewer.
-            let [_, coarser_rad] = camera.pixel_angles_rad();
-            Extent::inside(size_m, coarser_rad * distance_m, ring_m / camera.pixel_m)
+            Extent::inside(size_m, camera.footprint_m(distance_m), ring_m / camera.pixel_m)
         };
         match target.pixels {
             Some(filled) => filled.extent(),

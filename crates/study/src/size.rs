@@ -198,11 +198,16 @@ impl Study {
         let camera = own.camera_result(photon_radiance);
         let object = own.object(surface)?;
         let solve_for = match &own.camera {
-            Some(camera) if asked.solutions => Some(own.solutions(camera, surface)?),
+            // With errors that readings share every trial takes a proof of its own.
+            Some(camera) if asked.solutions && own.errors_shared().is_none() => {
+                Some(own.solutions(camera, surface)?)
+            }
             _ => None,
         };
         let sensitivity = match &own.camera {
-            Some(camera) if asked.sensitivity => Some(own.sensitivity(camera, surface, index)?),
+            Some(camera) if asked.sensitivity && own.errors_shared().is_none() => {
+                Some(own.sensitivity(camera, surface, index)?)
+            }
             _ => None,
         };
         if let Some(camera) = &camera {

@@ -121,6 +121,15 @@ impl Say for Condition {
                 "the emissivities are known better than to {error} rms (with such errors, which all pixels share, d is {} at most)",
                 significant(*distance, 2)
             ),
+            Self::ErrorsCorrelated { length_cm1 } => {
+                format!("errors of the emissivities are correlated over {length_cm1} cm^-1 and no more")
+            }
+            Self::PatternOfEachBand => {
+                "the pattern of the array is another one in each band, as a correction behind each filter leaves it".into()
+            }
+            Self::PixelsByLens => {
+                "as many pixels are on the target as pixel and focal length say, which the field of view contradicts".into()
+            }
             Self::AlikePixels { pixels } => format!(
                 "the {} pixels that are added up are found, and all of them see the same of the target",
                 significant(*pixels, 3)
@@ -187,7 +196,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 28] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 31] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -218,6 +227,21 @@ pub(crate) const EXPLAINED: [[&str; 3]; 28] = [
         "Nobody states how well the emissivities are known: all pixels of an object share their errors, and no number of pixels or frames \
          averages them away.",
         "Measure these emissivities, and state sensitivity.emissivity_error, which the verdict then has in it.",
+    ],
+    [
+        "errors-correlated",
+        "Over which length errors of the emissivities are correlated is not stated.",
+        "State sensitivity.correlation beside the error.",
+    ],
+    [
+        "pattern-of-each-band",
+        "Patterns of the array are taken as independent between bands; one offset in all of them is another noise, which may be worse or better.",
+        "Correct the non-uniformity behind every filter.",
+    ],
+    [
+        "pixels-by-lens",
+        "Field of view and pixels across it contradict pixel and focal length, by which the pixels on the object are counted.",
+        "State the camera.field_of_view of this lens.",
     ],
     [
         "alike-pixels",

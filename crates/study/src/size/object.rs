@@ -24,6 +24,8 @@ const NO_CEILING: f64 = 1e3;
 /// The most frames of a curve, and its points.
 const MOST_FRAMES: f64 = 1e6;
 const POINTS: usize = 19;
+/// The same where each takes a proof.
+const POINTS_WITH_ERRORS: usize = 7;
 
 /// Statistical distance over readings, frames varied.
 #[derive(Debug, Clone, PartialEq)]
@@ -97,14 +99,14 @@ impl Study {
         let endless = task.forward(Quantity::Frames, f64::from(u32::MAX));
         let ceiling_bounds = Some(reach.anew(&endless)?)
             .filter(|[_, found]| *found <= NO_CEILING * distance_bounds[1].max(f64::MIN_POSITIVE));
+        let spec = self.errors_shared();
         let frames_worth = match ceiling_bounds {
-            Some([_, found]) if found > 0.0 => {
+            Some([_, found]) if found > 0.0 && spec.is_none() => {
                 let most = hadar::policy::CameraTask { required: WORTH * found, ..task };
                 most.solve(Quantity::Frames, |trial| reach.followed(trial))?.value
             }
             _ => None,
         };
-        let spec = self.errors_shared();
         let ceiling_made_of = match ceiling_bounds {
             Some(_) => self.left_after(&endless, alternative, spec)?,
             None => Vec::new(),
@@ -137,7 +139,8 @@ impl Study {
         };
         let (task, pixel) = (self.task(camera), self.of_one_pixel());
         let pixels = self.extent(camera, task.distance_m).pixels();
-        let steps = (0..POINTS).map(|i| MOST_FRAMES.powf(i as f64 / (POINTS - 1) as f64).round());
+        let points = if self.errors_shared().is_some() { POINTS_WITH_ERRORS } else { POINTS };
+        let steps = (0..points).map(|i| MOST_FRAMES.powf(i as f64 / (points - 1) as f64).round());
         let frames: Vec<f64> = steps.collect();
         let along = |study: &Self| -> Result<Vec<f64>> {
             let mut reach = Reach::new(study, alternative);

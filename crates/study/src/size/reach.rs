@@ -20,8 +20,6 @@ use hadar_scenario::DistanceKind;
 
 /// Relative difference between a followed and a fully searched nearest distance that is rounding.
 const SAME: f64 = 1e-10;
-/// The same with errors that readings share: a separation at a state that is the nearest by another metric.
-const SAME_WITH_ERRORS: f64 = 1e-5;
 /// How often another state may turn out nearer, or few counts ask for another distance, before every trial is searched in full.
 const TURNS: usize = 8;
 /// How often more is asked for until what is proved suffices.
@@ -137,8 +135,7 @@ impl<'a> Reach<'a> {
                 (Some(spec), (found, Some(nearest))) => {
                     let seen = (bands, counting);
                     let solver = &mut solvers.nearest;
-                    let how = (spec, start.is_some());
-                    let with = study.with_shared_errors(solver, pair[1], seen, (found, nearest), how)?;
+                    let with = study.with_shared_errors(solver, pair[1], seen, (found, nearest), spec)?;
                     (with.0, Some(with.1))
                 }
                 (_, found) => found,
@@ -227,7 +224,6 @@ impl<'a> Reach<'a> {
     fn solve_found(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
         // What is asked of the distance, and what came of the last one, as logarithms over what is required.
         let (mut asked, mut last) = (0.0, None);
-        let same = if self.study.errors_shared().is_some() { SAME_WITH_ERRORS } else { SAME };
         for _ in 0..TURNS {
             let aimed = CameraTask { required: task.required * f64::exp(asked), ..task.clone() };
             let mut solution = aimed.solve(quantity, |trial| {
@@ -251,13 +247,13 @@ impl<'a> Reach<'a> {
                 true if quantity == Quantity::Frames => break,
                 true => (anew / task.required).ln(),
                 // Where another state is nearer at this noise, that is followed from now on.
-                false if anew >= solution.statistical_distance * (1.0 - same) => return Ok(solution),
+                false if anew >= solution.statistical_distance * (1.0 - SAME) => return Ok(solution),
                 false => {
                     (asked, last) = (0.0, None);
                     continue;
                 }
             };
-            if found.abs() <= same {
+            if found.abs() <= SAME {
                 solution.statistical_distance = anew;
                 return Ok(solution);
             }

@@ -25,7 +25,9 @@ impl Study {
     /// The pairs of quantities that are traded off in this scenario, the second solved for along the first.
     #[must_use]
     pub fn traded_off(&self) -> Vec<(Quantity, Quantity)> {
-        let Some(camera) = &self.camera else { return Vec::new() };
+        let Some(camera) = self.camera.as_ref().filter(|_| self.errors_shared().is_none()) else {
+            return Vec::new();
+        };
         let task = self.task(camera);
         let known = |pair: &(Quantity, Quantity)| match pair.1 {
             Quantity::Speed => Motion::of(camera, task.distance_m).is_some(),

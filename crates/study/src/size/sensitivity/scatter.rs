@@ -30,6 +30,14 @@ pub struct ScatterOf {
 }
 
 impl Scatter<'_> {
+    /// Deviation at a node.
+    pub(crate) fn sigma(&self, node: usize) -> f64 {
+        match self {
+            Self::Ripple(ripple) => ripple.sigma,
+            Self::Modes(modes) => modes.iter().map(|mode| mode[node] * mode[node]).sum::<f64>().sqrt(),
+        }
+    }
+
     /// An emissivity that is drawn.
     pub(crate) fn applied(&self, emissivity: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
         match self {
