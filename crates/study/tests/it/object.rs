@@ -180,3 +180,37 @@ fn what_is_no_object_is_refused() {
     says("pixels = 4\nsize = \"1 m\"", "", "size");
     says("pixels = 4", "of = \"car\"", "pixel");
 }
+
+/// Of fewer states the nearest is no nearer: what is proved of all of them is no more than what is found of some. Dark surroundings give an
+/// alternative of high emissivity more contrast, and so larger errors, than the state that is nearest without any: of that state alone the
+/// answer was 'yes'.
+#[test]
+fn what_is_proved_with_errors_holds_for_every_lighting() {
+    let of = |target: &str, error: &str, lighting: &str| {
+        let more =
+            format!("[sensitivity]\nemissivity_error = \"{error} absolute\"\ncorrelation = \"10 cm^-1\"");
+        let text = scene("pixels = 400", WHITE, "", &more)
+            .replace("material = \"skin\"", &format!("material = \"{target}\""))
+            .replace("[\"pmma\", \"aluminium\"]", "[\"skin\"]\nlighting = LIGHTING")
+            .replace("lighting = LIGHTING", &format!("lighting = {lighting}"))
+            .replace("lighting = 0.5", "lighting = 0.95")
+            .replace("\"34 degC\"", "\"297 K\"");
+        size(&text).verdict
+    };
+    for target in ["soda-lime-glass", "pmma"] {
+        for error in ["0.005", "0.02"] {
+            let all = of(target, error, "[0.0, 1.0]");
+            assert!(all.lower <= all.upper, "{target} {error}");
+            for some in ["[0.0, 0.1]", "[0.0, 0.01]", "[0.3, 0.6]", "[0.9, 1.0]"] {
+                let found = of(target, error, some);
+                assert!(
+                    all.lower <= found.upper,
+                    "{target} {error} {some}: {:?} {:?}",
+                    all.lower,
+                    found.upper
+                );
+                assert!(found.lower <= found.upper, "{target} {error} {some}");
+            }
+        }
+    }
+}
