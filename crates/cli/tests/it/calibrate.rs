@@ -374,11 +374,13 @@ fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
         counts.iter().map(|n| sigma * (n - 1e6) / 1e3).collect()
     };
     let (of_pixel, of_row) = (normals(1, shape.len(), 20.0), normals(2, rows * bands, 14.0));
+    // Bands of other levels, without which nothing of photons could be told.
+    let level = |i: usize| if i % bands == 0 { 5e4 } else { 9e4 };
     let mut names = Vec::new();
     for frame in 0..frames {
         let own = normals(10 + frame, shape.len(), 40.0);
         let sample =
-            |i: usize| 5e4 + own[i] + of_pixel[i] + of_row[i / (columns * bands) * bands + i % bands];
+            |i: usize| level(i) + own[i] + of_pixel[i] + of_row[i / (columns * bands) * bands + i % bands];
         let samples: Vec<f64> = (0..shape.len()).map(sample).collect();
         let name = format!("shutter_{frame}.npy");
         write_npy(&folder.path().join(&name), shape, &samples).unwrap();
@@ -408,12 +410,12 @@ fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
     );
     assert!(value("column_noise") < 3.0 && camera.contains("# at most"), "{camera}");
     let said = folder.run(&["calibrate", "noise", "shutter.toml"]).stdout;
-    assert!(said.starts_with("Beside 40") && said.contains("row to row, staying (v)"), "{said}");
+    assert!(said.starts_with("Beside ") && said.contains("row to row, staying (v)"), "{said}");
     // The camera is one that a scenario takes.
     folder.file("size.toml", &format!("[target]\nmaterial = \"skin\"\ntemperature = \"34 degC\"\n[alternatives]\nmaterials = [\"pmma\"]\n{}\npreset = \"flir-a325sc\"\n", camera.trim_end()));
     assert!(folder.json(&["size", "size.toml"])["camera"]["pattern"]["row_k"].as_f64().is_some());
     // Of a scene nobody says to be the same everywhere what stays is not the camera's alone.
     folder.file("scene.toml", &file);
     let said = folder.run(&["calibrate", "noise", "scene.toml"]).stdout;
-    assert!(said.contains("the scene is in it") && said.contains("what stays has the scene in it"), "{said}");
+    assert!(said.contains("what stays has the scene in it") && !said.contains("row_noise ="), "{said}");
 }

@@ -116,7 +116,8 @@ fn sentence(result: &NoiseFound) -> String {
 /// The figures as a scenario's `[camera]` has them; of photons and electronic noise none where they do not hold.
 pub(crate) fn camera(result: &NoiseFound) -> Option<String> {
     if !result.usable {
-        let rows = shared(result);
+        // Frames of one brightness tell what pixels share, if not photons.
+        let rows = if result.scenario.noise.uniform { shared(result) } else { String::new() };
         return (!rows.is_empty()).then(|| format!("[camera]\n{rows}"));
     }
     let [photons, ..] = result.photons_per_unit;
