@@ -13,7 +13,7 @@ const MOST_NAMED: usize = 12;
 /// use hadar_scenario::keys::commented;
 /// let text = commented("[target]\nmaterial = \"skin\"\n");
 /// assert!(text.contains("# What the target is made of.\nmaterial = \"skin\"\n"));
-/// assert!(text.ends_with("# Also: temperature, distance, size, extrapolate (hadar explain target)\n"), "{text}");
+/// assert!(text.ends_with("# Also: temperature, distance, size, pixels, extrapolate (hadar explain target)\n"), "{text}");
 /// ```
 #[must_use]
 pub fn commented(toml: &str) -> String {
