@@ -139,6 +139,12 @@ impl Scenario {
         Units::of(&self.source)
     }
 
+    /// Whether the verdict is of all pixels of the object together.
+    #[must_use]
+    pub fn is_of_object(&self) -> bool {
+        self.scope() == Scope::Object
+    }
+
     /// What the verdict is of: where nothing is said, the object if its pixels are stated.
     #[must_use]
     pub fn scope(&self) -> Scope {

@@ -211,6 +211,13 @@ impl Study {
             distances: found,
         };
         if own.mixtures() || other.mixtures() {
+            if self.errors_shared().is_some() {
+                let found =
+                    "mixtures of a class are not proved with errors that the pixels of an object share";
+                let error = Error::malformed(found, "leave mixtures or [sensitivity] out");
+                let mixed = if own.mixtures() { own } else { other };
+                return Err(error.at(self.scenario.place(&format!("class.{}.mixtures", mixed.name))));
+            }
             let (pair, mixtures) = self.worst_mixture(own, other, (a, b), distance)?;
             (target, alternative) = pair;
             if let Some(told) = &mut answer.told_apart {
@@ -235,7 +242,7 @@ impl Study {
         let kind = self.scenario.requirement.by;
         let studies: Vec<Self> =
             own.surfaces.iter().map(|target| Self { target: target.clone(), ..self.clone() }).collect();
-        if kind == DistanceKind::Nearest && !self.unknowns.has_priors() {
+        if kind == DistanceKind::Nearest && !self.unknowns.has_priors() && self.errors_shared().is_none() {
             let countings: Option<Vec<Counting>> = studies.iter().map(Self::counting).collect();
             fn spectra(surfaces: &[Surface]) -> Vec<&[f64]> {
                 surfaces.iter().map(|surface| surface.emissivity.as_slice()).collect()
@@ -246,7 +253,7 @@ impl Study {
             let required = self.camera.as_ref().map(|_| self.required_of_members(own));
             return classes.distances(countings.as_deref(), required, skipping, &|_, _| ());
         }
-        // Local distances take less time than bounds on them would, and priors hang on the photons.
+        // Local distances take less time than bounds on them would, priors hang on the photons, and shared errors on the pair.
         let pair = |(study, alternative): (&Self, &Surface)| {
             let (distance, lower, relative_error) = match study.counting() {
                 Some(counting) => {

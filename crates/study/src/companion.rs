@@ -21,7 +21,6 @@ use hadar::policy::practice::observer::Law;
 use hadar::policy::practice::resolution::{BACKGROUND_K, PERCEPTION, Transfer, mrtd_k, netd_k};
 use hadar::policy::practice::{ObserverTask, PIXELS_PER_CYCLE, Subtense};
 use hadar::spectrum::Bands;
-use hadar_scenario::Scope;
 
 /// What a companion table is made of. What is not given makes rows without numbers.
 #[derive(Debug, Clone, Copy)]
@@ -92,7 +91,7 @@ impl Study {
 impl Study {
     /// Pixels of the object at a distance; `None` where the verdict is of one pixel.
     pub(crate) fn pixels_of_object(&self, distance_m: Option<f64>) -> Option<f64> {
-        let camera = self.camera.as_ref().filter(|_| self.scenario.scope() == Scope::Object)?;
+        let camera = self.camera.as_ref().filter(|_| self.scenario.is_of_object())?;
         Some(self.extent(camera, distance_m).pixels())
     }
 }

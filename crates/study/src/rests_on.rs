@@ -11,7 +11,7 @@ use hadar::instrument::{Assumed, Camera, Readout};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::spectrum::Bands;
-use hadar_scenario::{DistanceKind, Scope, Setting};
+use hadar_scenario::{DistanceKind, Setting};
 use std::collections::{HashMap, HashSet};
 
 /// Share of draws of the emissivities that settles a question.
@@ -62,7 +62,7 @@ impl Study {
         found.extend(
             self.one_numbers(&pair.alternative).map(|emissivities| Condition::Constants { emissivities }),
         );
-        let is_object = self.scenario.scope() == Scope::Object;
+        let is_object = self.scenario.is_of_object();
         found.extend(self.of_pair(camera, bounds_lower(pair), reached.errors.filter(|_| !is_object)));
         if let (true, Some(other)) = (is_object && met, self.alternative(&pair.alternative)) {
             found.extend(self.usual_errors(other)?);
@@ -94,7 +94,7 @@ impl Study {
         if let Some((index, pair)) = hardest {
             let own = self.against(index);
             let alternative = own.alternatives.get(index);
-            let is_object = self.scenario.scope() == Scope::Object;
+            let is_object = self.scenario.is_of_object();
             let of_pixel = alternative.filter(|_| !is_object);
             let errors = of_pixel.map(|other| own.emissivity_errors(camera, other, index)).transpose()?;
             let errors = errors.map(|found| [found.error, found.share_met]);
@@ -103,7 +103,7 @@ impl Study {
                 found.extend(own.usual_errors(other)?);
             }
         }
-        if self.scenario.scope() == Scope::Object && others.clone().next().is_some() {
+        if self.scenario.is_of_object() && others.clone().next().is_some() {
             found.push(Condition::EmissivityKnown);
         }
         // Distances alone are compared here.
@@ -174,7 +174,7 @@ impl Study {
         let mut found = more;
         found.extend(self.of_camera(camera, brightest));
         found.extend(self.of_scene(camera, asked));
-        if self.scenario.scope() == Scope::Object {
+        if self.scenario.is_of_object() {
             found.push(Condition::EmissivityKnown);
         }
         found.retain(|one| one.counts(met));
@@ -213,11 +213,11 @@ impl Study {
         }
         // The farther, the fewer.
         let pixels = self.extent(camera, asked.distance_m).pixels();
-        if scenario.scope() == Scope::Object {
+        if scenario.is_of_object() {
             found.push(Condition::AlikePixels { pixels });
         }
         let figures = camera.pattern.unstated(false);
-        let is_object = scenario.scope() == Scope::Object;
+        let is_object = scenario.is_of_object();
         if is_object && scenario.target.size_m.is_some() && camera.contradicts_its_view() {
             found.push(Condition::PixelsByLens);
         }
@@ -233,7 +233,7 @@ impl Study {
         if is_object && !figures.is_empty() && camera.noise.is_some() {
             found.push(Condition::FrameNoise { figures });
         }
-        if scenario.target.size_m.is_none() && scenario.scope() == Scope::Pixel {
+        if scenario.target.size_m.is_none() && !scenario.is_of_object() {
             let footprint_m = asked.distance_m.map(|z| camera.footprint_m(z));
             found.push(Condition::FillsPixel { footprint_m });
         }

@@ -12,6 +12,9 @@
 //!
 //! Of more bands than [`MOST_BANDS`] with nodes within them, or of classes, the upper end is the distance without errors.
 
+mod errors;
+
+use self::errors::{Errors, band_of};
 use crate::condition::Condition;
 use crate::distances::Statistical;
 use crate::size::sensitivity::linear::contrast;
@@ -20,12 +23,12 @@ use crate::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
-use hadar::identifiability::shared::{ErrorChain, SharedCovariance, separation_along};
+use hadar::identifiability::shared::{SharedCovariance, separation_along};
 use hadar::instrument::Camera;
 use hadar::planck;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
-use hadar_scenario::{DistanceKind, Scope, SensitivitySpec};
+use hadar_scenario::{DistanceKind, SensitivitySpec};
 
 /// The covariance of more bands takes more than a second.
 const MOST_BANDS: usize = 1000;
@@ -35,97 +38,6 @@ const SHARES: [f64; 2] = [0.1, 0.4];
 const HALVINGS: usize = 60;
 /// Lightings at which states are looked for.
 const LIGHTINGS: usize = 5;
-
-/// The band of every node.
-fn band_of(bands: &Bands) -> Vec<usize> {
-    let nodes = bands.sum_nodes(&vec![1.0; bands.nodes_cm1().len()]);
-    let of_band = |(band, nodes): (usize, &f64)| std::iter::repeat_n(band, *nodes as usize);
-    nodes.iter().enumerate().flat_map(of_band).collect()
-}
-
-/// Errors of one surface, and what each of its nodes does to the counts of its band.
-struct Errors<'s> {
-    scatter: &'s Scatter<'s>,
-    /// κ w_j C_j, counts.
-    counts: Vec<f64>,
-}
-
-impl Errors<'_> {
-    /// Adds Σ_v |C_wv|, or more, of every band.
-    fn add_sums(&self, band_of: &[usize], sums: &mut [f64]) {
-        match self.scatter {
-            Scatter::Modes(modes) => {
-                for mode in *modes {
-                    // Whatever the signs of the counts.
-                    let mut moved = vec![0.0; sums.len()];
-                    for ((band, counts), m) in band_of.iter().zip(&self.counts).zip(mode) {
-                        moved[*band] += (counts * m).abs();
-                    }
-                    let all: f64 = moved.iter().sum();
-                    sums.iter_mut().zip(&moved).for_each(|(sum, m)| *sum += m * all);
-                }
-            }
-            Scatter::Ripple(ripple) => {
-                let var = ripple.sigma * ripple.sigma;
-                // Σ over all nodes before this one, and over all behind it, with their correlations.
-                let mut before = 0.0;
-                for (node, correlation) in &ripple.chain {
-                    let own = self.counts[*node].abs();
-                    before *= correlation;
-                    sums[band_of[*node]] += var * own * (before + own);
-                    before += own;
-                }
-                let (mut behind, mut correlation) = (0.0, 0.0);
-                for (node, to_before) in ripple.chain.iter().rev() {
-                    behind *= correlation;
-                    sums[band_of[*node]] += var * self.counts[*node].abs() * behind;
-                    behind += self.counts[*node].abs();
-                    correlation = *to_before;
-                }
-            }
-        }
-    }
-
-    /// Counts by which one mode of the emissivity moves every band.
-    fn moved(&self, mode: &[f64], band_of: &[usize], bands: usize) -> Vec<f64> {
-        let mut moved = vec![0.0; bands];
-        for ((band, counts), m) in band_of.iter().zip(&self.counts).zip(mode) {
-            moved[*band] += counts * m;
-        }
-        moved
-    }
-
-    /// Adds the covariance of the bands.
-    fn add_covariance(&self, band_of: &[usize], covariance: &mut SharedCovariance, bands: usize) {
-        match self.scatter {
-            Scatter::Modes(modes) => {
-                modes.iter().for_each(|mode| covariance.add_mode(&self.moved(mode, band_of, bands)));
-            }
-            Scatter::Ripple(ripple) => {
-                let var = ripple.sigma * ripple.sigma;
-                // Of every band what its nodes before have in common with the next one.
-                let mut before = vec![0.0; bands];
-                for (node, correlation) in &ripple.chain {
-                    let (band, own) = (band_of[*node], self.counts[*node]);
-                    before.iter_mut().for_each(|sum| *sum *= correlation);
-                    covariance.add(band, band, var * own * own);
-                    for (other, sum) in before.iter().enumerate().filter(|(_, sum)| **sum != 0.0) {
-                        covariance.add(band, other, var * own * sum);
-                        covariance.add(other, band, var * own * sum);
-                    }
-                    before[band] += own;
-                }
-            }
-        }
-    }
-
-    /// As a chain along bands of one node each, which these are in their order.
-    fn chain(&self, order: &[usize]) -> Option<ErrorChain> {
-        let Scatter::Ripple(ripple) = self.scatter else { return None };
-        let counts = order.iter().map(|node| ripple.sigma * self.counts[*node]).collect();
-        Some(ErrorChain { counts, correlation: ripple.chain.iter().map(|(_, rho)| *rho).collect() })
-    }
-}
 
 impl Study {
     /// What errors of the emissivities as they usually are do to what is told of an object, where the scenario states none.
@@ -151,7 +63,7 @@ impl Study {
     /// The errors that are stated and that count: of an object, by the distance that is a limit.
     pub(crate) fn errors_shared(&self) -> Option<SensitivitySpec> {
         let is_limit = self.scenario.requirement.by == DistanceKind::Nearest;
-        self.scenario.sensitivity.filter(|_| is_limit && self.scenario.scope() == Scope::Object)
+        self.scenario.sensitivity.filter(|_| is_limit && self.scenario.is_of_object())
     }
 
     /// A distance that was found with the emissivities as they are, by readings that share errors of such a spec.
@@ -166,8 +78,7 @@ impl Study {
         if found.distance == 0.0 {
             return Ok((found, nearest));
         }
-        let index = self.alternatives.iter().position(|other| other.emissivity == alternative);
-        let [(of_target, _), (of_other, _)] = self.scatters(index.unwrap_or(usize::MAX), spec);
+        let [of_target, of_other] = self.scatters_beside(alternative, spec);
         let band_of = band_of(bands);
         let kappa = counting.counts_per_radiance;
         let counts_of =
@@ -212,6 +123,14 @@ impl Study {
         }
         let lower = lower.min(upper).min(found.lower);
         Ok((Statistical { distance: upper, lower, ..found }, state))
+    }
+
+    /// How the emissivities of the target and of an alternative scatter: as the class says of which it is one.
+    fn scatters_beside(&self, alternative: &[f64], spec: SensitivitySpec) -> [Scatter<'_>; 2] {
+        let is_of = |surface: &Surface| surface.emissivity == alternative;
+        let of_class = self.members[1].iter().position(|members| members.surfaces.iter().any(is_of));
+        let index = of_class.or_else(|| self.alternatives.iter().position(is_of));
+        self.scatters(index.unwrap_or(usize::MAX), spec).map(|(scatter, _)| scatter)
     }
 
     /// Nearest states of the alternative with its lighting held.
@@ -310,14 +229,13 @@ impl Study {
         let counting = self.counting_of(camera);
         let kind = self.scenario.requirement.by;
         let (_, nearest) = self.statistical_at(kind, alternative, &counting)?;
-        let index = self.alternatives.iter().position(|other| other.emissivity == alternative.emissivity);
-        let scatters = self.scatters(index.unwrap_or(usize::MAX), spec);
+        let scatters = self.scatters_beside(&alternative.emissivity, spec);
         let band_of = band_of(&self.bands);
         let bands = self.bands.len();
         let mut covariance = SharedCovariance::none(bands.min(MOST_BANDS));
         // Of more bands what the variances are at most.
         let mut sums = vec![0.0; bands];
-        for ((scatter, _), state) in scatters.iter().zip([Some(&self.state), nearest.as_ref()]) {
+        for (scatter, state) in scatters.iter().zip([Some(&self.state), nearest.as_ref()]) {
             let Some(state) = state else { continue };
             let counts = contrast(self, &self.bands, state);
             let counts = counts.iter().map(|c| counting.counts_per_radiance * c).collect();

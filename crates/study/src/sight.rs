@@ -21,7 +21,6 @@ use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
-use hadar_scenario::Scope;
 
 /// The bands as they reach a camera, and what its pixel sees beside the target.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,10 +163,7 @@ impl Study {
         let refuse = |key: &str, found: &str, instead: &str| {
             Err(Error::malformed(found, instead).at(scenario.place(key)))
         };
-        if scenario.scope() == Scope::Object
-            && scenario.target.pixels.is_none()
-            && scenario.target.size_m.is_none()
-        {
+        if scenario.is_of_object() && scenario.target.pixels.is_none() && scenario.target.size_m.is_none() {
             let instead = "write size = \"0.5 m\" and distance = \"30 m\" in [target], or pixels = 400";
             return refuse("requirement.of", "an object of which nobody says how large it is", instead);
         }
@@ -216,7 +212,7 @@ impl Study {
     fn view(&self, camera: &Camera, [near, far]: [Seen<'_>; 2]) -> View {
         let mut view = View::at(far.distance_m);
         view.extent = self.extent(camera, far.distance_m);
-        view.of_object = self.scenario.scope() == Scope::Object;
+        view.of_object = self.scenario.is_of_object();
         view.fill = self.fill(camera, near.distance_m);
         if !far.air.is_empty() {
             let open = camera.received(&self.open_bands);
@@ -252,7 +248,7 @@ impl Study {
     /// Pixels of the target whose counts are added up: one, but of an object those that it fills.
     pub(super) fn extent(&self, camera: &Camera, distance_m: Option<f64>) -> Extent {
         let target = &self.scenario.target;
-        if self.scenario.scope() == Scope::Pixel {
+        if !self.scenario.is_of_object() {
             return Extent::ONE;
         }
         let of_size = |(size_m, distance_m)| {

@@ -8,7 +8,7 @@ use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
-use hadar_scenario::{DistanceKind, Scenario, Scope};
+use hadar_scenario::{DistanceKind, Scenario};
 use serde::ser::{SerializeMap, Serializer};
 
 mod curves;
@@ -319,7 +319,7 @@ impl Study {
             distance_m,
             farthest_m: self.atmosphere.as_ref().map(|air| air.table.longest_m()),
             size_m: self.scenario.target.size_m,
-            of_object: self.scenario.scope() == Scope::Object,
+            of_object: self.scenario.is_of_object(),
         }
     }
 

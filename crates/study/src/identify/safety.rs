@@ -190,8 +190,11 @@ impl Study {
         Ok(Beside { found: Some(nearest.max(upper)), excluded: self.excludes(Some(decision.told), lower) })
     }
 
-    /// Only the nearest distance, with what is proved of it, excludes.
+    /// Only the nearest distance, with what is proved of it, excludes; of an object with the errors that its pixels share.
     fn excludes(&self, told: Option<YesNo>, lower: f64) -> bool {
-        self.scenario.requirement.by == DistanceKind::Nearest && told == Some(YesNo::Yes) && lower >= AT_99
+        self.scenario.requirement.by == DistanceKind::Nearest
+            && (self.errors_shared().is_some() || !self.scenario.is_of_object())
+            && told == Some(YesNo::Yes)
+            && lower >= AT_99
     }
 }

@@ -20,7 +20,6 @@ use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::material::Library;
-use hadar_scenario::Scope;
 use hadar_scenario::rule::{Clause, Demand, StopSpec};
 use hadar_scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 
@@ -274,14 +273,14 @@ impl TellApart {
         // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
         let plain = self.scenario.target.size_m.is_none()
             && self.scenario.atmosphere.is_none()
-            && self.scenario.scope() == Scope::Pixel;
+            && !self.scenario.is_of_object();
         let quotable = Quotable {
             envelope: envelope.clone(),
             required: self.required,
             speed_m_s,
             stop: self.stop.map(|spec| StopResult::of(spec.stop())),
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
-            of_object: self.scenario.scope() == Scope::Object,
+            of_object: self.scenario.is_of_object(),
             units: self.scenario.units(),
         };
         RuleRequirement {

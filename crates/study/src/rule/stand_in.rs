@@ -28,7 +28,6 @@ use hadar::policy::envelope::{EnvelopeScene, Ranges};
 use hadar::policy::stand_in::{Effort, Farthest, farthest};
 use hadar::root;
 use hadar::scene::State;
-use hadar_scenario::Scope;
 use hadar_scenario::rule::{Demand, StandInSpec};
 use hadar_scenario::{Date, Envelope, MaterialRef, Scenario, Units};
 
@@ -195,7 +194,7 @@ impl RuleStudy {
             detection_probability: detection::probability(apart.required),
             person_k,
             temperature_k,
-            of_object: apart.scenario.scope() == Scope::Object,
+            of_object: apart.scenario.is_of_object(),
             rows,
             units: scenario.units(),
         })

@@ -86,7 +86,7 @@ pub struct CeilingShare {
 impl Study {
     /// What the readings of the object say together; `None` of a pixel, or without a camera.
     pub(crate) fn object(&self, alternative: &Surface) -> Result<Option<ObjectAnswer>> {
-        let Some(camera) = self.camera.as_ref().filter(|_| self.scenario.scope() == Scope::Object) else {
+        let Some(camera) = self.camera.as_ref().filter(|_| self.scenario.is_of_object()) else {
             return Ok(None);
         };
         let task = self.task(camera);
@@ -134,7 +134,7 @@ impl Study {
     /// # Errors
     /// As [`Study::size`].
     pub fn object_curve(&self, alternative: &Surface) -> Result<Option<ObjectCurve>> {
-        let Some(camera) = self.camera.as_ref().filter(|_| self.scenario.scope() == Scope::Object) else {
+        let Some(camera) = self.camera.as_ref().filter(|_| self.scenario.is_of_object()) else {
             return Ok(None);
         };
         let (task, pixel) = (self.task(camera), self.of_one_pixel());

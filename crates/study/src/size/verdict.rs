@@ -13,7 +13,7 @@ use hadar::fisher::Nuisance;
 use hadar::identifiability::Status;
 use hadar::identifiability::decision::DecisionLaw;
 use hadar::instrument::Camera;
-use hadar_scenario::{DistanceKind, Scenario, Scope};
+use hadar_scenario::{DistanceKind, Scenario};
 
 /// The answer to 'can this camera do it' by the cheapest proofs, and no more.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -195,7 +195,7 @@ impl Study {
             alternative,
             conditions: conditions.clone(),
             pixels: self.pixels_on_target(camera),
-            of_object: self.scenario.scope() == Scope::Object,
+            of_object: self.scenario.is_of_object(),
         };
         let by_distance = (!check.identifiable).then_some(Shortfall::Distance);
         let verdict = Verdict {
@@ -280,7 +280,7 @@ impl Study {
             classes: self.classes.get(index).cloned().map(Box::new),
             conditions: conditions.clone(),
             pixels: self.camera.as_ref().and_then(|camera| self.pixels_on_target(camera)),
-            of_object: self.scenario.scope() == Scope::Object,
+            of_object: self.scenario.is_of_object(),
         };
         Ok(Verdict {
             met,
@@ -303,7 +303,7 @@ impl Study {
     /// Pixels on a target of a known size, where it is more than one.
     fn pixels_on_target(&self, camera: &Camera) -> Option<f64> {
         let target = &self.scenario.target;
-        if self.scenario.scope() == Scope::Object {
+        if self.scenario.is_of_object() {
             return Some(self.extent(camera, target.distance_m).pixels());
         }
         let across = target.size_m? / camera.footprint_m(target.distance_m?);
