@@ -9,6 +9,6 @@ pub mod stripes;
 
 pub use blackbody::BlackbodyScenario;
 pub use frames::Frames;
-pub use noise::NoiseScenario;
+pub use noise::{NoiseScenario, NoiseSpec};
 pub use response::ResponseScenario;
 pub use stripes::StripesScenario;

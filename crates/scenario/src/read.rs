@@ -69,7 +69,11 @@ pub(super) fn target(entry: &Entry<'_>) -> Result<Target> {
 
 fn pixels_filled(entry: &Entry<'_>) -> Result<PixelsFilled> {
     if entry.is_list() {
-        let [rows, columns] = entry.pair("[40, 10]")?;
+        let items = entry.items("pixels = [40, 10]")?;
+        let [rows, columns] = items.as_slice() else {
+            let found = format!("rows and columns are two numbers, but the list has {}", items.len());
+            return Err(entry.fail(Error::malformed(found, "write pixels = [40, 10], or pixels = 400")));
+        };
         return Ok(PixelsFilled::Sides([rows.count("40")?, columns.count("10")?]));
     }
     Ok(PixelsFilled::All(entry.count("400")?))

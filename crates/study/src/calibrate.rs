@@ -11,7 +11,7 @@ mod stripes;
 mod whole;
 
 pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, Worst};
-pub use noise::{NoiseFound, NoiseStudy};
+pub use noise::{NoiseFound, NoiseStudy, PhotonNoise};
 pub use response::{FilterRadiances, LeftOutFilter, ResponseFound, ResponseRow, ResponseStudy};
 pub use scene_radiance::SceneFound;
 pub use stripes::{Samples, StripesFound, StripesStudy};

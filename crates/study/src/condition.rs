@@ -118,6 +118,15 @@ conditions! {
         /// How many.
         bands: usize,
     } = "modelled", Assumed, "camera.readout";
+    /// The emissivities of an object's materials are as entered: nobody states their errors, which all of its pixels share.
+    SharedErrors {
+        /// Root mean square.
+        error: f64,
+        /// Statistical distance with such errors, at most.
+        distance: f64,
+        /// Whether what is proved with them does not reach the requirement.
+        undone: bool,
+    } = "shared-emissivity-errors", Proviso, "sensitivity.emissivity_error";
     /// Frames that are added up while something moves.
     RegisteredFrames(Proviso) = "registered-frames", Proviso, "camera.frames";
     /// Nothing moves until all bands of all frames are read.
@@ -142,15 +151,6 @@ conditions! {
         /// Share of the draws.
         share_met: f64,
     } = "emissivities", Proviso, "sensitivity.emissivity_error";
-    /// The emissivities of an object's materials are as entered: nobody states their errors, which all of its pixels share.
-    SharedErrors {
-        /// Root mean square.
-        error: f64,
-        /// Statistical distance with such errors, at most.
-        distance: f64,
-        /// Whether what is proved with them does not reach the requirement.
-        undone: bool,
-    } = "shared-emissivity-errors", Proviso, "sensitivity.emissivity_error";
     /// The emissivity of what is measured is exactly as entered.
     EmissivityKnown = "emissivity-known", Assumed, "sensitivity.emissivity_error";
     /// What is ranged looks as in the one scene that is rendered.
@@ -313,6 +313,10 @@ impl Condition {
         let short = Self::Waits { time_s: 0.0 }.place();
         let place = match self {
             Self::StillScene { time_s } if *time_s <= STILL_S => short,
+            // Errors that would not undo it are as those of a pixel.
+            Self::SharedErrors { undone: false, .. } => {
+                Self::Emissivities { error: 0.0, share_met: 1.0 }.place()
+            }
             // What makes nothing better stands last.
             _ if !self.favourable() => ROWS.len(),
             _ => self.place(),

@@ -361,11 +361,11 @@ fn a_dark_level_that_is_not_said_makes_no_camera() {
     );
 }
 
-/// Frames of a shutter: what pixels and rows share is found, and put into a camera by the NETD, as a scenario reads it.
+/// Frames of a shutter before a camera of one band: what pixels and rows share is found, and put into a camera by the NETD, as a scenario reads it.
 #[test]
 fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
     let folder = Folder::with("");
-    let (rows, columns, bands, frames) = (40, 48, 2, 12);
+    let (rows, columns, bands, frames) = (40, 48, 1, 12);
     let shape = Shape::new(rows, columns, bands).unwrap();
     let normals = |stream: u64, count: usize, sigma: f64| -> Vec<f64> {
         let draws = Draws::new(&Statistics::Poisson, &vec![1e6; count]).unwrap();
@@ -374,13 +374,11 @@ fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
         counts.iter().map(|n| sigma * (n - 1e6) / 1e3).collect()
     };
     let (of_pixel, of_row) = (normals(1, shape.len(), 20.0), normals(2, rows * bands, 14.0));
-    // Bands of other levels, without which nothing of photons could be told.
-    let level = |i: usize| if i % bands == 0 { 5e4 } else { 9e4 };
     let mut names = Vec::new();
     for frame in 0..frames {
         let own = normals(10 + frame, shape.len(), 40.0);
         let sample =
-            |i: usize| level(i) + own[i] + of_pixel[i] + of_row[i / (columns * bands) * bands + i % bands];
+            |i: usize| 5e4 + own[i] + of_pixel[i] + of_row[i / (columns * bands) * bands + i % bands];
         let samples: Vec<f64> = (0..shape.len()).map(sample).collect();
         let name = format!("shutter_{frame}.npy");
         write_npy(&folder.path().join(&name), shape, &samples).unwrap();
@@ -416,6 +414,11 @@ fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
     assert!(folder.json(&["size", "size.toml"])["camera"]["pattern"]["row_k"].as_f64().is_some());
     // Of a scene nobody says to be the same everywhere what stays is not the camera's alone.
     folder.file("scene.toml", &file);
-    let said = folder.run(&["calibrate", "noise", "scene.toml"]).stdout;
-    assert!(said.contains("what stays has the scene in it") && !said.contains("row_noise ="), "{said}");
+    let refused = folder.refusal(&["calibrate", "noise", "scene.toml"]);
+    assert!(
+        refused.contains("scene.toml:2: cube.data") && refused.contains("darker and brighter"),
+        "{refused}"
+    );
+    // Photons are of one brightness not told, and no table says that they are.
+    assert!(found.get("photons_per_unit").is_none() && !folder.path().join("shutter/variance.csv").exists());
 }

@@ -10,7 +10,7 @@ use crate::text::numbers::some;
 use crate::words::calibrate::noise::{camera, each_point};
 use hadar::error::Result;
 use hadar_estimate::calibrate::{Line, OfBand};
-use hadar_study::calibrate::NoiseFound;
+use hadar_study::calibrate::{NoiseFound, PhotonNoise};
 
 /// Curves of a figure.
 const MOST: usize = 6;
@@ -22,19 +22,21 @@ const MOST: usize = 6;
 pub fn bundle(result: &NoiseFound) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml());
-    bundle.add_table("noise.csv", bands(result))?;
-    bundle.add_table("variance.csv", variances(result))?;
-    bundle.add_table("sigma.csv", sigmas(result))?;
+    if let Some(found) = &result.photons {
+        bundle.add_table("noise.csv", bands(found))?;
+        bundle.add_table("variance.csv", variances(found))?;
+        bundle.add_table("sigma.csv", sigmas(found))?;
+    }
     if let Some(camera) = camera(result) {
         bundle.add("camera.toml", camera);
     }
     bundle.add_warnings(&result.warnings)?;
-    bundle.add_plots(&[transfer(result)])?;
+    bundle.add_plots(&result.photons.iter().map(transfer).collect::<Vec<_>>())?;
     Ok(bundle)
 }
 
 /// What was found of each band.
-fn bands(result: &NoiseFound) -> Table {
+fn bands(result: &PhotonNoise) -> Table {
     let of = |band: &OfBand, value: fn(&Line) -> f64| optional(band.line.as_ref().map(value));
     let bands: Vec<(usize, &OfBand)> = result.transfer.bands.iter().enumerate().collect();
     Table::of(
@@ -57,7 +59,7 @@ fn bands(result: &NoiseFound) -> Table {
 }
 
 /// Variance of the electronic noise in photons squared, as the `[cube]` of a ranging scenario reads it.
-fn variances(result: &NoiseFound) -> Table {
+fn variances(result: &PhotonNoise) -> Table {
     let common = &result.transfer.common;
     let variance = common.noise_electrons().powi(2);
     let variance = number(if variance.is_finite() { variance } else { 0.0 });
@@ -68,7 +70,7 @@ fn variances(result: &NoiseFound) -> Table {
 
 /// Deviations in the unit of the cube, as the `[cube]` of a decomposition reads them: of a sample at the mean of its band, and of the
 /// electronic noise in it; the common line's where it holds, else the band's own, wider by its standard error.
-fn sigmas(result: &NoiseFound) -> Table {
+fn sigmas(result: &PhotonNoise) -> Table {
     let mut table = Table::new(["band", "sigma", "electronic_sigma"]);
     let common = result.usable.then_some(&result.transfer.common);
     let variances: Vec<f64> =
@@ -85,7 +87,7 @@ fn sigmas(result: &NoiseFound) -> Table {
 }
 
 /// Variance over mean, some bands.
-fn transfer(result: &NoiseFound) -> Plot {
+fn transfer(result: &PhotonNoise) -> Plot {
     let bands = &result.transfer.bands;
     let looked_at: Vec<usize> = (0..bands.len()).filter(|band| !bands[*band].bins.is_empty()).collect();
     let shown: Vec<usize> = some(looked_at.len(), MOST).iter().map(|place| looked_at[*place]).collect();

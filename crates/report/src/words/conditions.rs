@@ -1,7 +1,7 @@
 //! What a verdict rests on. A favourable condition completes 'yes, if ', another says what was taken.
 
 use super::Say;
-use super::text::numbers::{celsius, listed};
+use super::text::numbers::{celsius, in_number, listed};
 use hadar::instrument::Assumed;
 use hadar::words::{length, quantity, share, significant};
 use hadar_study::{Condition, Proviso, RangeDecides};
@@ -132,7 +132,7 @@ impl Say for Condition {
             }
             Self::AlikePixels { pixels } => format!(
                 "the {} pixels that are added up are found, and all of them see the same of the target",
-                significant(*pixels, 3)
+                in_number(*pixels)
             ),
             Self::FrameNoise { figures } => format!(
                 "rows, columns and frames of the array have no noise of their own from frame to frame ({} not stated)",

@@ -19,7 +19,7 @@ pub(crate) use text::together;
 use super::Say;
 use super::classes::one_number;
 use super::probability::demanded;
-use super::text::numbers::in_a_row;
+use super::text::numbers::{in_a_row, in_number};
 use hadar::ranging::depth::Demand;
 use hadar::words::{self, fixed, length, quantity, significant};
 use hadar_scenario::{Units, interval};
@@ -198,7 +198,7 @@ impl Say for IdealCamera {
     fn say(&self) -> String {
         let filled = match self.pixels {
             1.0 => "target filling the pixel".to_owned(),
-            pixels => format!("target filling {} pixels", significant(pixels, 3)),
+            pixels => format!("target filling {} pixels", in_number(pixels)),
         };
         let distance = self.distance_m.map_or_else(String::new, |z| format!(" at {}", self.units.length(z)));
         format!(

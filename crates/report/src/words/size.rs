@@ -8,7 +8,7 @@ pub use text::{check, text};
 
 use super::probability::{demanded, reliability};
 use super::shortfall::clauses;
-use super::text::numbers::in_a_row;
+use super::text::numbers::{in_a_row, in_number};
 use super::{Say, conditions};
 use hadar::fisher::Nuisance;
 use hadar::words::significant;
@@ -82,7 +82,7 @@ fn of_pixels(finding: &Finding, reached: f64) -> String {
 /// Of an object: that all of its pixels decide together.
 fn by_pixels(finding: &Finding) -> String {
     match finding.pixels.filter(|_| finding.of_object) {
-        Some(pixels) => format!(" by its {} pixels together", significant(pixels, 3)),
+        Some(pixels) => format!(" by the {} pixels on it together", in_number(pixels)),
         None => String::new(),
     }
 }

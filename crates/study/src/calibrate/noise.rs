@@ -7,7 +7,7 @@ use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar_estimate::calibrate::{Asked, Component, Line, Transfer, photon_transfer, three_dimensional};
 use hadar_formats::cube::Found;
-use hadar_scenario::calibrate::NoiseScenario;
+use hadar_scenario::calibrate::{NoiseScenario, NoiseSpec};
 use serde::Serialize;
 
 /// Share of texture in what neighbours differ by from which on its removal matters.
@@ -35,6 +35,21 @@ pub struct NoiseFound {
     pub shape: Shape,
     /// How many frames there are.
     pub frames: usize,
+    /// What photons make of it; `None` of frames of one brightness, which tell nothing of that.
+    #[serde(flatten)]
+    pub photons: Option<PhotonNoise>,
+    /// Variances of the noise in three dimensions, unit² of the cube; `None` of one frame, or where samples are missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub three_dimensional: Option<[Component; 7]>,
+    /// What was done and what was spared.
+    pub stats: Work,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+}
+
+/// Photons and electronic noise by photon transfer.
+#[derive(Debug, Clone, Serialize)]
+pub struct PhotonNoise {
     /// Photons for one unit of the cube, 1/b, with the ends of its 95 % interval.
     pub photons_per_unit: [f64; 3],
     /// Deviation of the electronic noise of a reading, electrons, with the ends of its 95 % interval.
@@ -43,16 +58,9 @@ pub struct NoiseFound {
     pub gain_deviation: Option<f64>,
     /// Whether the figures hold for all bands and are told well enough to be used.
     pub usable: bool,
-    /// Variances of the noise in three dimensions, unit² of the cube; `None` of one frame, or where samples are missing.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub three_dimensional: Option<[Component; 7]>,
     /// What was fitted.
     #[serde(flatten)]
     pub transfer: Transfer,
-    /// What was done and what was spared.
-    pub stats: Work,
-    /// What the reader must know.
-    pub warnings: Vec<Warning>,
 }
 
 impl NoiseStudy {
@@ -86,21 +94,44 @@ impl NoiseStudy {
             (_, None, Some(path)) => error.in_file(path),
             _ => error,
         };
-        let transfer = match (singles.is_empty(), doubles.is_empty()) {
-            (false, true) => photon_transfer(&rows(&singles), &asked),
-            (true, false) => photon_transfer(&rows(&doubles), &asked),
+        let (transfer, three_dimensional) = match (singles.is_empty(), doubles.is_empty()) {
+            (false, true) => found(&rows(&singles), &asked),
+            (true, false) => found(&rows(&doubles), &asked),
             _ => Err(Error::malformed(
                 "frames of 32 bits and of 64 bits",
                 "write all frames as one type, np.float32 or np.float64",
             )),
         }
         .map_err(place)?;
-        let three_dimensional = match singles.is_empty() {
-            false => three_dimensional(&rows(&singles))?,
-            true => three_dimensional(&rows(&doubles))?,
-        };
-        let common = transfer.common;
         let mut warnings = self.frames.warnings();
+        let shape = self.frames.cubes.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
+        let photons = match transfer {
+            Ok(transfer) => Some(PhotonNoise::of(transfer, spec, &mut warnings).among(good, shape.bands())),
+            // One brightness tells nothing of photons, but what pixels share.
+            Err(_) if spec.uniform && three_dimensional.is_some_and(|terms| terms[0].variance > 0.0) => None,
+            Err(error) => return Err(place(error)),
+        };
+        Ok(NoiseFound {
+            scenario: self.scenario.clone(),
+            read: self.frames.read.clone(),
+            shape,
+            frames: self.frames.cubes.len(),
+            photons,
+            three_dimensional,
+            stats: {
+                let mut work = Work::default();
+                work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
+                work
+            },
+            warnings,
+        })
+    }
+}
+
+impl PhotonNoise {
+    /// The figures of a line that was fitted, with what the reader must know of it.
+    fn of(transfer: Transfer, spec: NoiseSpec, warnings: &mut Vec<Warning>) -> Self {
+        let common = transfer.common;
         if transfer.outliers > OUTLIERS {
             warnings.push(Warning::NoiseOutliers { share: transfer.outliers });
         }
@@ -133,26 +164,33 @@ impl NoiseStudy {
                 sigma: common.sigma_per_photon,
             });
         }
-        let shape = self.frames.cubes.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
         let inverse = |b: f64| if b > 0.0 { 1.0 / b } else { f64::INFINITY };
-        Ok(NoiseFound {
-            scenario: self.scenario.clone(),
-            read: self.frames.read.clone(),
-            shape,
-            frames: self.frames.cubes.len(),
+        Self {
             photons_per_unit: [inverse(common.per_photon), inverse(high), inverse(low)],
             noise_electrons: [common.noise_electrons(), least, most],
             gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
             usable: told && alike && possible,
-            three_dimensional,
-            transfer: transfer.among(good, shape.bands()),
-            stats: {
-                let mut work = Work::default();
-                work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
-                work
-            },
-            warnings,
-        })
+            transfer,
+        }
+    }
+
+    /// Of a cube of so many bands, of which those looked at were `of`.
+    fn among(self, of: &[usize], bands: usize) -> Self {
+        Self { transfer: self.transfer.among(of, bands), ..self }
+    }
+}
+
+/// A photon transfer, or why there is none, and the noise in three dimensions.
+type Told = (Result<Transfer>, Option<[Component; 7]>);
+
+/// # Errors
+/// Frames of different shapes, or that cannot be read.
+fn found<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Result<Told> {
+    let transfer = photon_transfer(frames, asked);
+    match three_dimensional(frames) {
+        Ok(terms) => Ok((transfer, terms)),
+        // What is wrong with the frames is said once.
+        Err(error) => Err(transfer.err().unwrap_or(error)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The numbers of a sizing one by one: what each is called, its value with its unit, and the key of the JSON that it stands at.
 
-use crate::text::numbers::{between, fixed, quantity, significant};
+use crate::text::numbers::{between, fixed, in_number, quantity, significant};
 use crate::words::probability::probability;
 use crate::words::size::no_limit;
 use hadar::identifiability::decision::DecisionLaw;
@@ -98,13 +98,9 @@ pub fn of_object(result: &Sizing) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut row = |label, value, key| rows.push(Row { label, value, key });
     let readings = object.pixels * f64::from(object.frames);
-    let sides = [object.rows, object.columns].map(|side| significant(side, 3)).join(" x ");
+    let sides = [object.rows, object.columns].map(in_number).join(" x ");
     let frames = if object.frames > 1 { format!(", {} frames", object.frames) } else { String::new() };
-    row(
-        "pixels that it fills",
-        format!("{} ({sides}{frames})", significant(object.pixels, 3)),
-        "object.pixels",
-    );
+    row("pixels that it fills", format!("{} ({sides}{frames})", in_number(object.pixels)), "object.pixels");
     let one = between(object.distance_of_one_bounds, 2);
     row("d of one pixel in one frame", one, "object.distance_of_one_bounds");
     row("d of all readings", between(object.distance_bounds, 2), "object.distance_bounds");

@@ -1,6 +1,7 @@
 //! Numbers and names as text: as short as they can be without losing what matters.
 
 pub(crate) use hadar::words::fixed;
+use hadar::words::whole;
 pub use hadar::words::{quantity, significant};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,6 +17,11 @@ pub(crate) fn photons(count: Option<f64>) -> String {
 pub fn between([low, high]: [f64; 2], digits: u32) -> String {
     let [from, to] = [low, high].map(|end| significant(end, digits as usize));
     if from == to || low >= SAME * high { to } else { format!("{from} to {to}") }
+}
+
+/// A number of pixels, which may be one on average: all digits of a whole one.
+pub(crate) fn in_number(count: f64) -> String {
+    if count.fract() == 0.0 && count < 1e15 { whole(count as u64) } else { significant(count, 3) }
 }
 
 /// Photons that a task takes: the least number that may do, and that which is proved to.
