@@ -167,6 +167,8 @@ conditions! {
     } = "errors-correlated", Assumed, "sensitivity.correlation";
     /// What rows, columns and pixels of an array have in common is another pattern in every band.
     PatternOfEachBand = "pattern-of-each-band", Assumed, "camera.fixed_pattern";
+    /// What rows and columns of an array have in common is another noise in every pixel of a window.
+    PatternOfEachPixel = "pattern-of-each-pixel", Assumed, "camera.row_noise";
     /// The pixels on an object are counted by the lens, where the view contradicts it.
     PixelsByLens = "pixels-by-lens", Assumed, "camera.field_of_view";
     /// Rows, columns and frames have no noise of their own beside that of the pixels.
@@ -391,6 +393,7 @@ impl Condition {
             | Self::EmissivityKnown
             | Self::OneScene
             | Self::PatternOfEachBand
+            | Self::PatternOfEachPixel
             | Self::PixelsByLens
             | Self::SurroundingsKnown
             | Self::Calibrated

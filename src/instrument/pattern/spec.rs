@@ -99,6 +99,12 @@ impl Pattern {
         self.sigmas_k() == [0.0; 6]
     }
 
+    /// Whether pixels share some of it.
+    #[must_use]
+    pub fn is_shared(&self) -> bool {
+        self.sigmas_k()[1..].iter().any(|sigma_k| *sigma_k > 0.0)
+    }
+
     /// Whether there is some that no number of frames averages away.
     #[must_use]
     pub fn has_fixed(&self) -> bool {

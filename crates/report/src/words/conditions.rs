@@ -127,6 +127,9 @@ impl Say for Condition {
             Self::PatternOfEachBand => {
                 "the pattern of the array is another one in each band, as a correction behind each filter leaves it".into()
             }
+            Self::PatternOfEachPixel => {
+                "rows and columns of the array have no noise in common beyond a pixel of a window".into()
+            }
             Self::PixelsByLens => {
                 "as many pixels are on the target as pixel and focal length say, which the field of view contradicts".into()
             }
@@ -196,7 +199,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 31] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 32] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -237,6 +240,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 31] = [
         "pattern-of-each-band",
         "Patterns of the array are taken as independent between bands; one offset in all of them is another noise, which may be worse or better.",
         "Correct the non-uniformity behind every filter.",
+    ],
+    [
+        "pattern-of-each-pixel",
+        "Row and column noise is taken as another one in every pixel; what a whole column of a window has in common moves a disparity farther.",
+        "Take out stripes first (`hadar calibrate stripes`), and state what is left as camera.fixed_pattern.",
     ],
     [
         "pixels-by-lens",

@@ -184,6 +184,9 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
         Resolved::Cube(cube) => cube.said(),
         Resolved::Scene(_) => Vec::new(),
     };
+    if study.camera.as_ref().is_some_and(|camera| camera.pattern.is_shared()) {
+        warnings.push(Warning::PatternOfEachPixel);
+    }
     if result.missing_windows > 0 {
         let of = [result.maps.rows.len(), result.maps.columns.len()].iter().product();
         warnings.push(Warning::WindowsMissing { windows: result.missing_windows, of });

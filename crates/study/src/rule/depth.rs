@@ -204,6 +204,7 @@ impl DepthClause {
         let mut figures = of_figures(camera, bands, None);
         figures.extend((!before.air).then_some(Condition::NoAir));
         figures.push(Condition::OneScene);
+        figures.extend(camera.pattern.is_shared().then_some(Condition::PatternOfEachPixel));
         let conditions = of_measured(figures, (camera, bands), before.asked, &self.set, passes);
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),

@@ -291,6 +291,8 @@ warnings! {
     Derivative { ratio: f64 } = "derivative";
     /// Two bands, or one.
     FewBands { bands: usize } = "few-bands";
+    /// A camera whose rows, columns or pixels have noise that stays or that they share.
+    PatternOfEachPixel = "pattern-of-each-pixel";
 
     /// A target that looks like the air before it.
     DistanceUnchanged { distance_m: f64 } = "distance-not-seen";

@@ -72,6 +72,13 @@ words! {
         FewBands { bands: 2 } => "two bands cannot tell temperature, strength of the emission and scattered light apart",
         FewBands { .. } => "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated",
     }
+    PatternOfEachPixel {
+        meaning: "Row and column noise of the camera is taken as another one in every pixel: what a whole column of a \
+            window has in common moves a disparity farther than that.",
+        remedy: "Take out stripes first (hadar calibrate stripes), and state what is left as camera.fixed_pattern.",
+        PatternOfEachPixel => "noise that rows and columns of the array share is taken as another one in each pixel of a window: bounds are \
+                               farther off than they say where it is not",
+    }
     DistanceUnchanged {
         meaning: "The air tells nothing of the distance: the target looks like it, or other unknowns \
             imitate any change.",
