@@ -47,7 +47,7 @@ pub struct ObjectCurve {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ObjectAnswer {
-    /// Rows and columns of pixels that the target fills.
+    /// Rows of pixels that the target fills.
     pub rows: f64,
     /// Columns of them.
     pub columns: f64,
@@ -59,7 +59,7 @@ pub struct ObjectAnswer {
     pub distance_of_one_bounds: [f64; 2],
     /// Statistical distance of all, as proved and as found.
     pub distance_bounds: [f64; 2],
-    /// How many independent readings all are worth, at least and at most by what is proved and found.
+    /// How many independent readings all are worth, (d/d₁)² of the distances that were found.
     pub effective_readings: f64,
     /// Statistical distance with frames without end, as proved and as found; `None` where it grows without end.
     pub ceiling_bounds: Option<[f64; 2]>,
