@@ -24,6 +24,8 @@ mod assumed;
 pub mod budget;
 pub mod bunching;
 mod camera;
+#[cfg(feature = "library")]
+pub mod catalogue;
 mod checked;
 pub mod comparison;
 mod counting;
@@ -34,6 +36,7 @@ mod made;
 pub mod noise;
 pub mod pattern;
 pub mod presets;
+mod price;
 mod readout;
 pub mod view;
 
@@ -48,5 +51,6 @@ pub use figures::{CameraSpec, Efficiency, FASTEST_F_NUMBER};
 pub use made::REFERENCE_K;
 pub use noise::NoiseSpec;
 pub use pattern::{Pattern, PatternFigures};
+pub use price::Price;
 pub use readout::Readout;
 pub use view::{Extent, Light, View};

@@ -51,6 +51,13 @@ impl Camera {
             / (4.0 * self.f_number * self.f_number + near * near)
     }
 
+    /// Sine of the angle between the axis and the rim of the lens as a pixel sees it, 1/(2F): that of the cone whose étendue is
+    /// π A_p/(4F²).
+    #[must_use]
+    pub fn rim_sine(&self) -> f64 {
+        (0.5 / self.f_number).min(1.0)
+    }
+
     /// Side of what a pixel sees at a distance in m, m.
     #[must_use]
     pub fn footprint_m(&self, distance_m: f64) -> f64 {

@@ -7,7 +7,7 @@
 #[cfg(feature = "library")]
 use super::Camera;
 use super::figures::{self, NOISES, Part, Row};
-use super::{CameraSpec, EfficiencyCurve, NoiseSpec};
+use super::{CameraSpec, EfficiencyCurve, NoiseSpec, Price};
 use crate::error::Error;
 #[cfg(feature = "library")]
 use crate::{error::Result, inputs};
@@ -29,6 +29,20 @@ struct File {
     camera: Vec<Preset>,
 }
 
+crate::named! {
+    /// Whether an array is cooled.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Cooling {
+        /// A microbolometer or the like at room temperature.
+        Uncooled = "uncooled",
+        /// At the temperature of a cooler.
+        Cooled = "cooled",
+    }
+    /// The name in a file.
+    name
+}
+
 /// A known camera: its figures, and where they are from.
 #[derive(Debug, Clone, PartialEq, Default, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields, default)]
@@ -41,6 +55,18 @@ pub struct Preset {
     pub document: Option<String>,
     /// Where the figures are from, what is left out, and what is known to be wrong with them.
     pub provenance: Vec<String>,
+    /// Whether its array is cooled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kind: Option<Cooling>,
+    /// False of what nobody can order.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sold: Option<bool>,
+    /// What one piece costs, without a lens where it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub price: Option<Price>,
+    /// Where the price was seen, and when.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub price_source: Option<String>,
     /// What is stated of it.
     #[serde(flatten)]
     pub figures: CameraSpec,

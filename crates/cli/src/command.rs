@@ -10,6 +10,7 @@ mod decompose;
 mod diff;
 pub mod evidence;
 mod explain;
+mod find;
 pub(crate) mod flags;
 pub(crate) mod global;
 mod identify;
@@ -64,6 +65,8 @@ enum Command {
     /// Without a flag: the distance from the target to every alternative, the photons it takes, and with a camera which
     /// of them it tells the target from. Flags add what else is to be computed, and can be combined.
     Identify(identify::IdentifyArgs),
+    /// Which camera to take: cameras, lenses, filters and frames that meet a scenario, the cheapest first
+    Find(find::FindArgs),
     /// Which cameras meet a rule: a requirement over ranges of scenes, with a certificate that can be quoted
     Rule(rule::RuleArgs),
     /// How well depth can be measured: bounds of stereo ranging from a scene or a heat cube
@@ -209,6 +212,7 @@ fn read_again(words: &[String]) -> Option<verify::Again> {
         Command::Simulate(args) => !args.saves_models(),
         Command::Size(_)
         | Command::Identify(_)
+        | Command::Find(_)
         | Command::Range(_)
         | Command::Decompose(_)
         | Command::Library(_)
@@ -227,6 +231,7 @@ fn dispatch(command: &Command, global: &Global) -> Result<ExitCode> {
     match command {
         Command::Size(args) => size::run(args, global),
         Command::Identify(args) => identify::run(args, global),
+        Command::Find(args) => find::run(args, global),
         Command::Rule(args) => rule::run(args, global),
         Command::Range(args) => range::run(args, global),
         Command::Decompose(args) => decompose::run(args, global),

@@ -30,8 +30,16 @@ pub fn bands(path: &Path) -> Result<Bands> {
 /// # Errors
 /// As [`bands`], and a transmittance outside [0, 1].
 pub fn filters(path: &Path) -> Result<Bands> {
+    filter_curves(path).and_then(|curves| Bands::from_filters(curves).map_err(|error| error.in_file(path)))
+}
+
+/// The curves of such a file, in the order of its columns.
+///
+/// # Errors
+/// As [`filters`]; two filters of one name.
+pub fn filter_curves(path: &Path) -> Result<Vec<FilterCurve>> {
     let text = text_of_file(path, "read the filters")?;
-    curves(&text).and_then(Bands::from_filters).map_err(|error| error.in_file(path))
+    curves(&text).map_err(|error| error.in_file(path))
 }
 
 fn rows(text: &str) -> Result<Bands> {
@@ -102,6 +110,10 @@ fn curves(text: &str) -> Result<Vec<FilterCurve>> {
     for (column, header) in grid.header.iter().enumerate().skip(1) {
         let at_column = |error: Error| error.for_key(header.clone()).on_line(grid.header_line);
         let Some(of) = header.strip_suffix(REFLECTANCE) else {
+            if filters.iter().any(|filter| filter.name() == header) {
+                let found = format!("another filter is called `{header}` too");
+                return Err(at_column(Error::malformed(found, "give each a name of its own")));
+            }
             filters.push(FilterCurve::new(header.clone(), rows(column, "transmittance")?)?);
             continue;
         };
@@ -140,6 +152,10 @@ mod tests {
                 "line 3: wavelength_um: wavenumber 1250 cm^-1 is there already on line 2; keep one of the two rows",
             ),
             ("wavelength_um,a\n8,0\n9,1.2\n", "line 3: a: transmittance is 1.2; it must be between 0 and 1"),
+            (
+                "wavelength_um,a,a\n8,0,1\n9,1,0\n",
+                "line 1: a: another filter is called `a` too; give each a name of its own",
+            ),
             (
                 "nm,a\n8,0\n",
                 "line 1: the first column has another name; name it wavenumber_cm1 or wavelength_um",

@@ -25,7 +25,7 @@ mod noise_variance;
 pub mod spectra;
 pub mod spectral_unit;
 
-pub use bands::{bands, filters};
+pub use bands::{bands, filter_curves, filters};
 pub use library::ReadLibrary;
 pub use members::{Class, Member, members};
 pub use noise_variance::noise_variance;

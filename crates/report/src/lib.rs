@@ -14,6 +14,7 @@ pub mod decompose;
 pub mod diff;
 pub mod explain;
 pub mod figures;
+pub mod find;
 pub mod folder;
 mod html;
 pub mod identify;

@@ -12,6 +12,7 @@ pub(crate) mod conditions;
 pub(crate) mod decompose;
 mod demand;
 pub(crate) mod diff;
+pub mod find;
 pub(crate) mod identify;
 pub(crate) mod library;
 pub(crate) mod page;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::entries::Entries;
 use super::paths::{Paths, file};
-use super::section::{Entry, Section};
+use super::section::{Entry, Section, without_repetition};
 use hadar::error::{Error, Result};
 use hadar::units::{Dimension, Spectral};
 
@@ -40,12 +40,120 @@ pub enum BandSource {
         /// Distance of the centres.
         step: Spectral,
     },
-    /// CSV with one column of transmission per filter.
-    Filters(PathBuf),
+    /// Filters by their transmission.
+    Filters(Filters),
     /// CSV with a row per band: its centre and optionally its width.
     Rows(PathBuf),
     /// Bands from edge to edge, both of one kind, lower first.
     Ranges(Vec<[Spectral; 2]>),
+}
+
+/// Filters, all of a list or some of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filters {
+    /// The list.
+    pub list: FilterList,
+    /// Names of those that are used; all where `None`.
+    pub names: Option<Vec<String>>,
+    /// Where they stand, and their effective index where that matters.
+    pub place: Option<FilterPlace>,
+}
+
+/// A list of filters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FilterList {
+    /// CSV with one column of transmission per filter; an absolute path.
+    File(PathBuf),
+    /// The shapes of the program.
+    Catalogue,
+}
+
+/// Where a filter stands, which decides at which angles light passes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FilterPlace {
+    /// Before the lens: light of one point is parallel.
+    Lens,
+    /// Before the sensor, in the cone of the lens.
+    Sensor {
+        /// Effective index of the filter; at least 1.
+        index: f64,
+    },
+}
+
+/// What stands for the catalogue of the program.
+const CATALOGUE: &str = "catalogue";
+
+impl Filters {
+    /// All filters of a file.
+    #[must_use]
+    pub fn of_file(path: PathBuf) -> Self {
+        Self { list: FilterList::File(path), names: None, place: None }
+    }
+
+    fn read(section: &Section<'_>) -> Result<Self> {
+        let names = section.read("names", |entry| {
+            let items = entry.items("names = [\"choice-9-0.5\"]")?;
+            if items.is_empty() {
+                let instead = "name some filters, or leave the key out to take all";
+                return Err(entry.fail(Error::malformed("the list is empty", instead)));
+            }
+            without_repetition(&items, |item| item.name("\"choice-9-0.5\""))
+        })?;
+        let list = section.require("filters")?;
+        Ok(Self { list: filter_list(&list)?, names, place: FilterPlace::read(section)? })
+    }
+
+    fn put(&self, entries: Entries, paths: Paths<'_>) -> Entries {
+        let entries = entries.put("filters", filter_list_written(&self.list, paths)).put_if("names", self.names.clone());
+        match self.place {
+            None => entries,
+            Some(place) => place.put(entries),
+        }
+    }
+}
+
+impl FilterPlace {
+    /// `place` and `index` of a table.
+    pub(super) fn read(section: &Section<'_>) -> Result<Option<Self>> {
+        let index = section.number("index")?;
+        match (section.choice("place", &[("lens", false), ("sensor", true)])?, index) {
+            (None, None) => Ok(None),
+            (Some(true), Some(index)) => Ok(Some(Self::Sensor { index })),
+            (Some(false), None) => Ok(Some(Self::Lens)),
+            (Some(true), None) => {
+                let instead = "write index = 2.0 beside it, as its maker states it";
+                Err(section.fail("place", Error::malformed("a filter before the sensor without its index", instead)))
+            }
+            (_, Some(_)) => {
+                let found = "the index of a filter that is not said to stand before the sensor";
+                Err(section.fail("index", Error::malformed(found, "write place = \"sensor\" beside it, or leave it out")))
+            }
+        }
+    }
+
+    /// The same as it is written.
+    pub(super) fn put(self, entries: Entries) -> Entries {
+        match self {
+            Self::Lens => entries.put("place", "lens"),
+            Self::Sensor { index } => entries.put("place", "sensor").put("index", index),
+        }
+    }
+}
+
+/// A file of filters, or the catalogue of the program.
+pub(super) fn filter_list(entry: &Entry<'_>) -> Result<FilterList> {
+    match entry.text("\"filters.csv\"")?.trim() {
+        CATALOGUE => Ok(FilterList::Catalogue),
+        _ => file(entry).map(FilterList::File),
+    }
+}
+
+/// The same as it is written.
+pub(super) fn filter_list_written(list: &FilterList, paths: Paths<'_>) -> String {
+    match list {
+        FilterList::Catalogue => CATALOGUE.into(),
+        FilterList::File(path) => paths.file(path),
+    }
 }
 
 impl Default for BandsSpec {
@@ -81,8 +189,13 @@ impl BandsSpec {
             section.at_most_one(&[grid, "filters", "rows", "ranges"])?;
         }
         let default = Self::default();
+        let of_filters = ["names", "place", "index"].into_iter().find(|key| section.get(key).is_some());
+        if let (Some(key), None) = (of_filters, section.get("filters")) {
+            let found = format!("{key} without filters");
+            return Err(section.fail(key, Error::malformed(found, "write filters = \"filters.csv\" beside it")));
+        }
         let source = match section.at_most_one(&["filters", "rows", "ranges"])? {
-            Some("filters") => section.read("filters", file)?.map(BandSource::Filters),
+            Some("filters") => Some(BandSource::Filters(Filters::read(&section)?)),
             Some("rows") => section.read("rows", file)?.map(BandSource::Rows),
             Some(_) => section.read("ranges", ranges)?.map(BandSource::Ranges),
             None => Some(grid(&section)?),
@@ -104,7 +217,7 @@ impl BandsSpec {
                 };
                 put(put(put(entries, "start", start), "stop", stop), "step", step)
             }
-            BandSource::Filters(path) => entries.put("filters", paths.file(path)),
+            BandSource::Filters(filters) => filters.put(entries, paths),
             BandSource::Rows(path) => entries.put("rows", paths.file(path)),
             BandSource::Ranges(ranges) => {
                 let pairs: Vec<Vec<String>> =

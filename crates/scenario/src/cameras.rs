@@ -4,6 +4,7 @@
 //! out is asked for where nothing can stand for it, as of a camera of the program.
 
 use super::camera::read;
+use super::find::price;
 use super::keys::files;
 use super::kind::Kind;
 use super::reader::open;
@@ -11,6 +12,7 @@ use super::section::Entry;
 use super::stated_camera::StatedCamera;
 use super::{Source, Written};
 use hadar::error::{Place, Result};
+use hadar::instrument::presets::Cooling;
 
 const MINIMUM: &str = "write [[camera]] with name = \"ours\" and the keys of [camera] of a scenario";
 
@@ -55,6 +57,8 @@ fn camera(item: &Entry<'_>) -> Result<StatedCamera> {
         description: section.read("description", text)?.unwrap_or_default(),
         document: section.read("document", text)?,
         provenance: provenance.unwrap_or_default(),
+        kind: section.choice("kind", &Cooling::ALL.map(|kind| (kind.name(), kind)))?,
+        price: price(&section)?,
         spec,
     })
 }

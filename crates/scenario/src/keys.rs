@@ -7,7 +7,7 @@
 //! | file | what is there |
 //! |---|---|
 //! | `key` | a key, a table, a kind of value |
-//! | `task`, `scene`, `cube`, `rule`, `calibrate` | the tables |
+//! | `task`, `find`, `scene`, `cube`, `rule`, `calibrate` | the tables |
 //! | `files` | which tables a file has, and which commands read it |
 //! | `found` | all of them by their paths |
 //! | `schema` | all of them as a JSON schema |
@@ -18,6 +18,7 @@ pub(super) mod clause;
 mod commented;
 pub(super) mod cube;
 pub(super) mod files;
+mod find;
 mod found;
 mod key;
 pub(super) mod rule;

@@ -27,6 +27,7 @@ mod emissivity_error;
 mod entries;
 pub mod envelope;
 pub mod examples;
+pub mod find;
 pub mod keys;
 mod kind;
 pub mod library;
@@ -50,10 +51,11 @@ mod written;
 
 pub use air_ranging::{AirRangingScenario, RangingScenario};
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
-pub use bands::{BandSource, BandsSpec};
+pub use bands::{BandSource, BandsSpec, FilterList, FilterPlace, Filters};
 use decompose::CategorySpec;
 pub use decompose::DecomposeScenario;
 pub use envelope::Envelope;
+pub use find::FindSpec;
 pub use library::LibraryScenario;
 pub use range::RangeScenario;
 pub use reader::command_for;
@@ -126,6 +128,8 @@ pub struct Scenario {
     pub envelope: Option<Envelope>,
     /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
     pub sensitivity: Option<SensitivitySpec>,
+    /// What may be chosen, where a camera is sought.
+    pub find: Option<FindSpec>,
     /// What materials are parts of: where those that matter for safety cannot be excluded is said.
     pub categories: Vec<CategorySpec>,
     /// Where it was read from.
@@ -168,6 +172,7 @@ impl PartialEq for Scenario {
             && self.requirement == other.requirement
             && self.envelope == other.envelope
             && self.sensitivity == other.sensitivity
+            && self.find == other.find
             && self.categories == other.categories
     }
 }

@@ -11,7 +11,7 @@ use super::reader::file;
 use super::section::{Entry, Section, without_repetition};
 use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
-    Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
+    Extrapolation, FindSpec, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
 };
 use super::{PixelsFilled, Scope, camera, class};
 use hadar::error::{Error, Result};
@@ -49,6 +49,7 @@ pub(super) fn of_root(
         camera: None,
         requirement: root.read("requirement", requirement)?.unwrap_or_default(),
         sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
+        find: root.read("find", FindSpec::read)?,
         categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
         source: Source::default(),
     })

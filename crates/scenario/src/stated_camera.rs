@@ -1,6 +1,7 @@
 //! A camera of one's own, as a file states it.
 
-use hadar::instrument::CameraSpec;
+use hadar::instrument::presets::Cooling;
+use hadar::instrument::{CameraSpec, Price};
 
 /// A camera as a file states it.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +14,10 @@ pub struct StatedCamera {
     pub document: Option<String>,
     /// Where its figures are from.
     pub provenance: Vec<String>,
+    /// Whether its array is cooled.
+    pub kind: Option<Cooling>,
+    /// What one piece costs.
+    pub price: Option<Price>,
     /// Its figures.
     pub spec: CameraSpec,
 }

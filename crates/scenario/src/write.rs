@@ -31,6 +31,7 @@ impl Scenario {
             .put("requirement", requirement(&self.requirement))
             .put_if("envelope", self.envelope.as_ref().map(|envelope| envelope.written(paths)))
             .put_if("sensitivity", self.sensitivity.map(|spec| spec.entries()))
+            .put_if("find", self.find.as_ref().map(|spec| spec.written(paths)))
             .put_if("category", categories_written(&self.categories))
     }
 }

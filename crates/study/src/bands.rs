@@ -1,10 +1,10 @@
 //! The bands of a scenario as they are stated; [`super::integration`] says over which of them spectra are integrated.
 
 use hadar::error::{Error, Result};
-use hadar::instrument::Camera;
-use hadar::spectrum::{Band, Bands};
+use hadar::instrument::{Camera, catalogue};
+use hadar::spectrum::{Band, Bands, FilterCurve};
 use hadar::units::Spectral;
-use hadar_scenario::{BandSource, Scenario, Source};
+use hadar_scenario::{BandSource, FilterList, FilterPlace, Filters, Scenario, Source};
 
 /// The bands of a scenario as the paper samples them, at band centres; ranges and filters at midpoints 1 cm⁻¹ apart.
 pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
@@ -17,7 +17,7 @@ pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
             _ => Bands::uniform(start.number(), stop.number(), step.number()),
         },
         BandSource::Rows(path) => return hadar_formats::bands(path),
-        BandSource::Filters(path) => return hadar_formats::filters(path),
+        BandSource::Filters(filters) => return of_filters(filters, source, None),
         BandSource::Ranges(ranges) => {
             let edges: Vec<(f64, f64)> = ranges
                 .iter()
@@ -28,6 +28,51 @@ pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
         }
     };
     made.map_err(|error| error.at(source.place("bands")))
+}
+
+/// The same as a camera sees them: filters before its sensor in the cone of light of its lens.
+pub(super) fn seen_by(spec: &BandSource, source: &Source, camera: Option<&Camera>) -> Result<Bands> {
+    match spec {
+        BandSource::Filters(filters) => of_filters(filters, source, camera),
+        _ => at_centres(spec, source),
+    }
+}
+
+/// Filters of a list, those that are named.
+fn of_filters(filters: &Filters, source: &Source, camera: Option<&Camera>) -> Result<Bands> {
+    let place = |key: &str| source.place(&format!("bands.{key}"));
+    let mut curves = curves(&filters.list).map_err(|error| match error {
+        Error::At { .. } => error,
+        error => error.at(place("filters")),
+    })?;
+    if let Some(names) = &filters.names {
+        let named = |name: &String| {
+            let found = curves.iter().find(|curve| curve.name() == name).cloned();
+            found.ok_or_else(|| {
+                let known = curves.iter().map(FilterCurve::name);
+                Error::unknown_name("filter", name, known).at(place("names"))
+            })
+        };
+        curves = names.iter().map(named).collect::<Result<_>>()?;
+    }
+    if let Some(FilterPlace::Sensor { index }) = filters.place {
+        let Some(camera) = camera else {
+            let found = "filters before a sensor whose lens is not known";
+            return Err(Error::malformed(found, "leave place and index out").at(place("place")));
+        };
+        let sine = camera.rim_sine();
+        let in_cone = |curve: &FilterCurve| curve.in_cone(index, sine).map_err(|error| error.at(place("index")));
+        curves = curves.iter().map(in_cone).collect::<Result<_>>()?;
+    }
+    Bands::from_filters(curves).map_err(|error| error.at(place("filters")))
+}
+
+/// The filters of a list.
+pub(super) fn curves(list: &FilterList) -> Result<Vec<FilterCurve>> {
+    match list {
+        FilterList::File(path) => hadar_formats::filter_curves(path),
+        FilterList::Catalogue => catalogue::filters()?.iter().map(catalogue::FilterShape::curve).collect(),
+    }
 }
 
 /// Refuses bands that the detector does not see at all.

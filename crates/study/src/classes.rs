@@ -81,6 +81,17 @@ impl Study {
         self.members.iter().flatten().flat_map(|members| &members.surfaces)
     }
 
+    /// The same with every class of a sample covariance as its mean.
+    pub(super) fn with_means(mut self) -> Result<Self> {
+        self.members.iter_mut().flatten().try_for_each(Members::stand_as_mean)?;
+        let [targets, alternatives] = &self.members;
+        self.alternatives = alternatives.iter().flat_map(|members| members.surfaces.clone()).collect();
+        if let Some(first) = targets.iter().find_map(|members| members.surfaces.first()) {
+            self.target = first.clone();
+        }
+        Ok(self)
+    }
+
     /// The study of the pairs of members that decide: the worst of all as target, and for every alternative the member that is nearest.
     pub(super) fn of_worst_members(mut self, skipping: Skipping) -> Result<Self> {
         if !self.has_classes() {

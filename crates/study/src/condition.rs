@@ -212,6 +212,13 @@ conditions! {
     } = "photon-bunching", Assumed, "camera.photon_bunching";
     /// Filters neither shine nor throw the sensor's light back.
     NoFilterLight = "no-filter-light", Assumed, "camera.sensor_temperature";
+    /// Filters pass at the angles of the beam what they pass at right angles.
+    FilterAngle {
+        /// Whether they stand before the lens, so that the target must be near the axis.
+        before_lens: bool,
+        /// Sine of the rim of the cone of light.
+        sine: f64,
+    } = "filter-angle", Assumed, "bands.place";
     /// Wide bands are taken at their centres.
     Sampled {
         /// Width of the widest, cm⁻¹.
@@ -379,6 +386,7 @@ impl Condition {
             Self::Sampled { width_cm1 } => Taken::Number(*width_cm1),
             Self::ErrorsCorrelated { length_cm1 } => Taken::Number(*length_cm1),
             Self::InOnePixel { fill } => Taken::Number(*fill),
+            Self::FilterAngle { sine, .. } => Taken::Number(*sine),
             Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
             Self::AlikePixels { pixels } => Taken::Number(*pixels),

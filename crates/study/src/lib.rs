@@ -37,6 +37,7 @@ mod cube_without;
 mod decision;
 pub mod decompose;
 mod distances;
+pub mod find;
 mod grade;
 mod heat_cube;
 mod identify;

@@ -50,6 +50,10 @@ impl OwnCameras {
                 description: own.description.clone(),
                 document: own.document.clone(),
                 provenance: own.provenance.clone(),
+                kind: own.kind.or(figures.kind),
+                price: own.price.clone(),
+                price_source: None,
+                sold: None,
                 file: Some(file.display().to_string()),
                 ..figures
             });

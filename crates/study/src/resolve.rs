@@ -73,7 +73,7 @@ impl Study {
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let asked =
             camera_bands::asked(&scenario.bands.source, camera.as_ref().zip(scenario.camera.as_ref()));
-        let bands = bands::at_centres(&asked, &scenario.source)?;
+        let bands = bands::seen_by(&asked, &scenario.source, camera.as_ref())?;
         if let Some(camera) = &mut camera {
             camera.sees(&bands);
         }
@@ -191,7 +191,7 @@ fn behind(
 }
 
 /// The statistical distance that is asked for.
-fn required(scenario: &Scenario) -> Result<f64> {
+pub(super) fn required(scenario: &Scenario) -> Result<f64> {
     let (distance, key) = match scenario.requirement.reliability {
         Reliability::Distance(distance) => return Ok(distance),
         Reliability::DetectionProbability(probability) => {

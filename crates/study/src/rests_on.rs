@@ -11,7 +11,7 @@ use hadar::instrument::{Assumed, Camera, Readout};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::spectrum::Bands;
-use hadar_scenario::{DistanceKind, Setting};
+use hadar_scenario::{BandSource, DistanceKind, FilterPlace, Filters, Setting};
 use std::collections::{HashMap, HashSet};
 
 /// Share of draws of the emissivities that settles a question.
@@ -200,6 +200,12 @@ impl Study {
         let filters = self.open_bands.bands().iter().any(|band| band.name.is_some());
         if filters && camera.sensor_temperature_k.is_none() {
             found.push(Condition::NoFilterLight);
+        }
+        if let BandSource::Filters(Filters { place, .. }) = &self.scenario.bands.source
+            && !matches!(place, Some(FilterPlace::Sensor { .. }))
+        {
+            let before_lens = place.is_some();
+            found.push(Condition::FilterAngle { before_lens, sine: camera.rim_sine() });
         }
         found
     }

@@ -10,6 +10,8 @@ pub enum Thing {
     LibrarySpectra,
     /// Known cameras, their figures worked out.
     Cameras,
+    /// Choices of filters and frames of a camera, each judged by itself.
+    CameraChoices,
     /// Figures and tables of the paper.
     Reproductions,
     /// Integrals of the spectra over a band.
@@ -69,6 +71,7 @@ impl Thing {
         match self {
             Self::LibrarySpectra => "library_spectra",
             Self::Cameras => "cameras",
+            Self::CameraChoices => "camera_choices",
             Self::Reproductions => "reproductions",
             Self::BandIntegrals => "band_integrals",
             Self::Sections => "sections",
@@ -103,6 +106,7 @@ impl Thing {
         match self {
             Self::LibrarySpectra => "spectra of the library",
             Self::Cameras => "cameras",
+            Self::CameraChoices => "choices of filters and frames",
             Self::Reproductions => "figures and tables of the paper",
             Self::BandIntegrals => "integrals over a band",
             Self::Sections => "sections of the answer",

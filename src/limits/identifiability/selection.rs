@@ -15,9 +15,11 @@ mod filters;
 mod information;
 mod pair;
 mod scores;
+mod states;
 
 pub use information::{Information, shares_between};
 pub use scores::Scores;
+pub use states::{Chosen, States};
 
 use self::certificate::worst;
 use self::pair::Pair;

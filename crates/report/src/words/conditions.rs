@@ -174,6 +174,13 @@ impl Say for Condition {
             Self::NoFilterLight => {
                 "the filters neither shine nor throw light back (sensor_temperature is not stated)".into()
             }
+            Self::FilterAngle { before_lens: true, .. } => {
+                "the target is near the axis: at an angle filters before the lens pass shorter waves".into()
+            }
+            Self::FilterAngle { before_lens: false, sine } => format!(
+                "the filters pass in a beam of up to {:.0} degrees what they pass at right angles (place is not stated)",
+                sine.asin().to_degrees()
+            ),
             Self::NoAir => "the air on the path takes nothing away".into(),
             Self::NoSurroundings => "nothing around the target lights it".into(),
             Self::DarkRest { share: rest } => format!(

@@ -2,7 +2,7 @@
 
 pub(crate) mod captions;
 pub mod rows;
-mod text;
+pub(crate) mod text;
 
 pub use text::{check, text};
 

@@ -90,6 +90,7 @@ impl AirRangingScenario {
             requirement: Requirement::default(),
             envelope: None,
             sensitivity: None,
+            find: None,
             categories: Vec::new(),
             source: Source::default(),
         };

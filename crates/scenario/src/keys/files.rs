@@ -2,7 +2,7 @@
 
 use super::key::Silent::{Means, Refused};
 use super::key::{Key, TITLE, Table, Value};
-use super::{air, calibrate, clause, cube, rule, scene, stop, task, views};
+use super::{air, calibrate, clause, cube, find, rule, scene, stop, task, views};
 
 /// A kind of file.
 #[derive(Debug)]
@@ -69,6 +69,7 @@ const TASK: &[Key] = &[
     table("requirement", &task::REQUIREMENT),
     silent("the scene as it is", table("envelope", &task::ENVELOPE)),
     table("sensitivity", &task::SENSITIVITY),
+    silent("every camera of the program, its lenses, the filters of the catalogue", table("find", &find::FIND)),
     silent("no categories", tables("category", &cube::CATEGORY_OF_TASK)),
 ];
 /// A task.
@@ -237,7 +238,7 @@ pub(crate) static CAMERAS: Table =
 
 /// All kinds of files.
 pub static FILES: &[FileKind] = &[
-    FileKind { name: "task", commands: &["size", "identify", "simulate"], root: &SCENARIO },
+    FileKind { name: "task", commands: &["size", "identify", "simulate", "find"], root: &SCENARIO },
     FileKind { name: "rule", commands: &["rule"], root: &RULE },
     FileKind { name: "stereo", commands: &["range"], root: &RANGE },
     FileKind { name: "scene", commands: &["render"], root: &RENDER },

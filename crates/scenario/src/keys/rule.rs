@@ -118,6 +118,22 @@ const OWN_CAMERA_KEYS: &[Key] = &[
         "Where its figures are from.",
         "`hadar cameras show`",
     ),
+    Key::row(
+        "kind",
+        Value::Choice(&["uncooled", "cooled"]),
+        Means("not known"),
+        "\"uncooled\"",
+        "Whether its array is cooled.",
+        "`hadar find` of one kind",
+    ),
+    Key::row(
+        "price",
+        Value::Text,
+        Means("not known"),
+        "\"1 000 to 3 000 USD\"",
+        "What one piece costs, as a range or a sum of one currency.",
+        "order of what `hadar find` finds",
+    ),
 ];
 /// `[[camera]]` of a file of cameras.
 pub(crate) static OWN_CAMERA: Table = Table {

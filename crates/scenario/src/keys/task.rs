@@ -472,6 +472,33 @@ pub(crate) static ATMOSPHERE_OF_CUBE: Table =
 
 const TOLERANCE: Allowed =
     Allowed { holds: |value| (1e-14..=0.1).contains(&value), expected: "between 1e-14 and 0.1" };
+const FILTER_NAMES: Key = Key::row(
+    "names",
+    Value::List(&Value::Text),
+    Means("all filters of the list"),
+    "[\"choice-8.5-1\", \"choice-11-2\"]",
+    "Those of the filters that are used.",
+    "bands that S is integrated over",
+);
+/// Where filters stand.
+pub(super) const FILTER_PLACE: Key = Key::row(
+    "place",
+    Value::Choice(&["lens", "sensor"]),
+    Means("filters pass at every angle what they pass at right angles, which a yes then rests on"),
+    "\"sensor\"",
+    "Where the filters stand: before the lens, or before the sensor in the cone of light of the lens.",
+    "transmission averaged over the angles of the cone",
+);
+/// Their effective index.
+pub(super) const FILTER_INDEX: Key = Key::row(
+    "index",
+    Value::Number(INDEX),
+    Means("asked for where filters stand before the sensor"),
+    "2.0",
+    "Effective index of the filters: at the angle a they pass wavelengths shorter by sqrt(1 - sin^2(a)/n^2); makers state 1.7 to 2.5 for the infrared.",
+    "transmission averaged over the angles of the cone",
+);
+const INDEX: Allowed = Allowed { holds: |value| (1.0..=10.0).contains(&value), expected: "between 1 and 10" };
 const BANDS_KEYS: &[Key] = &[
     Key::row(
         "start",
@@ -502,9 +529,12 @@ const BANDS_KEYS: &[Key] = &[
         Value::File,
         Means("no filters"),
         "\"filters.csv\"",
-        "Transmission of filters over wavenumber, a column for each.",
+        "Transmission of filters over wavenumber, a column for each; \"catalogue\" for the shapes of the program.",
         "bands that S is integrated over (S8, S9)",
     ),
+    FILTER_NAMES,
+    FILTER_PLACE,
+    FILTER_INDEX,
     Key::row(
         "rows",
         Value::File,

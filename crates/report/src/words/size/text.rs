@@ -131,7 +131,7 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
 }
 
 /// What would do, quantity by quantity, and what stands against it.
-fn solutions(result: &Sizing, units: Units) -> String {
+pub(crate) fn solutions(result: &Sizing, units: Units) -> String {
     if result.solve_for.is_none() {
         return String::new();
     }

@@ -1,0 +1,39 @@
+//! `hadar find`: which camera to take.
+
+use super::global::{Global, condition};
+use clap::Args;
+use hadar::error::Result;
+use hadar_report::find;
+use hadar_scenario::Scenario;
+use hadar_study::{Condition, OwnCameras};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct FindArgs {
+    /// Scenario file (TOML) without a camera, with what may be chosen in [find]; `-` for standard input
+    #[arg(value_name = "QUESTION")]
+    question: PathBuf,
+    /// Exit with code 3 unless a camera meets under no condition but those of --accept
+    #[arg(long)]
+    check: bool,
+    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition)]
+    accept: Vec<String>,
+}
+
+pub(super) fn run(args: &FindArgs, global: &Global) -> Result<ExitCode> {
+    let mut scenario = Scenario::from_written(&global.written(&args.question)?)?;
+    scenario.alternatives.skip_uncovered |= global.skip_uncovered;
+    let own = OwnCameras::from_files(&global.cameras)?;
+    let mut found = hadar_study::find::find(&scenario, &own, &global.library()?, global.skipping())?;
+    let text = find::text(&found);
+    let work = global.report(&text, || find::bundle(&found))?;
+    found.stats.add(&work);
+    global.answer(&found, &text, &found.stats)?;
+    let is_open = found.best.as_ref().is_none_or(|best| {
+        let conditions = best.verdict.iter().flat_map(|verdict| &verdict.conditions).cloned().collect::<Vec<_>>();
+        Condition::unaccepted(&conditions, &args.accept).next().is_some()
+    });
+    Ok(ExitCode::from(if args.check && is_open { 3 } else { 0 }))
+}

@@ -1,0 +1,183 @@
+//! What was found: choices that meet, those that do not and why.
+
+use crate::size::{Sizing, Solutions, Verdict};
+use crate::Warning;
+use hadar::demand::Work;
+use hadar::instrument::Price;
+use hadar_scenario::Scenario;
+
+/// Which cameras meet.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct FindAnswer {
+    /// The question with its defaults filled in.
+    pub scenario: Scenario,
+    /// Statistical distance demanded.
+    pub required_distance: f64,
+    /// Whether any camera meets it.
+    pub met: bool,
+    /// The first of those that meet, by what is to be small.
+    pub best: Option<Choice>,
+    /// Those that are beaten by none in all that is to be small, the first first.
+    pub listed: Vec<Choice>,
+    /// The best of every other camera that meets.
+    pub also: Vec<Choice>,
+    /// Choices of which it is not shown whether they meet.
+    pub undecided: Vec<Choice>,
+    /// Cameras that do not, and why.
+    pub failed: Vec<Failed>,
+    /// Where none meets, what comes nearest.
+    pub near: Option<NearMiss>,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+    /// What it took.
+    pub stats: Work,
+}
+
+/// A camera with a lens, filters and a number of frames.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct Choice {
+    /// Name of the camera.
+    pub camera: String,
+    /// Its lens.
+    pub lens: LensUsed,
+    /// Its filters by their wavelengths; empty for the camera alone.
+    pub filters: Vec<FilterUsed>,
+    /// Bands that it reads: those of its filters, its own, or one.
+    pub bands: usize,
+    /// Frames that are added up.
+    pub frames: u32,
+    /// Exposure where it was shortened to the full well, s.
+    pub exposure_s: Option<f64>,
+    /// Time until all is read, s.
+    pub time_s: f64,
+    /// Diameter of the lens's opening, m.
+    pub aperture_m: f64,
+    /// What is known to be paid for it.
+    pub price: Option<Price>,
+    /// Parts of which no price is known.
+    pub price_without: Vec<&'static str>,
+    /// Statistical distance that is proved.
+    pub lower: f64,
+    /// That of a state that was found.
+    pub upper: f64,
+    /// The alternative that is hardest to tell from the target.
+    pub limiting: String,
+    /// What the main job says of it, with its conditions.
+    pub verdict: Option<Verdict>,
+    /// What it warns of.
+    pub warnings: Vec<Warning>,
+    /// The scenario of this choice, as the main job takes it.
+    pub scenario: Scenario,
+}
+
+/// A lens before a camera.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct LensUsed {
+    /// Its name; none of one that the camera has.
+    pub name: Option<String>,
+    /// Focal length over aperture.
+    pub f_number: f64,
+    /// Focal length, m.
+    pub focal_length_m: f64,
+    /// The document that names it for the camera; none of one that the question gives.
+    pub document: Option<String>,
+}
+
+/// A filter before a camera.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct FilterUsed {
+    /// Its name; none of an ideal one.
+    pub name: Option<String>,
+    /// From wavelength to wavelength, µm: edges of an ideal one, else where it begins and ends to pass.
+    pub range_um: [f64; 2],
+}
+
+/// A camera that does not meet.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct Failed {
+    /// Its name.
+    pub camera: String,
+    /// Its lens, if it comes to that.
+    pub lens: Option<LensUsed>,
+    /// Why.
+    pub why: Why,
+    /// What is proved of the best that it reaches; none where it does not come to that.
+    pub lower: Option<f64>,
+    /// What it reaches at most.
+    pub upper: Option<f64>,
+}
+
+/// Why a camera does not meet.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum Why {
+    /// No document states these figures.
+    Figures {
+        /// Their keys.
+        missing: Vec<&'static str>,
+    },
+    /// No document names a lens for it, and the question gives none.
+    NoLens,
+    /// No filter lies within its range.
+    NoFilter {
+        /// Range of its detector, µm.
+        range_um: [f64; 2],
+    },
+    /// It cannot be asked, with the message of why.
+    Refused {
+        /// The message.
+        because: String,
+    },
+    /// Nobody can order it.
+    NotSold,
+    /// Even with all filters at once and the most frames it does not reach the distance.
+    AllFilters {
+        /// Whether any number of frames would do with all filters.
+        frames_would_do: bool,
+    },
+    /// No choice of so many filters and frames reaches the distance.
+    Distance {
+        /// Filters that were allowed.
+        filters: u32,
+        /// The most frames that were tried within the time.
+        frames: u32,
+        /// Whether all choices were excluded or judged.
+        all_judged: bool,
+    },
+    /// Not even one frame of the fewest bands is read in time.
+    Time {
+        /// The time it takes, s.
+        takes_s: f64,
+    },
+    /// The target moves by a pixel or more while the bands are exposed.
+    Motion,
+    /// A reading overflows the full well, and the exposure is fixed.
+    FullWell,
+    /// What is proved does not reach the distance, and what was found does.
+    Undecided,
+}
+
+/// The choice that comes nearest where none meets, and what it would have to be.
+#[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
+pub struct NearMiss {
+    /// The choice.
+    pub choice: Choice,
+    /// Every quantity of its camera with the others held.
+    pub solve_for: Option<Solutions>,
+    /// The whole of what the main job says of it.
+    #[serde(skip)]
+    pub sizing: Sizing,
+}
+
+/// That a camera fails, with the choice of it that comes nearest.
+#[derive(Debug, Clone)]
+pub struct Misses {
+    /// Why it fails.
+    pub failed: Failed,
+    /// Its best choice.
+    pub near: Option<Choice>,
+}
