@@ -175,7 +175,10 @@ mod tests {
         names(lenses().unwrap().iter().map(|lens| &lens.name).collect());
         names(filters().unwrap().iter().map(|filter| &filter.name).collect());
         for lens in lenses().unwrap() {
-            assert!(lens.document.len() > 10 && lens.f_number > 0.3 && lens.focal_length_m > 1e-4, "{lens:?}");
+            assert!(
+                lens.document.len() > 10 && lens.f_number > 0.3 && lens.focal_length_m > 1e-4,
+                "{lens:?}"
+            );
             for pattern in &lens.cameras {
                 let is_known = presets::all().unwrap().iter().any(|camera| is_like(&camera.name, pattern));
                 assert!(is_known, "{pattern} of {}", lens.name);
@@ -189,7 +192,8 @@ mod tests {
             let steps = 20_000;
             let (from, to) = (0.9 * short, 1.1 * long);
             let step = (to - from) / f64::from(steps);
-            let sum: f64 = (0..steps).map(|i| curve.transmittance(1e4 / (from + (f64::from(i) + 0.5) * step))).sum();
+            let sum: f64 =
+                (0..steps).map(|i| curve.transmittance(1e4 / (from + (f64::from(i) + 0.5) * step))).sum();
             assert!((sum * step / (filter.peak * filter.width_um) - 1.0).abs() < 3e-3, "{}", filter.name);
         }
     }

@@ -38,7 +38,8 @@ impl Price {
         }
         let sum = |text: &str| {
             let digits: String = text.chars().filter(|char| *char != ' ').collect();
-            let value = digits.parse::<f64>().ok().filter(|_| digits.starts_with(|c: char| c.is_ascii_digit()));
+            let value =
+                digits.parse::<f64>().ok().filter(|_| digits.starts_with(|c: char| c.is_ascii_digit()));
             value.filter(|value| value.is_finite() && *value > 0.0).ok_or_else(refuse)
         };
         let range = match (sums.strip_prefix("under "), sums.split_once(" to ")) {
@@ -104,7 +105,18 @@ mod tests {
         for text in ["under 300 USD", "300 to 1 000 USD", "3 558 EUR", "0.5 USD"] {
             assert_eq!(Price::parse(text).unwrap().to_string(), text);
         }
-        for text in ["", "300", "300 usd", "300 to 100 USD", "-3 USD", "inf USD", "under USD", "a to b USD", "0 USD", "nan USD"] {
+        for text in [
+            "",
+            "300",
+            "300 usd",
+            "300 to 100 USD",
+            "-3 USD",
+            "inf USD",
+            "under USD",
+            "a to b USD",
+            "0 USD",
+            "nan USD",
+        ] {
             assert!(Price::parse(text).is_err(), "{text}");
         }
         let [one, other] = ["300 to 1 000 USD", "20 USD"].map(|text| Price::parse(text).unwrap());

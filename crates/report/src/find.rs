@@ -21,8 +21,23 @@ pub fn bundle(found: &FindAnswer) -> Result<Bundle> {
     let nearest: Vec<Choice> = found.near.iter().map(|near| near.choice.clone()).collect();
     let groups: Vec<(&str, &Vec<Choice>)> = groups.into_iter().chain([("nearest", &nearest)]).collect();
     let mut choices = Table::new([
-        "group", "scenario", "camera", "lens", "f_number", "focal_length_m", "filters", "bands", "frames", "time_s", "aperture_m",
-        "price", "price_without", "distance_proved", "distance_found", "limiting", "conditions",
+        "group",
+        "scenario",
+        "camera",
+        "lens",
+        "f_number",
+        "focal_length_m",
+        "filters",
+        "bands",
+        "frames",
+        "time_s",
+        "aperture_m",
+        "price",
+        "price_without",
+        "distance_proved",
+        "distance_found",
+        "limiting",
+        "conditions",
     ]);
     let mut count = 0;
     for (group, all) in &groups {
@@ -34,7 +49,8 @@ pub fn bundle(found: &FindAnswer) -> Result<Bundle> {
         }
     }
     bundle.add_table("choices.csv", choices)?;
-    let mut failed = Table::new(["camera", "f_number", "focal_length_m", "distance_proved", "distance_at_most", "why"]);
+    let mut failed =
+        Table::new(["camera", "f_number", "focal_length_m", "distance_proved", "distance_at_most", "why"]);
     for one in &found.failed {
         failed.push(vec![
             one.camera.clone(),
@@ -50,7 +66,13 @@ pub fn bundle(found: &FindAnswer) -> Result<Bundle> {
         .listed
         .iter()
         .chain(&found.also)
-        .flat_map(|choice| choice.verdict.iter().flat_map(|verdict| &verdict.conditions).map(|one| (choice.camera.as_str(), one)))
+        .flat_map(|choice| {
+            choice
+                .verdict
+                .iter()
+                .flat_map(|verdict| &verdict.conditions)
+                .map(|one| (choice.camera.as_str(), one))
+        })
         .collect();
     bundle.add_conditions(&conditions)?;
     bundle.add_warnings(found.best.as_ref().map_or(&[][..], |best| &best.warnings))?;
@@ -92,8 +114,14 @@ fn row(group: &str, name: &str, choice: &Choice) -> Vec<String> {
 /// What every choice tells against the time that it takes; nothing where there is none.
 fn drawn(found: &FindAnswer) -> Option<Plot> {
     let near = found.near.iter().map(|near| &near.choice);
-    let all: Vec<&Choice> =
-        found.listed.iter().chain(&found.also).chain(&found.undecided).chain(near).filter(|one| one.lower > 0.0).collect();
+    let all: Vec<&Choice> = found
+        .listed
+        .iter()
+        .chain(&found.also)
+        .chain(&found.undecided)
+        .chain(near)
+        .filter(|one| one.lower > 0.0)
+        .collect();
     if all.is_empty() {
         return None;
     }

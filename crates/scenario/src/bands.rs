@@ -104,7 +104,9 @@ impl Filters {
     }
 
     fn put(&self, entries: Entries, paths: Paths<'_>) -> Entries {
-        let entries = entries.put("filters", filter_list_written(&self.list, paths)).put_if("names", self.names.clone());
+        let entries = entries
+            .put("filters", filter_list_written(&self.list, paths))
+            .put_if("names", self.names.clone());
         match self.place {
             None => entries,
             Some(place) => place.put(entries),
@@ -122,11 +124,15 @@ impl FilterPlace {
             (Some(false), None) => Ok(Some(Self::Lens)),
             (Some(true), None) => {
                 let instead = "write index = 2.0 beside it, as its maker states it";
-                Err(section.fail("place", Error::malformed("a filter before the sensor without its index", instead)))
+                Err(section
+                    .fail("place", Error::malformed("a filter before the sensor without its index", instead)))
             }
             (_, Some(_)) => {
                 let found = "the index of a filter that is not said to stand before the sensor";
-                Err(section.fail("index", Error::malformed(found, "write place = \"sensor\" beside it, or leave it out")))
+                Err(section.fail(
+                    "index",
+                    Error::malformed(found, "write place = \"sensor\" beside it, or leave it out"),
+                ))
             }
         }
     }
@@ -192,7 +198,9 @@ impl BandsSpec {
         let of_filters = ["names", "place", "index"].into_iter().find(|key| section.get(key).is_some());
         if let (Some(key), None) = (of_filters, section.get("filters")) {
             let found = format!("{key} without filters");
-            return Err(section.fail(key, Error::malformed(found, "write filters = \"filters.csv\" beside it")));
+            return Err(
+                section.fail(key, Error::malformed(found, "write filters = \"filters.csv\" beside it"))
+            );
         }
         let source = match section.at_most_one(&["filters", "rows", "ranges"])? {
             Some("filters") => Some(BandSource::Filters(Filters::read(&section)?)),

@@ -204,25 +204,28 @@ impl FiltersToChoose {
                 Spectral::Wavelength(step) if (0.05..=5.0).contains(&step) => Ok(step),
                 _ => {
                     let instead = "write a wavelength from \"0.05 um\" to \"5 um\"";
-                    Err(entry.fail(Error::malformed(format!("`{}` is no step of edges", text.trim()), instead)))
+                    Err(entry
+                        .fail(Error::malformed(format!("`{}` is no step of edges", text.trim()), instead)))
                 }
             }
         })?;
-        let is_any = section.get("from").is_some_and(|entry| entry.text("").is_ok_and(|text| text.trim() == "any"));
+        let is_any =
+            section.get("from").is_some_and(|entry| entry.text("").is_ok_and(|text| text.trim() == "any"));
         let from = match (is_any, step_um) {
             (true, step) => FilterSupply::Any { step_um: step.unwrap_or(STEP_UM) },
             (false, Some(_)) => {
                 let found = "a step of edges without from = \"any\": filters of a list have their own";
-                return Err(section.fail("step", Error::malformed(found, "leave it out, or write from = \"any\"")));
+                return Err(
+                    section.fail("step", Error::malformed(found, "leave it out, or write from = \"any\""))
+                );
             }
-            (false, None) => {
-                section.read("from", filter_list)?.map_or(default.from, FilterSupply::List)
-            }
+            (false, None) => section.read("from", filter_list)?.map_or(default.from, FilterSupply::List),
         };
         let place = FilterPlace::read(&section)?;
         if is_any && place.is_some() {
             let found = "the place of filters whose edges are ideal";
-            return Err(section.fail("place", Error::malformed(found, "leave it out: they pass the same at every angle")));
+            return Err(section
+                .fail("place", Error::malformed(found, "leave it out: they pass the same at every angle")));
         }
         Ok(Self {
             from,

@@ -11,7 +11,8 @@ use super::reader::file;
 use super::section::{Entry, Section, without_repetition};
 use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
-    Extrapolation, FindSpec, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
+    Extrapolation, FindSpec, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target,
+    Unknown,
 };
 use super::{PixelsFilled, Scope, camera, class};
 use hadar::error::{Error, Result};

@@ -30,16 +30,16 @@ pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
     made.map_err(|error| error.at(source.place("bands")))
 }
 
-/// The same as a camera sees them: filters before its sensor in the cone of light of its lens.
-pub(super) fn seen_by(spec: &BandSource, source: &Source, camera: Option<&Camera>) -> Result<Bands> {
+/// The same as a camera sees them: filters before its sensor in the cone of light of its lens, `sine` that of the angle of its rim.
+pub(super) fn seen_by(spec: &BandSource, source: &Source, sine: Option<f64>) -> Result<Bands> {
     match spec {
-        BandSource::Filters(filters) => of_filters(filters, source, camera),
+        BandSource::Filters(filters) => of_filters(filters, source, sine),
         _ => at_centres(spec, source),
     }
 }
 
 /// Filters of a list, those that are named.
-fn of_filters(filters: &Filters, source: &Source, camera: Option<&Camera>) -> Result<Bands> {
+fn of_filters(filters: &Filters, source: &Source, sine: Option<f64>) -> Result<Bands> {
     let place = |key: &str| source.place(&format!("bands.{key}"));
     let mut curves = curves(&filters.list).map_err(|error| match error {
         Error::At { .. } => error,
@@ -56,12 +56,12 @@ fn of_filters(filters: &Filters, source: &Source, camera: Option<&Camera>) -> Re
         curves = names.iter().map(named).collect::<Result<_>>()?;
     }
     if let Some(FilterPlace::Sensor { index }) = filters.place {
-        let Some(camera) = camera else {
+        let Some(sine) = sine else {
             let found = "filters before a sensor whose lens is not known";
             return Err(Error::malformed(found, "leave place and index out").at(place("place")));
         };
-        let sine = camera.rim_sine();
-        let in_cone = |curve: &FilterCurve| curve.in_cone(index, sine).map_err(|error| error.at(place("index")));
+        let in_cone =
+            |curve: &FilterCurve| curve.in_cone(index, sine).map_err(|error| error.at(place("index")));
         curves = curves.iter().map(in_cone).collect::<Result<_>>()?;
     }
     Bands::from_filters(curves).map_err(|error| error.at(place("filters")))

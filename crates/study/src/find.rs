@@ -20,12 +20,14 @@ mod chosen;
 mod judged;
 mod results;
 mod searched;
+mod wheel;
 
 pub use results::{Choice, Failed, FilterUsed, FindAnswer, LensUsed, Misses, NearMiss, Why};
 
 use self::candidates::Candidate;
 use self::chosen::{Sought, beaten_by_none};
-use self::searched::{Found, Pool, Wheel};
+use self::searched::{Found, Pool};
+use self::wheel::{Supply, Wheel};
 use crate::{OwnCameras, SizeAsked, Study, YesNo, resolve};
 use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
@@ -46,12 +48,14 @@ pub fn find(
     let (scenario, spec) = question(scenario)?;
     let (candidates, mut failed) = candidates::of(&scenario, &spec, own)?;
     let required = resolve::required(&scenario)?;
+    let mut supply = Supply::of(&spec, &candidates)?;
     let mut first_error = None;
-    let (mut pool, mut sought, mut undecided, mut missed) = (Pool::default(), Vec::new(), Vec::new(), Vec::new());
+    let (mut pool, mut sought, mut undecided, mut missed) =
+        (Pool::default(), Vec::new(), Vec::new(), Vec::new());
     let mut tried = 0;
     for candidate in &candidates {
         hadar::stop::check();
-        let wheel = match Wheel::new(candidate, &scenario, &spec, library) {
+        let wheel = match Wheel::new(candidate, &scenario, &mut supply, library) {
             Ok(wheel) => wheel,
             // A camera of the user's own, or one that is named, is told as it would be by itself.
             Err(error) if candidate.is_named => return Err(error),
@@ -106,7 +110,10 @@ pub fn find(
         met: !best_first.is_empty(),
         best: best_first.first().map(|index| met[*index].choice.clone()),
         listed: best_first.iter().map(|index| met[*index].choice.clone()).collect(),
-        also: chosen::best_of_each(&met, &best_first).into_iter().map(|index| met[index].choice.clone()).collect(),
+        also: chosen::best_of_each(&met, &best_first)
+            .into_iter()
+            .map(|index| met[index].choice.clone())
+            .collect(),
         undecided: chosen::distinct(undecided),
         failed,
         near,
@@ -118,8 +125,10 @@ pub fn find(
 /// The question with its defaults; the time of `[find]` is that of the requirement.
 fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
     let mut scenario = scenario.clone();
-    let spec = scenario.find.clone().unwrap_or_default();
-    let refuse = |key: &str, found: String, instead: &str| Err(Error::malformed(found, instead).at(scenario.place(key)));
+    let mut spec = scenario.find.clone().unwrap_or_default();
+    let refuse = |key: &str, found: String, instead: &str| {
+        Err(Error::malformed(found, instead).at(scenario.place(key)))
+    };
     if scenario.requirement.by != DistanceKind::Nearest {
         let found = format!("by = \"{}\" is no limit", scenario.requirement.by.name());
         return refuse("requirement.by", found, "leave it out: cameras are found by the nearest distance");
@@ -130,15 +139,28 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
     }
     if !matches!(scenario.bands.source, hadar_scenario::BandSource::Unsaid) {
         let found = "the bands are given, and filters are sought".into();
-        return refuse("bands", found, "leave [bands] out, or write find.filters = { from = \"my_filters.csv\" }");
+        return refuse(
+            "bands",
+            found,
+            "leave [bands] out, or write find.filters = { from = \"my_filters.csv\" }",
+        );
     }
     if scenario.envelope.is_some() {
         let found = "an envelope of scenes, of which one camera is sought for each".into();
-        return refuse("envelope", found, "leave it out, or hold the camera that is found against it with `hadar rule`");
+        return refuse(
+            "envelope",
+            found,
+            "leave it out, or hold the camera that is found against it with `hadar rule`",
+        );
     }
-    if let Some(time_s) = spec.time_s {
+    // Said once, as what is demanded.
+    if let Some(time_s) = spec.time_s.take() {
         if scenario.requirement.time_s.is_some() {
-            return refuse("find.time", "requirement.time is given as well".into(), "keep only one of the two");
+            return refuse(
+                "find.time",
+                "requirement.time is given as well".into(),
+                "keep only one of the two",
+            );
         }
         scenario.requirement.time_s = Some(time_s);
     }

@@ -16,6 +16,7 @@ use super::{Study, Surface, camera, camera_bands};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
+use hadar::instrument::Camera;
 use hadar::material::{Library, Material};
 use hadar::scene::{EnvironmentObject, Surroundings};
 use hadar_scenario::{Reliability, Scenario};
@@ -62,6 +63,11 @@ impl Study {
     /// The same with all members of classes side by side: those of the target's are [`Study::targets`], the first of which is the
     /// target, and those of the alternatives' are alternatives of their own.
     pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
+        Self::with_members_in(scenario, library, None)
+    }
+
+    /// The same where filters stand in a cone of light though no camera is there: `sine` is that of the angle of its rim.
+    pub(super) fn with_members_in(scenario: &Scenario, library: &Library, sine: Option<f64>) -> Result<Self> {
         check_temperatures(scenario)?;
         let mut scenario = scenario.clone();
         let mut finder = Finder::new(&scenario, library);
@@ -73,7 +79,8 @@ impl Study {
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let asked =
             camera_bands::asked(&scenario.bands.source, camera.as_ref().zip(scenario.camera.as_ref()));
-        let bands = bands::seen_by(&asked, &scenario.source, camera.as_ref())?;
+        let sine = camera.as_ref().map(Camera::rim_sine).or(sine);
+        let bands = bands::seen_by(&asked, &scenario.source, sine)?;
         if let Some(camera) = &mut camera {
             camera.sees(&bands);
         }

@@ -112,7 +112,12 @@ impl FilterCurve {
     /// ```
     pub fn in_cone(&self, index: f64, sine: f64) -> Result<Self> {
         if !(index >= 1.0 && index.is_finite()) {
-            return Err(Error::out_of_range("effective index of a filter", index, "", "a number of at least 1"));
+            return Err(Error::out_of_range(
+                "effective index of a filter",
+                index,
+                "",
+                "a number of at least 1",
+            ));
         }
         check::unit_interval("sine of the angle of a beam", sine)?;
         let factor = |share: f64| (1.0 - share * (sine / index).powi(2)).sqrt();
@@ -142,6 +147,12 @@ impl FilterCurve {
             return 0.0;
         }
         interpolated(&self.wavenumbers_cm1, &self.transmittances, wavenumber_cm1)
+    }
+
+    /// Lowest and highest wavenumber of its rows, cm⁻¹.
+    #[must_use]
+    pub fn range_cm1(&self) -> (f64, f64) {
+        self.support()
     }
 
     /// Lowest and highest wavenumber at which it transmits half of its most, cm⁻¹, on the straight lines between its rows.

@@ -32,7 +32,8 @@ pub(super) fn run(args: &FindArgs, global: &Global) -> Result<ExitCode> {
     found.stats.add(&work);
     global.answer(&found, &text, &found.stats)?;
     let is_open = found.best.as_ref().is_none_or(|best| {
-        let conditions = best.verdict.iter().flat_map(|verdict| &verdict.conditions).cloned().collect::<Vec<_>>();
+        let conditions =
+            best.verdict.iter().flat_map(|verdict| &verdict.conditions).cloned().collect::<Vec<_>>();
         Condition::unaccepted(&conditions, &args.accept).next().is_some()
     });
     Ok(ExitCode::from(if args.check && is_open { 3 } else { 0 }))

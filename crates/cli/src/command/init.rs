@@ -27,6 +27,8 @@ enum For {
     Size,
     /// What the target can be told from
     Identify,
+    /// Which camera, lens and filters to take
+    Find,
     /// A rule over ranges of scenes, and cameras
     Rule,
     /// Depth by two cameras before a street
@@ -51,6 +53,7 @@ impl For {
         match self {
             Self::Size => (include_str!("init/size.toml"), "size.toml", "size"),
             Self::Identify => (include_str!("init/identify.toml"), "identify.toml", "identify"),
+            Self::Find => (include_str!("init/find.toml"), "find.toml", "find"),
             Self::Rule => (include_str!("init/rule.toml"), "rule.toml", "rule"),
             Self::Range => (include_str!("init/range.toml"), "range.toml", "range"),
             Self::Air => (include_str!("init/air.toml"), "air.toml", "range"),

@@ -31,7 +31,10 @@ pub fn text(found: &FindAnswer) -> String {
     out += &table(&format!("{head}{}, the first first", listed(&merits)), &found.listed);
     out += &of_others(found);
     out += &table("The best of every other camera that meets", &found.also);
-    out += &table("Undecided: what is proved does not reach the distance, what was found does", &found.undecided);
+    out += &table(
+        "Undecided: what is proved does not reach the distance, what was found does",
+        &found.undecided,
+    );
     if let Some(near) = &found.near {
         out += &table("The nearest", std::slice::from_ref(&near.choice));
         out += &solutions(&near.sizing, Units::of(&found.scenario.source));
@@ -58,12 +61,17 @@ pub fn sentence(found: &FindAnswer) -> String {
         });
         if !found.undecided.is_empty() {
             let cameras: Vec<&str> = found.undecided.iter().map(|choice| choice.camera.as_str()).collect();
-            return format!("Undecided: of no camera it is proved that it reaches d = {required}; {} may.{near}", listed(&cameras));
+            return format!(
+                "Undecided: of no camera it is proved that it reaches d = {required}; {} may.{near}",
+                listed(&cameras)
+            );
         }
         return match judged {
             0 => "No: not one of the cameras can be asked; what each lacks is below.".into(),
             1 => format!("No: the one camera that can be asked does not reach d = {required}.{near}"),
-            _ => format!("No: of {judged} cameras with their lenses that can be asked none reaches d = {required}.{near}"),
+            _ => format!(
+                "No: of {judged} cameras with their lenses that can be asked none reaches d = {required}.{near}"
+            ),
         };
     };
     let first = match merits(found).first() {
@@ -81,7 +89,11 @@ pub fn sentence(found: &FindAnswer) -> String {
         Some((one, [_])) => format!(", if {}, and on 1 more condition", one.say()),
         Some((one, rest)) => format!(", if {}, and on {} more conditions", one.say(), rest.len()),
     };
-    format!("{first} {}{}{subject}.", called(best), paid(best).map_or_else(String::new, |paid| format!(", {paid}")))
+    format!(
+        "{first} {}{}{subject}.",
+        called(best),
+        paid(best).map_or_else(String::new, |paid| format!(", {paid}"))
+    )
 }
 
 /// A camera with what is before it, in a line.
@@ -92,7 +104,12 @@ fn called(choice: &Choice) -> String {
         count => format!(" behind {count} filters"),
     };
     let frames = if choice.frames == 1 { "1 frame".into() } else { format!("{} frames", choice.frames) };
-    format!("{} with {}{filters} and {frames} ({})", choice.camera, lens(&choice.lens), quantity(choice.time_s, "s"))
+    format!(
+        "{} with {}{filters} and {frames} ({})",
+        choice.camera,
+        lens(&choice.lens),
+        quantity(choice.time_s, "s")
+    )
 }
 
 fn lens(lens: &LensUsed) -> String {
@@ -115,7 +132,11 @@ fn bought(best: &Choice) -> String {
         let _ = writeln!(out, "  {label:<10} {value}");
     };
     let preset = presets::all().ok().and_then(|all| all.iter().find(|preset| preset.name == best.camera));
-    line("camera", &preset.map_or_else(|| best.camera.clone(), |preset| format!("{}: {}", best.camera, preset.description)));
+    line(
+        "camera",
+        &preset
+            .map_or_else(|| best.camera.clone(), |preset| format!("{}: {}", best.camera, preset.description)),
+    );
     match (&best.lens.name, &best.lens.document) {
         (Some(name), Some(document)) => line("lens", &format!("{} ({name}; {document})", lens(&best.lens))),
         (Some(name), None) => line("lens", &format!("{} ({name})", lens(&best.lens))),
@@ -129,7 +150,10 @@ fn bought(best: &Choice) -> String {
         line("", source);
     }
     if let Some(exposure_s) = best.exposure_s {
-        line("exposure", &format!("{}, shortened so that no reading fills the well", quantity(exposure_s, "s")));
+        line(
+            "exposure",
+            &format!("{}, shortened so that no reading fills the well", quantity(exposure_s, "s")),
+        );
     }
     out.push('\n');
     out
@@ -210,7 +234,8 @@ fn failures(found: &FindAnswer) -> String {
         return String::new();
     }
     let width = shown.iter().map(|one| one.camera.chars().count()).max().unwrap_or(6).max(6);
-    let mut columns = Columns::new([left("camera", width), left("lens", 14), right("d at most", 9), left("why", 3)]);
+    let mut columns =
+        Columns::new([left("camera", width), left("lens", 14), right("d at most", 9), left("why", 3)]);
     for one in shown {
         columns.row([
             one.camera.clone(),
@@ -232,7 +257,11 @@ pub fn why(failed: &Failed, required: f64) -> String {
         Why::Figures { missing } => format!("no document states {}", listed(missing)),
         Why::NoLens => "no document names a lens for it: give find.lenses".into(),
         Why::NoFilter { range_um: [from, to] } => {
-            format!("no filter lies within its range of {} to {} um", significant(*from, 3), significant(*to, 3))
+            format!(
+                "no filter lies within its range of {} to {} um",
+                significant(*from, 3),
+                significant(*to, 3)
+            )
         }
         Why::Refused { because } => because.clone(),
         Why::NotSold => "nobody can order it".into(),

@@ -69,7 +69,10 @@ const TASK: &[Key] = &[
     table("requirement", &task::REQUIREMENT),
     silent("the scene as it is", table("envelope", &task::ENVELOPE)),
     table("sensitivity", &task::SENSITIVITY),
-    silent("every camera of the program, its lenses, the filters of the catalogue", table("find", &find::FIND)),
+    silent(
+        "every camera of the program, its lenses, the filters of the catalogue",
+        table("find", &find::FIND),
+    ),
     silent("no categories", tables("category", &cube::CATEGORY_OF_TASK)),
 ];
 /// A task.

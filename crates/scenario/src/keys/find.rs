@@ -14,9 +14,23 @@ const PRICE: Key = Key::row(
 );
 
 const LENS_KEYS: &[Key] = &[
-    Key::row("name", Value::Text, Means("by its figures"), "\"wide\"", "What it is called.", "names of what is found"),
+    Key::row(
+        "name",
+        Value::Text,
+        Means("by its figures"),
+        "\"wide\"",
+        "What it is called.",
+        "names of what is found",
+    ),
     Key::row("f_number", POSITIVE, Refused, "1.0", "Focal length over aperture.", "etendue of a pixel (S7)"),
-    Key::row("focal_length", LENGTH, Refused, "\"14 mm\"", "Focal length of the lens.", "pixels on an object, etendue (S7)"),
+    Key::row(
+        "focal_length",
+        LENGTH,
+        Refused,
+        "\"14 mm\"",
+        "Focal length of the lens.",
+        "pixels on an object, etendue (S7)",
+    ),
     PRICE,
 ];
 static LENS: Table = Table::of("A lens.", &[LENS_KEYS]);
@@ -30,7 +44,14 @@ const FILTERS_KEYS: &[Key] = &[
         "Where the filters come from: the shapes of the program, a file with a column for each, or \"any\": ideal ones with free edges.",
         "bands that S is integrated over (S8, S9)",
     ),
-    Key::row("at_most", Value::Count([1, 8]), Is("3"), "5", "How many there may be before one camera.", "choices that are searched"),
+    Key::row(
+        "at_most",
+        Value::Count([1, 8]),
+        Is("3"),
+        "5",
+        "How many there may be before one camera.",
+        "choices that are searched",
+    ),
     Key::row(
         "step",
         Value::Spectral,

@@ -61,7 +61,10 @@ pub(super) fn of(
     }
     if seen.is_empty() {
         let found = "no camera is left of these patterns and this kind";
-        let error = Error::malformed(found, "name others in find.cameras (`hadar cameras list` has them), or leave find.kind out");
+        let error = Error::malformed(
+            found,
+            "name others in find.cameras (`hadar cameras list` has them), or leave find.kind out",
+        );
         return Err(error.at(scenario.place("find.cameras")));
     }
     one_currency(&candidates, scenario)?;
@@ -83,7 +86,8 @@ impl Of<'_> {
             return Err(Box::new(Why::NotSold));
         }
         let fixed = self.scenario.camera.clone().unwrap_or_default();
-        let states = |of: &dyn Fn(&CameraSpec) -> Option<f64>| of(&fixed).or_else(|| of(&self.preset.figures));
+        let states =
+            |of: &dyn Fn(&CameraSpec) -> Option<f64>| of(&fixed).or_else(|| of(&self.preset.figures));
         let (f_number, focal_length_m) = (states(&|spec| spec.f_number), states(&|spec| spec.focal_length_m));
         let lenses: Vec<(Option<LensUsed>, Option<Price>)> = match (f_number, focal_length_m) {
             // A camera with a lens of its own keeps it.
@@ -103,7 +107,8 @@ impl Of<'_> {
         let figures = &self.preset.figures;
         // Of a lens that the camera has in part only that one.
         let fits = |f_number: f64, focal_length_m: f64| {
-            let same = |own: Option<f64>, other: f64| own.is_none_or(|own| (own / other - 1.0).abs() < SAME_LENS);
+            let same =
+                |own: Option<f64>, other: f64| own.is_none_or(|own| (own / other - 1.0).abs() < SAME_LENS);
             same(figures.f_number, f_number) && same(figures.focal_length_m, focal_length_m)
         };
         let of_question = |lens: &LensSpec| {
@@ -194,7 +199,8 @@ fn one_currency(candidates: &[Candidate], scenario: &Scenario) -> Result<()> {
         None => Ok(()),
         Some(other) => {
             let found = format!("prices in {first} and in {other}");
-            let error = Error::malformed(found, "write all prices in one currency; those of the program are in USD");
+            let error =
+                Error::malformed(found, "write all prices in one currency; those of the program are in USD");
             Err(error.at(scenario.place("find")))
         }
     }

@@ -114,6 +114,8 @@ fn order(all: &[Ranked], spec: &FindSpec, a: usize, b: usize) -> std::cmp::Order
 
 /// Those of another camera, lens or number of filters.
 pub(super) fn distinct(mut all: Vec<Choice>) -> Vec<Choice> {
-    all.dedup_by(|a, b| a.camera == b.camera && a.lens == b.lens && a.filters == b.filters && a.frames == b.frames);
+    all.dedup_by(|a, b| {
+        a.camera == b.camera && a.lens == b.lens && a.filters == b.filters && a.frames == b.frames
+    });
     all
 }

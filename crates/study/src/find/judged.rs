@@ -45,7 +45,8 @@ impl Study {
         let kept = |values: &[f64]| -> Vec<f64> {
             places.iter().filter_map(|place| values.get(*place).copied()).collect()
         };
-        let surface = |surface: &Surface| Surface { emissivity: kept(&surface.emissivity), ..surface.clone() };
+        let surface =
+            |surface: &Surface| Surface { emissivity: kept(&surface.emissivity), ..surface.clone() };
         let members = |members: &Members| {
             let mut members = members.clone();
             members.surfaces = members.surfaces.iter().map(surface).collect();
@@ -112,7 +113,8 @@ impl Study {
 
     fn pair_judged(&self, pair: [usize; 2]) -> Result<(Nearest, [f64; 2], YesNo)> {
         let own = self.of_target(pair[0]);
-        let (counting, alternative) = (own.counting().unwrap_or_else(|| nothing(&own)), &own.alternatives[pair[1]]);
+        let (counting, alternative) =
+            (own.counting().unwrap_or_else(|| nothing(&own)), &own.alternatives[pair[1]]);
         let (found, state) = own.statistical_at(DistanceKind::Nearest, alternative, &counting)?;
         let decision = own.decision(alternative, (&own.bands, &counting), found, state.as_ref())?;
         let state = state.unwrap_or_else(|| own.state.clone());

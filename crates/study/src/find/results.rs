@@ -1,7 +1,7 @@
 //! What was found: choices that meet, those that do not and why.
 
-use crate::size::{Sizing, Solutions, Verdict};
 use crate::Warning;
+use crate::size::{Sizing, Solutions, Verdict};
 use hadar::demand::Work;
 use hadar::instrument::Price;
 use hadar_scenario::Scenario;

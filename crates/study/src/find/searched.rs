@@ -1,36 +1,28 @@
 //! One camera with one lens: the fewest filters and the frames with which it meets.
 
-use super::candidates::Candidate;
+use super::Ranked;
 use super::chosen::Sought;
 use super::judged::{Judged, Nearest};
-use super::results::{Choice, Failed, FilterUsed, LensUsed, Misses, Why};
-use super::Ranked;
-use crate::{Study, YesNo, bands};
+use super::results::{Choice, Failed, Misses, Why};
+use super::wheel::{Wheel, WheelKind};
+use crate::{Study, YesNo};
 use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::identifiability::selection::States;
-use hadar::instrument::{Camera, Price};
-use hadar::material::Library;
-use hadar::policy::Motion;
+use hadar::instrument::Camera;
 use hadar::scene::State;
-use hadar::units::Spectral;
-use hadar_scenario::find::FilterSupply;
-use hadar_scenario::{BandSource, Filters, FindSpec, Scenario};
+use hadar_scenario::FindSpec;
 
 /// Choices that are judged at most for one number of filters and frames, and that `--no-skip` goes through at most.
 const MOST_JUDGED: usize = 300;
 const MOST_OF_ALL: f64 = 50_000.0;
 /// Frames that stand for any number of them.
 const FRAMES_WITHOUT_END: u32 = 100_000_000;
-/// Share of the full well that an exposure is shortened to.
-const FULL: f64 = 0.9;
 /// Relative difference of squares that is rounding.
 const SAME: f64 = 1e-9;
 /// Share of a square that may be left unexplained, far above rounding.
 const FIXED: f64 = 1e-6;
-/// Share by which an edge of a filter may lie beyond the range of a detector, as ranges are stated in two digits.
-const BEYOND: f64 = 0.005;
 
 /// Nearest states that any camera met: what was near in some bands may be near in others.
 #[derive(Debug, Default)]
@@ -46,31 +38,6 @@ struct Known {
     fixed: f64,
 }
 
-/// A camera with a lens and all filters that it could have, as bands of one study.
-pub(super) struct Wheel<'a> {
-    candidate: &'a Candidate,
-    scenario: Scenario,
-    study: Study,
-    /// What each band is.
-    filters: Vec<FilterUsed>,
-    /// The first filter that may stand beside each one and behind it.
-    next: Option<Vec<usize>>,
-    exposure_s: Option<f64>,
-    /// What each filter costs.
-    filter_price: Option<Price>,
-    kind: WheelKind,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum WheelKind {
-    /// Filters of which some are chosen.
-    Filters,
-    /// Bands of its own.
-    Own,
-    /// No filter lies in its range.
-    Nothing,
-}
-
 /// What became of a camera.
 pub(super) enum Found {
     Met(Vec<Ranked>),
@@ -80,56 +47,20 @@ pub(super) enum Found {
 
 /// The best of some choices.
 #[derive(Debug, Clone)]
-struct Best {
-    chosen: Vec<usize>,
-    judged: Judged,
-    frames: u32,
+pub(super) struct Best {
+    pub(super) chosen: Vec<usize>,
+    pub(super) judged: Judged,
+    pub(super) frames: u32,
 }
 
-impl<'a> Wheel<'a> {
-    pub(super) fn new(
-        candidate: &'a Candidate,
-        question: &Scenario,
-        spec: &FindSpec,
-        library: &Library,
-    ) -> Result<Self> {
-        let camera = &candidate.made;
-        let mut scenario = question.clone();
-        scenario.find = None;
-        scenario.camera = Some(candidate.spec.clone());
-        let own_bands = camera.spectral_bands.filter(|bands| *bands > 1);
-        let (source, next, kind) = match own_bands {
-            Some(bands) => (own_grid(camera, bands), None, WheelKind::Own),
-            None => match filters_of(&spec.filters.from, spec, camera)? {
-                Some((source, next)) => (source, next, WheelKind::Filters),
-                None => (BandSource::Unsaid, None, WheelKind::Nothing),
-            },
-        };
-        scenario.bands.source = source;
-        let mut study = Study::with_members(&scenario, library)?.with_means()?;
-        let mut exposure_s = None;
-        if let (Some(full), Some(made)) = (camera.full_well, study.camera.clone()) {
-            let brightest = study.brightest_member(&made);
-            let is_fixed = question.camera.as_ref().is_some_and(|camera| camera.exposure_s.is_some());
-            if brightest > full && !is_fixed {
-                let shorter = made.exposure_s * FULL * full / brightest;
-                exposure_s = Some(shorter);
-                if let Some(spec) = scenario.camera.as_mut() {
-                    spec.exposure_s = Some(shorter);
-                }
-                study = Study::with_members(&scenario, library)?.with_means()?;
-            }
-        }
-        let filters = study.open_bands.bands().iter().map(|band| FilterUsed {
-            name: band.name.clone(),
-            range_um: [1e4 / band.high_cm1, 1e4 / band.low_cm1],
-        });
-        let filters = filters.collect();
-        Ok(Self { candidate, scenario, filters, next, exposure_s, filter_price: spec.filters.price.clone(), kind, study })
-    }
-
+impl Wheel<'_> {
     /// The choices that meet, or why none does.
-    pub(super) fn search(&self, spec: &FindSpec, pool: &mut Pool, (skipping, wants_near): (Skipping, bool)) -> Result<Found> {
+    pub(super) fn search(
+        &self,
+        spec: &FindSpec,
+        pool: &mut Pool,
+        (skipping, wants_near): (Skipping, bool),
+    ) -> Result<Found> {
         let fails = |why| Ok(Found::Fails(Box::new(Misses { failed: self.failed(why, None), near: None })));
         if self.kind == WheelKind::Nothing {
             let [low, high] = self.candidate.made.spectral_range_cm1;
@@ -153,87 +84,18 @@ impl<'a> Wheel<'a> {
         if camera.full_well.is_some_and(|full| self.study.brightest_member(camera) > full) {
             return fails(Why::FullWell);
         }
-        let mut search = Search { wheel: self, pool, signals: Vec::new(), own: Vec::new(), skipping, wants_near, searches: 0 };
+        let mut search = Search {
+            wheel: self,
+            pool,
+            signals: Vec::new(),
+            own: Vec::new(),
+            skipping,
+            wants_near,
+            searches: 0,
+        };
         let found = search.run(spec, (least, most), camera)?;
         demand::computed(Thing::CameraChoices, search.searches);
         Ok(found)
-    }
-
-    fn failed(&self, why: Why, best: Option<&Best>) -> Failed {
-        Failed {
-            camera: self.candidate.camera.clone(),
-            lens: self.candidate.lens.clone(),
-            why,
-            lower: best.map(|best| best.judged.lower),
-            upper: best.map(|best| best.judged.upper),
-        }
-    }
-
-    /// Apparent motion while so many bands are exposed, pixels; 0 where nothing moves, none where it is not known.
-    fn blur(&self, camera: &Camera, bands: usize) -> Option<f64> {
-        let Some(speed) = self.scenario.requirement.speed_m_s else { return Some(0.0) };
-        let motion = Motion::of(camera, self.scenario.target.distance_m)?;
-        Some(motion.blur_pixels(speed, camera.sweep_s(bands)))
-    }
-
-    /// Whether so many bands and frames are read in time and without a blur.
-    fn is_in_time(&self, camera: &Camera, bands: usize) -> bool {
-        let is_late = |time_s: f64| camera.acquisition_s(bands) > time_s;
-        !self.scenario.requirement.time_s.is_some_and(is_late)
-            && self.blur(camera, bands).is_some_and(|blur| blur < 1.0)
-    }
-
-    /// The choice as it is listed.
-    fn choice(&self, best: &Best) -> Choice {
-        let (candidate, camera) = (self.candidate, at_frames(&self.candidate.made, best.frames));
-        let camera = Camera { exposure_s: self.exposure_s.unwrap_or(camera.exposure_s), ..camera };
-        let mut scenario = self.scenario.clone();
-        let filters: Vec<FilterUsed> = match self.kind {
-            WheelKind::Filters => best.chosen.iter().filter_map(|w| self.filters.get(*w).cloned()).collect(),
-            _ => Vec::new(),
-        };
-        match &mut scenario.bands.source {
-            BandSource::Filters(of) => {
-                of.names = Some(filters.iter().filter_map(|filter| filter.name.clone()).collect());
-            }
-            BandSource::Ranges(ranges) => {
-                *ranges = filters.iter().map(|filter| filter.range_um.map(Spectral::Wavelength)).collect();
-            }
-            _ => {}
-        }
-        if let Some(spec) = scenario.camera.as_mut() {
-            spec.frames = Some(best.frames);
-        }
-        let lens = candidate.lens.clone().unwrap_or(LensUsed {
-            name: None,
-            f_number: camera.f_number,
-            focal_length_m: camera.focal_length_m,
-            document: None,
-        });
-        let (mut price, mut price_without) = (candidate.price.clone(), candidate.price_without.clone());
-        match (&price, &self.filter_price) {
-            (Some(own), Some(each)) if !filters.is_empty() => price = own.and(&each.times(filters.len())),
-            (Some(_), None) if !filters.is_empty() => price_without.push("filters"),
-            _ => {}
-        }
-        Choice {
-            camera: candidate.camera.clone(),
-            bands: best.chosen.len(),
-            frames: best.frames,
-            exposure_s: self.exposure_s,
-            time_s: camera.acquisition_s(best.chosen.len()),
-            aperture_m: lens.focal_length_m / lens.f_number,
-            lens,
-            filters,
-            price,
-            price_without,
-            lower: best.judged.lower,
-            upper: best.judged.upper,
-            limiting: String::new(),
-            verdict: None,
-            warnings: Vec::new(),
-            scenario,
-        }
     }
 }
 
@@ -257,7 +119,10 @@ impl Search<'_, '_> {
         frames.retain(|frames| wheel.is_in_time(&at_frames(camera, *frames), least));
         let Some(most_frames) = frames.last().copied() else {
             // The fewest frames are in time; a sweep that moves too far was told before.
-            return Ok(Found::Fails(Box::new(Misses { failed: wheel.failed(Why::Motion, None), near: None })));
+            return Ok(Found::Fails(Box::new(Misses {
+                failed: wheel.failed(Why::Motion, None),
+                near: None,
+            })));
         };
         if self.skipping == Skipping::On && wheel.kind == WheelKind::Filters {
             // All filters at once: what they do not tell, a few do not.
@@ -275,9 +140,10 @@ impl Search<'_, '_> {
         let (mut nearest, mut open): (Option<Best>, Option<Best>) = (None, None);
         for frames in frames.iter().rev().copied() {
             let camera = at_frames(camera, frames);
-            let mut is_met = false;
+            let (mut is_met, mut is_late) = (false, false);
             for k in from..=most {
                 if !wheel.is_in_time(&camera, k) {
+                    is_late = true;
                     break;
                 }
                 let (best, judged_all) = self.best(frames, k, &camera)?;
@@ -298,7 +164,8 @@ impl Search<'_, '_> {
                     }
                 }
             }
-            if !is_met {
+            // Fewer frames do no better, but for more filters there is then time.
+            if !is_met && !is_late {
                 break;
             }
         }
@@ -313,7 +180,8 @@ impl Search<'_, '_> {
         if let Some(open) = open {
             return Ok(Found::Undecided(wheel.choice(&open), wheel.failed(Why::Undecided, Some(&open))));
         }
-        let failed = wheel.failed(Why::Distance { filters, frames: most_frames, all_judged }, nearest.as_ref());
+        let failed =
+            wheel.failed(Why::Distance { filters, frames: most_frames, all_judged }, nearest.as_ref());
         let near = nearest.map(|best| wheel.choice(&best));
         Ok(Found::Fails(Box::new(Misses { failed, near })))
     }
@@ -327,7 +195,8 @@ impl Search<'_, '_> {
             demand::spared(Thing::CameraChoices, Reason::Bounded, 1);
             return Ok(false);
         }
-        Ok(self.judge(all, frames, self.nearest_pair(&states, all), required * (1.0 - SAME))?.told != YesNo::No)
+        Ok(self.judge(all, frames, self.nearest_pair(&states, all), required * (1.0 - SAME))?.told
+            != YesNo::No)
     }
 
     /// The best choice of at most k bands at so many frames, one that is told before one that is not; and whether nothing was left
@@ -378,8 +247,13 @@ impl Search<'_, '_> {
         let n = self.wheel.filters.len();
         let count = count_of(n, k);
         if count > MOST_OF_ALL {
-            let found = format!("without skipping {count:.0} choices of up to {k} of {n} filters would be judged for each number of frames");
-            return Err(Error::malformed(found, "allow fewer filters (find.filters.at_most), or leave --no-skip out"));
+            let found = format!(
+                "without skipping {count:.0} choices of up to {k} of {n} filters would be judged for each number of frames"
+            );
+            return Err(Error::malformed(
+                found,
+                "allow fewer filters (find.filters.at_most), or leave --no-skip out",
+            ));
         }
         let next: Vec<usize> = match &self.wheel.next {
             Some(next) => next.clone(),
@@ -423,7 +297,11 @@ impl Search<'_, '_> {
             // What is not in the squares is what priors say; errors that readings share make the distance less.
             let fixed = (distance * distance - square).max(0.0);
             if study.unknowns.has_priors() || fixed <= FIXED * square {
-                self.pool.states.push(Known { pair, state: state.clone(), fixed: if study.unknowns.has_priors() { fixed } else { 0.0 } });
+                self.pool.states.push(Known {
+                    pair,
+                    state: state.clone(),
+                    fixed: if study.unknowns.has_priors() { fixed } else { 0.0 },
+                });
             }
         }
         Ok(judged)
@@ -453,7 +331,10 @@ impl Search<'_, '_> {
 
     /// The pair of the state that a choice tells least.
     fn nearest_pair(&self, states: &States, chosen: &[usize]) -> [usize; 2] {
-        states.nearest(chosen).and_then(|place| self.pool.states.get(place)).map_or([0, 0], |known| known.pair)
+        states
+            .nearest(chosen)
+            .and_then(|place| self.pool.states.get(place))
+            .map_or([0, 0], |known| known.pair)
     }
 }
 
@@ -483,7 +364,7 @@ fn squares(own: &[f64], other: &[f64], counting: &Counting) -> Vec<f64> {
     own.iter().zip(other).enumerate().map(square).collect()
 }
 
-fn at_frames(camera: &Camera, frames: u32) -> Camera {
+pub(super) fn at_frames(camera: &Camera, frames: u32) -> Camera {
     Camera { frames, ..camera.clone() }
 }
 
@@ -491,51 +372,4 @@ fn at_frames(camera: &Camera, frames: u32) -> Camera {
 fn count_of(n: usize, k: usize) -> f64 {
     let of = |k: usize| (0..k).map(|i| (n - i) as f64 / (i + 1) as f64).product::<f64>();
     (1..=k.min(n)).map(of).sum()
-}
-
-/// The bands of a spectrometer: so many over its range.
-fn own_grid(camera: &Camera, bands: u32) -> BandSource {
-    let [low, high] = camera.spectral_range_cm1;
-    let step = (high - low) / f64::from(bands);
-    let [start, stop, step] = [low + 0.5 * step, high - 0.5 * step, step].map(Spectral::Wavenumber);
-    if bands < 2 { BandSource::Unsaid } else { BandSource::Grid { start, stop, step } }
-}
-
-/// The filters that lie in the range of a detector, and beside which of them which may stand; none where none does.
-#[allow(clippy::type_complexity)]
-fn filters_of(
-    supply: &FilterSupply,
-    spec: &FindSpec,
-    camera: &Camera,
-) -> Result<Option<(BandSource, Option<Vec<usize>>)>> {
-    let [low, high] = camera.spectral_range_cm1;
-    let [short_um, long_um] = [1e4 / high, 1e4 / low];
-    let is_within =
-        |from_um: f64, to_um: f64| from_um >= short_um * (1.0 - BEYOND) && to_um <= long_um * (1.0 + BEYOND);
-    match supply {
-        FilterSupply::List(list) => {
-            let curves = bands::curves(list)?;
-            let inside = curves.iter().filter(|curve| {
-                let [from, to] = curve.half_power_cm1();
-                is_within(1e4 / to, 1e4 / from)
-            });
-            let names: Vec<String> = inside.map(|curve| curve.name().to_owned()).collect();
-            let filters = Filters { list: list.clone(), names: Some(names.clone()), place: spec.filters.place };
-            Ok((!names.is_empty()).then_some((BandSource::Filters(filters), None)))
-        }
-        FilterSupply::Any { step_um } => {
-            let first = (short_um * (1.0 - BEYOND) / step_um).ceil() as usize;
-            let last = (long_um * (1.0 + BEYOND) / step_um).floor() as usize;
-            // In the order of the bands: by their lower wavenumber, then by the upper.
-            let mut runs: Vec<[usize; 2]> = Vec::new();
-            for to in (first + 1..=last).rev() {
-                runs.extend((first..to).rev().map(|from| [from, to]));
-            }
-            let edge = |at: usize| Spectral::Wavelength(at as f64 * step_um);
-            let ranges = runs.iter().map(|[from, to]| [edge(*from), edge(*to)]).collect();
-            // Behind it in wavenumber only what ends where it begins.
-            let next = runs.iter().map(|[from, _]| runs.partition_point(|[_, to]| to > from));
-            Ok((!runs.is_empty()).then(|| (BandSource::Ranges(ranges), Some(next.collect()))))
-        }
-    }
 }

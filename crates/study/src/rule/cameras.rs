@@ -28,7 +28,7 @@ impl Named {
     /// The bands of a scenario that it reads.
     pub(super) fn read(&self, scenario: &Scenario) -> Result<Bands> {
         let asked = camera_bands::asked(&scenario.bands.source, Some((&self.camera, &self.spec)));
-        bands::seen_by(&asked, &scenario.source, Some(&self.camera))
+        bands::seen_by(&asked, &scenario.source, Some(self.camera.rim_sine()))
     }
 }
 

@@ -3,12 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use hadar::instrument::Price;
 use hadar::instrument::figures::NoiseFigures;
+use hadar::instrument::presets::Cooling;
 use hadar::units::Spectral;
+use hadar_scenario::find::{FilterSupply, FiltersToChoose, LensSpec, Merit};
 use hadar_scenario::{
     Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec, ClassSpec,
-    DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance,
-    PixelsFilled, Readout, Reliability, Requirement, Scenario, Scope, Source, Spread, Target, Unknown,
+    DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, FilterList, FilterPlace, Filters,
+    FindSpec, MaterialRef, Nuisance, PixelsFilled, Readout, Reliability, Requirement, Scenario, Scope,
+    Source, Spread, Target, Unknown,
 };
 use hadar_testing::seeded;
 use proptest::prelude::*;
@@ -103,6 +107,7 @@ fn the_example_is_the_case_of_the_paper() {
             time_s: None,
         },
         envelope: None,
+        find: None,
         sensitivity: None,
         categories: Vec::new(),
         source: Source::default(),
@@ -247,6 +252,57 @@ fn above_zero() -> impl Strategy<Value = f64> {
     (-300.0..300.0f64).prop_map(|exponent| 10f64.powf(exponent))
 }
 
+fn filter_list() -> impl Strategy<Value = FilterList> {
+    prop_oneof![Just(FilterList::Catalogue), Just(FilterList::File(std::path::absolute("f.csv").unwrap()))]
+}
+
+fn filter_place() -> impl Strategy<Value = Option<FilterPlace>> {
+    let sensor = (1.0..10.0f64).prop_map(|index| Some(FilterPlace::Sensor { index }));
+    prop_oneof![Just(None), Just(Some(FilterPlace::Lens)), sensor]
+}
+
+fn price() -> impl Strategy<Value = Option<Price>> {
+    let text = prop_oneof![
+        (1u32..1_000_000).prop_map(|sum| format!("{sum} USD")),
+        (1u32..1000, 1u32..1000).prop_map(|(low, more)| format!("{low} to {} EUR", low + more)),
+        (1u32..1000).prop_map(|most| format!("under {most} USD")),
+    ];
+    proptest::option::of(text.prop_map(|text| Price::parse(&text).unwrap()))
+}
+
+fn find() -> impl Strategy<Value = FindSpec> {
+    let lens = (proptest::option::of("[a-z]{2,6}"), 0.5..10.0f64, above_zero(), price());
+    let lens = lens.prop_map(|(name, f_number, focal_length_m, price)| LensSpec {
+        name,
+        f_number,
+        focal_length_m,
+        price,
+    });
+    let supply = (filter_list(), filter_place()).prop_map(|(list, place)| (FilterSupply::List(list), place));
+    let any = (1u32..100)
+        .prop_map(|twentieths| (FilterSupply::Any { step_um: 0.05 * f64::from(twentieths) }, None));
+    let filters = (prop_oneof![supply, any], 1u32..9, price())
+        .prop_map(|((from, place), at_most, price)| FiltersToChoose { from, at_most, place, price });
+    (
+        proptest::collection::btree_set("[a-z*][a-z0-9*-]{0,8}", 1..4),
+        proptest::option::of(proptest::sample::select(Cooling::ALL.to_vec())),
+        proptest::option::of(proptest::collection::vec(lens, 1..2)),
+        filters,
+        proptest::collection::btree_set(1u32..1000, 1..5),
+        proptest::option::of(above_zero()),
+        proptest::sample::subsequence(Merit::ALL.to_vec(), 1..=4).prop_shuffle(),
+    )
+        .prop_map(|(cameras, kind, lenses, filters, frames, time_s, least)| FindSpec {
+            cameras: cameras.into_iter().collect(),
+            kind,
+            lenses,
+            filters,
+            frames: frames.into_iter().collect(),
+            time_s,
+            least,
+        })
+}
+
 fn bands() -> impl Strategy<Value = BandsSpec> {
     let path = |name: &str| std::path::absolute(name).unwrap();
     let axis = proptest::sample::select(vec![
@@ -258,7 +314,18 @@ fn bands() -> impl Strategy<Value = BandsSpec> {
             let (start, stop, step) = (of(start), of(stop), of((stop - start) * share));
             BandSource::Grid { start, stop, step }
         }),
-        Just(BandSource::Filters(path("f.csv"))),
+        (
+            filter_list(),
+            proptest::option::of(proptest::collection::btree_set("[a-z0-9.-]{1,8}", 1..4)),
+            filter_place()
+        )
+            .prop_map(|(list, names, place)| {
+                BandSource::Filters(Filters {
+                    list,
+                    names: names.map(|set| set.into_iter().collect()),
+                    place,
+                })
+            }),
         Just(BandSource::Rows(path("rows"))),
         proptest::collection::vec((axis, ordered(0.1, 5e3)), 1..4).prop_map(|ranges| {
             BandSource::Ranges(ranges.into_iter().map(|(of, range)| range.map(of)).collect())
@@ -406,6 +473,7 @@ prop_compose! {
         by in proptest::sample::select(DistanceKind::ALL.to_vec()),
         skip_uncovered in any::<bool>(),
         speed_m_s in proptest::option::of(above_zero()),
+        find in proptest::option::of(find()),
         (of, filled) in (proptest::option::of(proptest::sample::select(Scope::ALL.to_vec())), filled()),
         (ranged, width, envelope_materials, near, classes) in (
             any::<bool>(), 0.0..1.0, proptest::option::of(proptest::collection::btree_set(material(), 1..3)),
@@ -456,6 +524,7 @@ prop_compose! {
             requirement: Requirement { reliability, by, of, speed_m_s, time_s: speed_m_s.map(f64::recip) },
             envelope,
             sensitivity: None,
+            find,
             categories: Vec::new(),
             source: Source::default(),
         }

@@ -51,7 +51,8 @@ impl States {
 
     /// One state more; squares that are missing or no numbers count as infinite, which cuts nothing.
     pub fn add(&mut self, squares: &[f64], fixed: f64) {
-        let at = |w: usize| squares.get(w).copied().filter(|square| !square.is_nan()).unwrap_or(f64::INFINITY);
+        let at =
+            |w: usize| squares.get(w).copied().filter(|square| !square.is_nan()).unwrap_or(f64::INFINITY);
         self.squares.push((0..self.readings).map(at).collect());
         self.fixed.push(if fixed.is_nan() { f64::INFINITY } else { fixed });
     }
@@ -71,14 +72,16 @@ impl States {
     /// The least square with the readings of a choice: d² is no greater.
     #[must_use]
     pub fn square(&self, choice: &[usize]) -> f64 {
-        let of = |(squares, fixed): (&Vec<f64>, &f64)| fixed + choice.iter().map(|w| squares[*w]).sum::<f64>();
+        let of =
+            |(squares, fixed): (&Vec<f64>, &f64)| fixed + choice.iter().map(|w| squares[*w]).sum::<f64>();
         self.squares.iter().zip(&self.fixed).map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// The state that is nearest by the readings of a choice.
     #[must_use]
     pub fn nearest(&self, choice: &[usize]) -> Option<usize> {
-        let of = |place: &usize| self.fixed[*place] + choice.iter().map(|w| self.squares[*place][*w]).sum::<f64>();
+        let of =
+            |place: &usize| self.fixed[*place] + choice.iter().map(|w| self.squares[*place][*w]).sum::<f64>();
         (0..self.len()).min_by(|a, b| of(a).total_cmp(&of(b)))
     }
 
@@ -103,14 +106,8 @@ impl States {
     /// ```
     #[must_use]
     pub fn best(&self, k: usize, without: &[Vec<usize>]) -> Option<Chosen> {
-        let mut search = Search {
-            states: self,
-            k,
-            without,
-            most: self.most_behind(k),
-            chosen: Vec::new(),
-            best: None,
-        };
+        let mut search =
+            Search { states: self, k, without, most: self.most_behind(k), chosen: Vec::new(), best: None };
         search.extend(0, &self.fixed);
         search.best
     }
