@@ -64,6 +64,9 @@ pub struct Preset {
     /// What one piece costs, without a lens where it has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<Price>,
+    /// Whether that is without a lens though the camera has one here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub price_without_lens: Option<bool>,
     /// Where the price was seen, and when.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price_source: Option<String>,

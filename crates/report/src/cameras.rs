@@ -29,6 +29,7 @@ pub fn comparison_json(both: &SideBySide) -> Result<Value> {
     Ok(serde_json::json!({
         "sentence": comparison_sentence(both),
         "scene_temperature_k": SCENE_K,
+        "lens_of_both": both.lens.map(|[f_number, focal_length_m]| serde_json::json!({ "f_number": f_number, "focal_length_m": focal_length_m })),
         "common_range_cm1": compared.map(|of| of.range_cm1),
         "a": a,
         "b": b,

@@ -52,6 +52,7 @@ impl OwnCameras {
                 provenance: own.provenance.clone(),
                 kind: own.kind.or(figures.kind),
                 price: own.price.clone(),
+                price_without_lens: None,
                 price_source: None,
                 sold: None,
                 file: Some(file.display().to_string()),

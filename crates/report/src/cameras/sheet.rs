@@ -47,7 +47,13 @@ pub struct SideBySide {
     pub b: Sheet,
     /// Both before the same scene, where both are complete.
     pub comparison: Option<Comparison>,
+    /// F-number and focal length, m, of the lens that was put before a camera of which no document names one: that of the other, else
+    /// [`LENS`].
+    pub lens: Option<[f64; 2]>,
 }
+
+/// F-number and focal length, m, of the lens of two cameras without one.
+const LENS: [f64; 2] = [1.0, 14e-3];
 
 impl SideBySide {
     /// The two side by side.
@@ -55,11 +61,19 @@ impl SideBySide {
     /// # Errors
     /// As [`compare`].
     pub fn of(a: Sheet, b: Sheet) -> Result<Self> {
+        let own = |sheet: &Sheet| {
+            let figures = &sheet.preset.figures;
+            Some([figures.f_number?, figures.focal_length_m?])
+        };
+        let lens = own(&a).or_else(|| own(&b)).unwrap_or(LENS);
+        let lacks = [a.lacks_a_lens(), b.lacks_a_lens()].contains(&true);
+        let (a, b) = (a.behind(lens)?, b.behind(lens)?);
+        let lens = lacks.then_some(lens);
         let comparison = match (&a.worked, &b.worked) {
             (Some(a), Some(b)) => Some(compare(&a.camera, &b.camera)?),
             _ => None,
         };
-        Ok(Self { a, b, comparison })
+        Ok(Self { a, b, comparison, lens })
     }
 }
 
@@ -80,6 +94,23 @@ impl Sheet {
             Err(_) => None,
         };
         Ok(Self { worked, ..Self::stated(preset) })
+    }
+
+    /// Whether it would be a camera with a lens before it.
+    fn lacks_a_lens(&self) -> bool {
+        let is_of_lens = |key: &&str| ["f_number", "focal_length"].contains(key);
+        !self.missing.0.is_empty() && self.missing.0.iter().all(is_of_lens)
+    }
+
+    /// The same behind a lens of that f-number and focal length, m, where it lacks nothing else.
+    fn behind(self, [f_number, focal_length_m]: [f64; 2]) -> Result<Self> {
+        if !self.lacks_a_lens() {
+            return Ok(self);
+        }
+        let mut preset = self.preset;
+        preset.figures.f_number.get_or_insert(f_number);
+        preset.figures.focal_length_m.get_or_insert(focal_length_m);
+        Self::of(preset)
     }
 
     /// λF over the pixel at 10 µm: the blur of diffraction in pixels.

@@ -162,11 +162,14 @@ impl Of<'_> {
             return Err(Box::new(Why::Figures { missing: missing.0 }));
         }
         let made = camera::resolved(&spec, &self.scenario.source).map_err(refused)?;
+        let figures = &self.preset.figures;
+        let has_lens = figures.f_number.is_some() || figures.focal_length_m.is_some();
+        let is_without = self.preset.price_without_lens == Some(true) || !has_lens;
         let mut price_without = Vec::new();
         let total = match (&self.preset.price, price) {
             (Some(camera), Some(lens)) => camera.and(&lens),
             (Some(camera), None) => {
-                if lens.as_ref().is_some_and(|lens| lens.name.is_some() || self.spec.lenses.is_some()) {
+                if is_without {
                     price_without.push("lens");
                 }
                 Some(camera.clone())

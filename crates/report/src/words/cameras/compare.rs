@@ -29,13 +29,18 @@ pub(crate) fn comparison_sentence(both: &SideBySide) -> String {
             times(ratios.distance_in_same_time.powi(sign))
         ),
     };
+    let lens = both.lens.map_or_else(String::new, |lens| format!(", both behind {}", lens_of_both(lens)));
     format!(
-        "In one acquisition {}, and {}. In a scene of 300 K a pair whose spectra differ little has {} times the distance d \
+        "In one acquisition{lens}, {}, and {}. In a scene of 300 K a pair whose spectra differ little has {} times the distance d \
          with {better} that it has with {worse}{same_time}.",
         photons(ratios.photons, a, b),
         noises(ratios, a, b),
         times(ratios.distance.powi(sign)),
     )
+}
+
+fn lens_of_both([f_number, focal_length_m]: [f64; 2]) -> String {
+    format!("f/{} of {} mm", significant(f_number, 2), significant(1e3 * focal_length_m, 3))
 }
 
 fn same(ratio: f64) -> bool {
@@ -152,6 +157,15 @@ pub(crate) fn caveats(both: &SideBySide) -> Vec<String> {
         if both.b.preset.name == both.a.preset.name {
             break;
         }
+    }
+    if let Some(lens) = both.lens {
+        all.push(format!("where no document names a lens, both are behind {}", lens_of_both(lens)));
+    }
+    if both.a.preset.name != both.b.preset.name {
+        all.push(format!(
+            "before a question of your own, with its filters and frames: `hadar find` with find.cameras = [{:?}, {:?}]",
+            both.a.preset.name, both.b.preset.name
+        ));
     }
     if both.comparison.is_some() {
         all.push(
