@@ -29,7 +29,7 @@ struct File {
     camera: Vec<Preset>,
 }
 
-crate::named! {
+crate::base::named::named! {
     /// Whether an array is cooled.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]

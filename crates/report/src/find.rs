@@ -7,6 +7,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
+use hadar_scenario::Rule;
 use hadar_study::find::{Choice, FindAnswer};
 use std::borrow::Cow;
 
@@ -16,7 +17,10 @@ use std::borrow::Cow;
 /// A figure that cannot be drawn.
 pub fn bundle(found: &FindAnswer) -> Result<Bundle> {
     let mut bundle = Bundle::about(found.scenario.title.as_deref());
-    bundle.add_asked("question.toml", found.scenario.to_toml());
+    bundle.add_asked(
+        "question.toml",
+        found.rule.as_ref().map_or_else(|| found.scenario.to_toml(), Rule::to_toml),
+    );
     let groups = [("listed", &found.listed), ("also", &found.also), ("undecided", &found.undecided)];
     let nearest: Vec<Choice> = found.near.iter().map(|near| near.choice.clone()).collect();
     let groups: Vec<(&str, &Vec<Choice>)> = groups.into_iter().chain([("nearest", &nearest)]).collect();
@@ -44,7 +48,10 @@ pub fn bundle(found: &FindAnswer) -> Result<Bundle> {
         for choice in *all {
             count += 1;
             let name = format!("choice_{count}.toml");
-            bundle.add(name.clone(), choice.scenario.to_toml());
+            bundle.add(
+                name.clone(),
+                choice.rule.as_ref().map_or_else(|| choice.scenario.to_toml(), Rule::to_toml),
+            );
             choices.push(row(group, &name, choice));
         }
     }
@@ -62,17 +69,9 @@ pub fn bundle(found: &FindAnswer) -> Result<Bundle> {
         ]);
     }
     bundle.add_table("failed.csv", failed)?;
-    let conditions: Vec<_> = found
-        .listed
-        .iter()
-        .chain(&found.also)
-        .flat_map(|choice| {
-            choice
-                .verdict
-                .iter()
-                .flat_map(|verdict| &verdict.conditions)
-                .map(|one| (choice.camera.as_str(), one))
-        })
+    let listed = found.listed.iter().chain(&found.also);
+    let conditions: Vec<_> = listed
+        .flat_map(|choice| choice.conditions().iter().map(|one| (choice.camera.as_str(), one)))
         .collect();
     bundle.add_conditions(&conditions)?;
     bundle.add_warnings(found.best.as_ref().map_or(&[][..], |best| &best.warnings))?;
@@ -89,7 +88,7 @@ fn row(group: &str, name: &str, choice: &Choice) -> Vec<String> {
             filter.name.clone().unwrap_or_else(|| format!("{from:.4}-{to:.4} um"))
         })
         .collect();
-    let open = choice.verdict.iter().flat_map(|verdict| verdict.open());
+    let open = hadar_study::Condition::open(choice.conditions());
     vec![
         group.into(),
         name.into(),

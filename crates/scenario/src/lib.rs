@@ -58,7 +58,7 @@ pub use envelope::Envelope;
 pub use find::FindSpec;
 pub use library::LibraryScenario;
 pub use range::RangeScenario;
-pub use reader::command_for;
+pub use reader::{command_for, is_rule};
 pub use render::RenderScenario;
 pub use rule::Rule;
 pub use scene::SceneSpec;

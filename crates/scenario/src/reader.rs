@@ -94,6 +94,15 @@ pub fn command_for(written: &Written) -> Result<Option<&'static str>> {
     Ok(Kind::command_for(&parse(&written.text, &written.source())?))
 }
 
+/// Whether a file is a rule: by the keys of one, or by an envelope of scenes.
+///
+/// # Errors
+/// What is no TOML.
+pub fn is_rule(written: &Written) -> Result<bool> {
+    let document = parse(&written.text, &written.source())?;
+    Ok(Kind::command_for(&document) == Some("rule") || document.contains_key("envelope"))
+}
+
 /// Reads a file that is of a kind, has its least in it and only its keys; and where it was read from.
 pub(super) fn open<T>(
     written: &Written,

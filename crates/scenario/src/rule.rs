@@ -113,7 +113,7 @@ impl Rule {
         let coverage_factor = coverage_factor.flatten().unwrap_or(COVERAGE_FACTOR);
         let mut cameras = root.read("cameras", camera::presets)?.unwrap_or_default();
         cameras.extend(root.read("camera", camera::tables)?.unwrap_or_default());
-        if cameras.is_empty() {
+        if cameras.is_empty() && root.get("find").is_none() {
             let key = if root.get("cameras").is_some() { "cameras" } else { "" };
             return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
         }

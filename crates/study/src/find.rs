@@ -12,27 +12,32 @@
 //! Cameras that are beaten by none in all that is to be small (price class, time, filters, aperture) are listed, the first by the order
 //! that was asked for. A price that is not known is larger than any other.
 //!
+//! A *rule* is met everywhere or not: choices are searched in the scenes of its clauses, the first is held against the whole rule, the scene
+//! in which it fails joins the others, and so on until what is listed meets the rule.
+//!
 //! Assumption: the noises of two readings have nothing in common (else choices are judged one by one up to a number, and what was not
 //! judged is said).
 
 mod candidates;
 mod chosen;
 mod judged;
+mod of_rule;
 mod results;
 mod searched;
 mod wheel;
 
+pub use of_rule::find_for_rule;
 pub use results::{Choice, Failed, FilterUsed, FindAnswer, LensUsed, Misses, NearMiss, Why};
 
 use self::candidates::Candidate;
-use self::chosen::{Sought, beaten_by_none};
+use self::chosen::{Listed, Put, Ranked, beaten_by_none};
 use self::searched::{Found, Pool};
 use self::wheel::{Supply, Wheel};
 use crate::{OwnCameras, SizeAsked, Study, YesNo, resolve};
 use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar_scenario::{DistanceKind, FindSpec, Scenario};
+use hadar_scenario::{BandSource, DistanceKind, FindSpec, Scenario};
 
 /// Which cameras meet a scenario.
 ///
@@ -46,80 +51,116 @@ pub fn find(
 ) -> Result<FindAnswer> {
     let ledger = Ledger::open();
     let (scenario, spec) = question(scenario)?;
-    let (candidates, mut failed) = candidates::of(&scenario, &spec, own)?;
     let required = resolve::required(&scenario)?;
+    let (candidates, failed) = candidates::of(&scenario, &spec, own)?;
     let mut supply = Supply::of(&spec, &candidates)?;
-    let mut first_error = None;
-    let (mut pool, mut sought, mut undecided, mut missed) =
-        (Pool::default(), Vec::new(), Vec::new(), Vec::new());
-    let mut tried = 0;
-    for candidate in &candidates {
-        hadar::stop::check();
-        let wheel = match Wheel::new(candidate, &scenario, &mut supply, library) {
-            Ok(wheel) => wheel,
-            // A camera of the user's own, or one that is named, is told as it would be by itself.
-            Err(error) if candidate.is_named => return Err(error),
-            Err(error) => {
-                first_error = first_error.or_else(|| Some(error.clone()));
-                failed.push(candidate.fails(Why::Refused { because: error.to_string() }));
-                continue;
-            }
-        };
-        tried += 1;
-        if scenario.alternatives.skip_uncovered {
-            // Other bands may have other alternatives.
-            pool = Pool::default();
-        }
-        match wheel.search(&spec, &mut pool, (skipping, sought.is_empty()))? {
-            Found::Met(choices) => sought.extend(choices),
-            Found::Fails(fails) => {
-                if let Some(near) = &fails.near {
-                    missed.push((near.clone(), failed.len()));
+    let mut pool = Pool::default();
+    let scenes = std::slice::from_ref(&scenario);
+    let asked = Asked { spec: &spec, candidates: &candidates, library, skipping };
+    let searched = asked.search(scenes, &mut supply, &mut pool)?;
+    let listed = chosen::confirmed(searched.met.clone(), &spec, |choice| put_to_size(choice, library))?;
+    let mut answer = asked.answer(scenario.clone(), searched, listed, failed)?;
+    answer.required_distance = required;
+    answer.stats = ledger.close();
+    Ok(answer)
+}
+
+/// What is asked of every camera.
+struct Asked<'a> {
+    spec: &'a FindSpec,
+    candidates: &'a [Candidate],
+    library: &'a Library,
+    skipping: Skipping,
+}
+
+/// What a search comes to, before anything was put to the main job or the rule.
+#[derive(Debug, Default)]
+struct Searched {
+    met: Vec<Ranked>,
+    undecided: Vec<Choice>,
+    failed: Vec<Failed>,
+    missed: Vec<Choice>,
+}
+
+impl Asked<'_> {
+    /// Every camera in some scenes.
+    fn search(&self, scenes: &[Scenario], supply: &mut Supply<'_>, pool: &mut Pool) -> Result<Searched> {
+        let mut all = Searched::default();
+        let (mut first_error, mut tried, mut without_filters) = (None, 0, 0);
+        for candidate in self.candidates {
+            hadar::stop::check();
+            let wheel = match Wheel::new(candidate, scenes, supply, self.library) {
+                Ok(wheel) => wheel,
+                // A camera that is named is told as it would be by itself.
+                Err(error) if candidate.is_named => return Err(error),
+                Err(error) => {
+                    all.failed.push(candidate.fails(Why::Refused { because: error.to_string() }));
+                    first_error = first_error.or(Some(error));
+                    continue;
                 }
-                failed.push(fails.failed);
+            };
+            tried += 1;
+            if scenes.iter().any(|scene| scene.alternatives.skip_uncovered) {
+                // Other bands may have other alternatives.
+                *pool = Pool::default();
             }
-            Found::Undecided(choice, fails) => {
-                undecided.push(choice);
-                failed.push(fails);
+            match wheel.search(self.spec, pool, (self.skipping, all.met.is_empty()))? {
+                Found::Met(choices) => all.met.extend(choices),
+                Found::Fails(fails) => {
+                    without_filters += u64::from(matches!(fails.failed.why, Why::NoFilter { .. }));
+                    all.missed.extend(fails.near);
+                    all.failed.push(fails.failed);
+                }
+                Found::Undecided(choice, fails) => {
+                    all.undecided.push(choice);
+                    all.failed.push(fails);
+                }
             }
         }
+        demand::computed(Thing::Cameras, tried);
+        demand::spared(Thing::Cameras, Reason::NotAsked, self.candidates.len() as u64 - tried);
+        if let (0, Some(error)) = (tried, first_error) {
+            return Err(error);
+        }
+        if tried > 0 && without_filters == tried {
+            let found = "no filter lies within the range of any of these cameras";
+            let error = Error::malformed(found, "give filters between 7 and 14 um, or other cameras");
+            return Err(scenes.first().map_or(error.clone(), |scene| error.at(scene.place("find.filters"))));
+        }
+        Ok(all)
     }
-    demand::computed(Thing::Cameras, tried);
-    demand::spared(Thing::Cameras, Reason::NotAsked, candidates.len() as u64 - tried);
-    if let (0, Some(error)) = (tried, first_error) {
-        return Err(error);
+
+    /// The answer of what is listed.
+    fn answer(
+        &self,
+        scenario: Scenario,
+        searched: Searched,
+        listed: Listed,
+        mut failed: Vec<Failed>,
+    ) -> Result<FindAnswer> {
+        let Listed { met, refused, .. } = listed;
+        let mut undecided = searched.undecided;
+        undecided.extend(refused);
+        failed.extend(searched.failed);
+        let best_first = beaten_by_none(&met, self.spec);
+        let near = if met.is_empty() { near_miss(&searched.missed, self.library)? } else { None };
+        let of = |places: &[usize]| places.iter().map(|index| met[*index].choice.clone()).collect();
+        Ok(FindAnswer {
+            scenario,
+            rule: None,
+            scenes: 1,
+            required_distance: f64::NAN,
+            met: !best_first.is_empty(),
+            best: best_first.first().map(|index| met[*index].choice.clone()),
+            listed: of(&best_first),
+            also: of(&chosen::best_of_each(&met, &best_first)),
+            undecided: chosen::distinct(undecided),
+            failed,
+            near,
+            warnings: Vec::new(),
+            stats: hadar::demand::Work::default(),
+        })
     }
-    let no_filter = |one: &Failed| matches!(one.why, Why::NoFilter { .. });
-    if sought.is_empty() && tried > 0 && failed.iter().filter(|one| no_filter(one)).count() as u64 == tried {
-        let found = "no filter lies within the range of any of these cameras";
-        let error = Error::malformed(found, "give filters between 7 and 14 um, or other cameras");
-        return Err(error.at(scenario.place("find.filters")));
-    }
-    // Put to the main job: what it does not call met is not listed.
-    let listed = chosen::confirmed(sought, &spec, |choice| put_to_size(choice, library))?;
-    let (met, refused) = (listed.met, listed.refused);
-    undecided.extend(refused);
-    let best_first = beaten_by_none(&met, &spec);
-    let near = match met.is_empty() {
-        true => near_miss(&missed, library)?,
-        false => None,
-    };
-    Ok(FindAnswer {
-        scenario,
-        required_distance: required,
-        met: !best_first.is_empty(),
-        best: best_first.first().map(|index| met[*index].choice.clone()),
-        listed: best_first.iter().map(|index| met[*index].choice.clone()).collect(),
-        also: chosen::best_of_each(&met, &best_first)
-            .into_iter()
-            .map(|index| met[index].choice.clone())
-            .collect(),
-        undecided: chosen::distinct(undecided),
-        failed,
-        near,
-        warnings: Vec::new(),
-        stats: ledger.close(),
-    })
 }
 
 /// The question with its defaults; the time of `[find]` is that of the requirement.
@@ -137,7 +178,7 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
         let found = format!("the camera is {preset} already, and one is sought");
         return refuse("camera.preset", found, "write it as find.cameras, or ask `hadar size`");
     }
-    if !matches!(scenario.bands.source, hadar_scenario::BandSource::Unsaid) {
+    if !matches!(scenario.bands.source, BandSource::Unsaid) {
         let found = "the bands are given, and filters are sought".into();
         return refuse(
             "bands",
@@ -169,7 +210,7 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
 }
 
 /// A choice as the main job judges it.
-fn put_to_size(choice: &mut Choice, library: &Library) -> Result<bool> {
+fn put_to_size(choice: &mut Choice, library: &Library) -> Result<Put> {
     let study = Study::new(&choice.scenario, library)?;
     let sizing = study.size_with(SizeAsked { solutions: false, sensitivity: true })?;
     let (lower, upper) = (sizing.verdict.lower, sizing.verdict.upper);
@@ -179,13 +220,13 @@ fn put_to_size(choice: &mut Choice, library: &Library) -> Result<bool> {
     choice.warnings.clone_from(&sizing.warnings);
     let is_met = sizing.verdict.answer == Some(YesNo::Yes);
     choice.verdict = Some(sizing.verdict);
-    Ok(is_met)
+    Ok(if is_met { Put::Met } else { Put::Refused })
 }
 
 /// The camera that comes nearest, and what it would have to be.
-fn near_miss(missed: &[(Choice, usize)], library: &Library) -> Result<Option<NearMiss>> {
-    let nearest = missed.iter().max_by(|a, b| a.0.upper.total_cmp(&b.0.upper));
-    let Some((choice, _)) = nearest else { return Ok(None) };
+fn near_miss(missed: &[Choice], library: &Library) -> Result<Option<NearMiss>> {
+    let nearest = missed.iter().max_by(|a, b| a.upper.total_cmp(&b.upper));
+    let Some(choice) = nearest else { return Ok(None) };
     let mut choice = choice.clone();
     let study = Study::new(&choice.scenario, library)?;
     let sizing = study.size_with(SizeAsked { solutions: true, sensitivity: false })?;
@@ -202,11 +243,4 @@ impl Candidate {
     fn fails(&self, why: Why) -> Failed {
         Failed { camera: self.camera.clone(), lens: self.lens.clone(), why, lower: None, upper: None }
     }
-}
-
-/// One of the choices, and where it stands in the order that was asked for.
-#[derive(Debug, Clone)]
-pub(crate) struct Ranked {
-    pub(crate) choice: Choice,
-    pub(crate) sought: Sought,
 }

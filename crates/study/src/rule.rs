@@ -49,7 +49,7 @@ use crate::budget::Takes;
 use crate::condition::hardest_first;
 use crate::grade::Grade;
 use hadar::demand::{self, Ledger, Work};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_scenario::rule::{Clause, Demand, StopSpec, Verdict};
 use hadar_scenario::{Date, Rule};
@@ -118,6 +118,11 @@ impl RuleStudy {
     /// ```
     pub fn new(rule: &Rule, library: &Library) -> Result<Self> {
         let cameras = cameras::of(rule)?;
+        if cameras.is_empty() {
+            let instead = "write cameras = [\"flir-a325sc\"] above the first [table], or ask `hadar find`";
+            let error = Error::malformed("the rule has no camera to check", instead);
+            return Err(error.at(rule.scenario.place("find")));
+        }
         let mut filled = rule.clone();
         let mut clauses = Vec::with_capacity(rule.clauses.len());
         let mut warnings: Vec<Warning> = Vec::new();

@@ -4,14 +4,15 @@ use super::global::{Global, condition};
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::find;
-use hadar_scenario::Scenario;
+use hadar_scenario::{Rule, Scenario, is_rule};
+use hadar_study::find::find_for_rule;
 use hadar_study::{Condition, OwnCameras};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct FindArgs {
-    /// Scenario file (TOML) without a camera, with what may be chosen in [find]; `-` for standard input
+    /// Scenario file or rule (TOML) without a camera, with what may be chosen in [find]; `-` for standard input
     #[arg(value_name = "QUESTION")]
     question: PathBuf,
     /// Exit with code 3 unless a camera meets under no condition but those of --accept
@@ -23,18 +24,24 @@ pub(super) struct FindArgs {
 }
 
 pub(super) fn run(args: &FindArgs, global: &Global) -> Result<ExitCode> {
-    let mut scenario = Scenario::from_written(&global.written(&args.question)?)?;
-    scenario.alternatives.skip_uncovered |= global.skip_uncovered;
-    let own = OwnCameras::from_files(&global.cameras)?;
-    let mut found = hadar_study::find::find(&scenario, &own, &global.library()?, global.skipping())?;
+    let written = global.written(&args.question)?;
+    let (own, library) = (OwnCameras::from_files(&global.cameras)?, global.library()?);
+    let mut found = if is_rule(&written)? {
+        let mut rule = Rule::from_written(&written)?;
+        rule.skip_uncovered(global.skip_uncovered);
+        find_for_rule(&rule, &own, &library, global.skipping())?
+    } else {
+        let mut scenario = Scenario::from_written(&written)?;
+        scenario.alternatives.skip_uncovered |= global.skip_uncovered;
+        hadar_study::find::find(&scenario, &own, &library, global.skipping())?
+    };
     let text = find::text(&found);
     let work = global.report(&text, || find::bundle(&found))?;
     found.stats.add(&work);
     global.answer(&found, &text, &found.stats)?;
-    let is_open = found.best.as_ref().is_none_or(|best| {
-        let conditions =
-            best.verdict.iter().flat_map(|verdict| &verdict.conditions).cloned().collect::<Vec<_>>();
-        Condition::unaccepted(&conditions, &args.accept).next().is_some()
-    });
+    let is_open = found
+        .best
+        .as_ref()
+        .is_none_or(|best| Condition::unaccepted(best.conditions(), &args.accept).next().is_some());
     Ok(ExitCode::from(if args.check && is_open { 3 } else { 0 }))
 }

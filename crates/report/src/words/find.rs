@@ -22,9 +22,7 @@ pub fn text(found: &FindAnswer) -> String {
     let mut out = format!("{}\n\n", sentence(found));
     if let Some(best) = &found.best {
         out += &bought(best);
-        if let Some(verdict) = &best.verdict {
-            out += &conditions::paragraph(&verdict.conditions, true);
-        }
+        out += &conditions::paragraph(best.conditions(), true);
     }
     let head = "Beaten by none in ";
     let merits: Vec<&str> = merits(found).iter().map(|merit| merit.name()).collect();
@@ -75,14 +73,18 @@ pub fn sentence(found: &FindAnswer) -> String {
         };
     };
     let first = match merits(found).first() {
-        Some(Merit::Price) if best.price.is_some() => "The cheapest that meets is",
-        Some(Merit::Price) => "No price is known of any that meets; the first by the rest is",
-        Some(Merit::Time) => "The fastest that meets is",
-        Some(Merit::Filters) => "With the fewest filters meets",
-        Some(Merit::Aperture) => "With the smallest lens meets",
-        None => "What meets is",
+        Some(Merit::Price) if best.price.is_some() => "The cheapest that meets",
+        Some(Merit::Price) => "No price is known of any; the first by the rest that meets",
+        Some(Merit::Time) => "The fastest that meets",
+        Some(Merit::Filters) => "That with the fewest filters that meets",
+        Some(Merit::Aperture) => "That with the smallest lens that meets",
+        None => "What meets",
     };
-    let open: Vec<&Condition> = best.verdict.iter().flat_map(|verdict| verdict.open()).collect();
+    let first = match &found.rule {
+        Some(_) => format!("{first} the rule in all of its scenes is"),
+        None => format!("{first} is"),
+    };
+    let open: Vec<&Condition> = Condition::open(best.conditions()).collect();
     let subject = match open.split_first() {
         None => String::new(),
         Some((one, [])) => format!(", if {}", one.say()),
@@ -213,7 +215,7 @@ fn table(head: &str, choices: &[Choice]) -> String {
 /// Conditions that another choice has and the first does not.
 fn of_others(found: &FindAnswer) -> String {
     let codes = |choice: &Choice| -> Vec<String> {
-        choice.verdict.iter().flat_map(|verdict| verdict.open()).map(Condition::code).collect()
+        Condition::open(choice.conditions()).map(Condition::code).collect()
     };
     let of_best = found.best.as_ref().map(codes).unwrap_or_default();
     let mut out = String::new();
@@ -271,11 +273,12 @@ pub fn why(failed: &Failed, required: f64) -> String {
         Why::AllFilters { frames_would_do: false } => {
             format!("not with all filters at once, and no number of frames would do{short}")
         }
-        Why::Distance { filters, frames, all_judged } => {
+        Why::Distance { filters, frames, all_judged, is_cut } => {
             let searched = if *all_judged { "" } else { ", as far as was searched" };
             let frames = if *frames == 1 { "1 frame".into() } else { format!("{frames} frames") };
-            let filters = if *filters == 1 { "1 filter".into() } else { format!("up to {filters} bands") };
-            format!("no choice of {filters} and {frames} does{searched}{short}")
+            let filters = if *filters == 1 { "1 filter".into() } else { format!("up to {filters} filters") };
+            let cut = if *is_cut { ", and more take too long for the time or for what moves" } else { "" };
+            format!("no choice of {filters} and {frames} does{searched}{cut}{short}")
         }
         Why::Time { takes_s } => format!("its fewest readings take {}", quantity(*takes_s, "s")),
         Why::Motion => "the target moves by a pixel or more while its bands are exposed".into(),
@@ -315,9 +318,17 @@ fn missing(found: &FindAnswer) -> String {
 /// What the answer rests on as a whole.
 fn footing(found: &FindAnswer) -> String {
     let Some(spec) = &found.scenario.find else { return String::new() };
+    let put = match &found.rule {
+        Some(_) => format!(
+            "what meets was held against the whole rule as `hadar rule` does, after a search in {} of its scenes",
+            found.scenes
+        ),
+        None => "what meets was put to `hadar size` as its scenario stands".into(),
+    };
     let mut notes = vec![
-        "what meets was put to `hadar size` as its scenario stands; a price is a class of one piece where a public page states one".into(),
-        "more filters are exposed one after the other; of as many filters those that tell most are taken".to_owned(),
+        format!("{put}; a price is a class of one piece where a public page states one"),
+        "more filters are exposed one after the other; of as many filters those that tell most are taken"
+            .to_owned(),
     ];
     match &spec.filters.from {
         FilterSupply::Any { step_um } => notes.push(format!(

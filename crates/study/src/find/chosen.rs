@@ -1,6 +1,5 @@
 //! The order of choices by what is to be small, and those that are beaten by none.
 
-use super::Ranked;
 use super::results::Choice;
 use hadar::error::Result;
 use hadar_scenario::FindSpec;
@@ -9,9 +8,16 @@ use hadar_scenario::find::Merit;
 /// Relative difference of figures that is rounding.
 const SAME: f64 = 1e-9;
 
+/// One of the choices, and where it stands in the order that was asked for.
+#[derive(Debug, Clone)]
+pub(super) struct Ranked {
+    pub(super) choice: Choice,
+    pub(super) sought: Sought,
+}
+
 /// What of a choice is to be small.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Sought {
+pub(super) struct Sought {
     /// Price at most; infinite where it is not known.
     price: f64,
     time_s: f64,
@@ -43,6 +49,18 @@ impl Sought {
 pub(super) struct Listed {
     pub(super) met: Vec<Ranked>,
     pub(super) refused: Vec<Choice>,
+    /// Whether they must be searched again, as more is known of what they must do.
+    pub(super) again: bool,
+}
+
+/// What the one to whom a choice is put says of it.
+pub(super) enum Put {
+    /// It meets.
+    Met,
+    /// It does not, or that is not shown.
+    Refused,
+    /// It does not, and now more is known of what it takes.
+    Again,
 }
 
 /// Puts those that would be listed to the main job, until all that are listed have been; one that it does not call met makes room for
@@ -50,18 +68,20 @@ pub(super) struct Listed {
 pub(super) fn confirmed(
     mut all: Vec<Ranked>,
     spec: &FindSpec,
-    mut put: impl FnMut(&mut Choice) -> Result<bool>,
+    mut put: impl FnMut(&mut Choice) -> Result<Put>,
 ) -> Result<Listed> {
     let mut refused = Vec::new();
     loop {
         let mut listed = beaten_by_none(&all, spec);
         listed.extend(best_of_each(&all, &listed));
-        let Some(open) = listed.iter().copied().find(|index| all[*index].choice.verdict.is_none()) else {
+        let Some(open) = listed.iter().copied().find(|index| !all[*index].choice.is_judged()) else {
             let met = listed.into_iter().map(|index| all[index].clone()).collect();
-            return Ok(Listed { met, refused });
+            return Ok(Listed { met, refused, again: false });
         };
-        if !put(&mut all[open].choice)? {
-            refused.push(all.remove(open).choice);
+        match put(&mut all[open].choice)? {
+            Put::Met => {}
+            Put::Refused => refused.push(all.remove(open).choice),
+            Put::Again => return Ok(Listed { met: Vec::new(), refused, again: true }),
         }
     }
 }

@@ -23,16 +23,51 @@ pub(super) struct Judged {
     pub(super) searches: u64,
 }
 
+/// The best of some choices.
+#[derive(Debug, Clone)]
+pub(super) struct Best {
+    pub(super) chosen: Vec<usize>,
+    pub(super) judged: Judged,
+    pub(super) frames: u32,
+}
+
 /// The nearest state of an alternative to a member of the target.
 #[derive(Debug, Clone)]
 pub(super) struct Nearest {
-    /// Places of the target's member and of the alternative.
-    pub(super) pair: [usize; 2],
+    /// Places of the scene, of the target's member and of the alternative.
+    pub(super) place: [usize; 3],
     pub(super) state: State,
     /// Statistical distance.
     pub(super) distance: f64,
     /// Whether the distance is of the law of many counts.
     pub(super) by_many: bool,
+}
+
+impl Judged {
+    /// Nothing yet.
+    pub(super) fn nothing() -> Self {
+        Self { lower: f64::INFINITY, upper: f64::INFINITY, told: YesNo::Yes, states: Vec::new(), searches: 0 }
+    }
+
+    /// With another pair or scene.
+    fn with(&mut self, [lower, upper]: [f64; 2], told: YesNo) {
+        (self.lower, self.upper) = (self.lower.min(lower), self.upper.min(upper));
+        self.told = match (self.told, told) {
+            (YesNo::No, _) | (_, YesNo::No) => YesNo::No,
+            (YesNo::Undecided, _) | (_, YesNo::Undecided) => YesNo::Undecided,
+            _ => YesNo::Yes,
+        };
+    }
+
+    /// With what is told in another scene, whose distances count `scale` times.
+    pub(super) fn with_scene(&mut self, scene: usize, scale: f64, found: Self) {
+        self.with([scale * found.lower, scale * found.upper], found.told);
+        self.searches += found.searches;
+        self.states.extend(found.states.into_iter().map(|mut nearest| {
+            nearest.place[0] = scene;
+            nearest
+        }));
+    }
 }
 
 impl Study {
@@ -83,13 +118,7 @@ impl Study {
         if let Some(place) = pairs.iter().position(|pair| *pair == first) {
             pairs.swap(0, place);
         }
-        let mut judged = Judged {
-            lower: f64::INFINITY,
-            upper: f64::INFINITY,
-            told: YesNo::Yes,
-            states: Vec::new(),
-            searches: 0,
-        };
+        let mut judged = Judged::nothing();
         let (head, rest) = pairs.split_at(pairs.len().min(1));
         for some in [head, rest] {
             if judged.upper <= goal {
@@ -98,13 +127,7 @@ impl Study {
             let found = parallel::booked(some.len(), |i| self.pair_judged(some[i]))?;
             for (nearest, bounds, told) in found {
                 judged.searches += 1;
-                judged.lower = judged.lower.min(bounds[0]);
-                judged.upper = judged.upper.min(bounds[1]);
-                judged.told = match (judged.told, told) {
-                    (YesNo::No, _) | (_, YesNo::No) => YesNo::No,
-                    (YesNo::Undecided, _) | (_, YesNo::Undecided) => YesNo::Undecided,
-                    _ => YesNo::Yes,
-                };
+                judged.with(bounds, told);
                 judged.states.push(nearest);
             }
         }
@@ -119,7 +142,7 @@ impl Study {
         let decision = own.decision(alternative, (&own.bands, &counting), found, state.as_ref())?;
         let state = state.unwrap_or_else(|| own.state.clone());
         let by_many = own.counts_are_many(&own.bands, &counting);
-        let nearest = Nearest { pair, state, distance: found.distance, by_many };
+        let nearest = Nearest { place: [0, pair[0], pair[1]], state, distance: found.distance, by_many };
         Ok((nearest, decision.found.bounds(), decision.told))
     }
 

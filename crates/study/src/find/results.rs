@@ -1,17 +1,22 @@
 //! What was found: choices that meet, those that do not and why.
 
-use crate::Warning;
 use crate::size::{Sizing, Solutions, Verdict};
+use crate::{CameraAnswer, Condition, Warning};
 use hadar::demand::Work;
 use hadar::instrument::Price;
-use hadar_scenario::Scenario;
+use hadar_scenario::{Rule, Scenario};
 
 /// Which cameras meet.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct FindAnswer {
-    /// The question with its defaults filled in.
+    /// The question with its defaults filled in; of a rule the scene of its first clause.
     pub scenario: Scenario,
+    /// The rule that is to be met, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<Rule>,
+    /// Scenes in which choices were judged before the whole rule was asked; 1 of a scenario.
+    pub scenes: usize,
     /// Statistical distance demanded.
     pub required_distance: f64,
     /// Whether any camera meets it.
@@ -58,7 +63,9 @@ pub struct Choice {
     pub price: Option<Price>,
     /// Parts of which no price is known.
     pub price_without: Vec<&'static str>,
-    /// Statistical distance that is proved.
+    /// Statistical distance demanded of it.
+    pub required_distance: f64,
+    /// Statistical distance that is proved; of a rule the least of all its scenes.
     pub lower: f64,
     /// That of a state that was found.
     pub upper: f64,
@@ -68,8 +75,31 @@ pub struct Choice {
     pub verdict: Option<Verdict>,
     /// What it warns of.
     pub warnings: Vec<Warning>,
-    /// The scenario of this choice, as the main job takes it.
+    /// The scenario of this choice, as the main job takes it; of a rule that of its first clause.
     pub scenario: Scenario,
+    /// The rule with this choice as its camera.
+    #[serde(skip)]
+    pub rule: Option<Rule>,
+    /// What the rule says of it, with its conditions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub of_rule: Option<CameraAnswer>,
+}
+
+impl Choice {
+    /// Whether it was put to the main job, or to the rule.
+    pub(super) fn is_judged(&self) -> bool {
+        self.verdict.is_some() || self.of_rule.is_some()
+    }
+
+    /// What it rests on that it meets, hardest first.
+    #[must_use]
+    pub fn conditions(&self) -> &[Condition] {
+        match (&self.of_rule, &self.verdict) {
+            (Some(found), _) => &found.conditions,
+            (None, Some(verdict)) => &verdict.conditions,
+            (None, None) => &[],
+        }
+    }
 }
 
 /// A lens before a camera.
@@ -140,12 +170,14 @@ pub enum Why {
     },
     /// No choice of so many filters and frames reaches the distance.
     Distance {
-        /// Filters that were allowed.
-        filters: u32,
+        /// The most filters that were tried.
+        filters: usize,
         /// The most frames that were tried within the time.
         frames: u32,
         /// Whether all choices were excluded or judged.
         all_judged: bool,
+        /// Whether more filters take too long: for the decision, or for something that moves.
+        is_cut: bool,
     },
     /// Not even one frame of the fewest bands is read in time.
     Time {

@@ -1,10 +1,9 @@
 //! One camera with one lens: the fewest filters and the frames with which it meets.
 
-use super::Ranked;
-use super::chosen::Sought;
-use super::judged::{Judged, Nearest};
+use super::chosen::{Ranked, Sought};
+use super::judged::{Best, Judged, Nearest};
 use super::results::{Choice, Failed, Misses, Why};
-use super::wheel::{Wheel, WheelKind};
+use super::wheel::{Scene, Wheel, WheelKind, at_frames};
 use crate::{Study, YesNo};
 use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
@@ -33,7 +32,8 @@ pub(super) struct Pool {
 /// A state of an alternative, and what priors say against it.
 #[derive(Debug)]
 struct Known {
-    pair: [usize; 2],
+    /// Places of the scene, of the target's member and of the alternative.
+    place: [usize; 3],
     state: State,
     fixed: f64,
 }
@@ -43,14 +43,6 @@ pub(super) enum Found {
     Met(Vec<Ranked>),
     Fails(Box<Misses>),
     Undecided(Choice, Failed),
-}
-
-/// The best of some choices.
-#[derive(Debug, Clone)]
-pub(super) struct Best {
-    pub(super) chosen: Vec<usize>,
-    pub(super) judged: Judged,
-    pub(super) frames: u32,
 }
 
 impl Wheel<'_> {
@@ -66,13 +58,13 @@ impl Wheel<'_> {
             let [low, high] = self.candidate.made.spectral_range_cm1;
             return fails(Why::NoFilter { range_um: [1e4 / high, 1e4 / low] });
         }
-        let Some(camera) = &self.study.camera else { return fails(Why::NoLens) };
+        let Some(camera) = &self.first().study.camera else { return fails(Why::NoLens) };
         let all: Vec<usize> = (0..self.filters.len()).collect();
         let (least, most) = match self.kind {
             WheelKind::Filters => (1, (spec.filters.at_most as usize).min(all.len())),
             _ => (all.len(), all.len()),
         };
-        if let Some(time_s) = self.scenario.requirement.time_s {
+        if let Some(time_s) = self.first().scenario.requirement.time_s {
             let takes_s = at_frames(camera, spec.frames.first().copied().unwrap_or(1)).acquisition_s(least);
             if takes_s > time_s {
                 return fails(Why::Time { takes_s });
@@ -81,7 +73,7 @@ impl Wheel<'_> {
         if self.blur(camera, least).is_none_or(|blur| blur >= 1.0) {
             return fails(Why::Motion);
         }
-        if camera.full_well.is_some_and(|full| self.study.brightest_member(camera) > full) {
+        if camera.full_well.is_some_and(|full| self.brightest(camera) > full) {
             return fails(Why::FullWell);
         }
         let mut search = Search {
@@ -103,8 +95,8 @@ impl Wheel<'_> {
 struct Search<'w, 'a> {
     wheel: &'w Wheel<'a>,
     pool: &'w mut Pool,
-    /// Signals of the target's members, and of each state of the pool, in all bands.
-    own: Vec<Vec<f64>>,
+    /// Signals of the target's members in each scene, and of each state of the pool, in all bands.
+    own: Vec<Vec<Vec<f64>>>,
     signals: Vec<Vec<f64>>,
     skipping: Skipping,
     wants_near: bool,
@@ -136,16 +128,17 @@ impl Search<'_, '_> {
             }
         }
         let mut met: Vec<Best> = Vec::new();
-        let (mut from, mut all_judged) = (least, true);
+        let (mut from, mut all_judged, mut tried, mut is_cut) = (least, true, 0, false);
         let (mut nearest, mut open): (Option<Best>, Option<Best>) = (None, None);
         for frames in frames.iter().rev().copied() {
             let camera = at_frames(camera, frames);
             let (mut is_met, mut is_late) = (false, false);
             for k in from..=most {
                 if !wheel.is_in_time(&camera, k) {
-                    is_late = true;
+                    (is_late, is_cut) = (true, true);
                     break;
                 }
+                tried = tried.max(k);
                 let (best, judged_all) = self.best(frames, k, &camera)?;
                 all_judged &= judged_all;
                 let Some(best) = best else { continue };
@@ -176,20 +169,21 @@ impl Search<'_, '_> {
             });
             return Ok(Found::Met(ranked.collect()));
         }
-        let filters = most as u32;
         if let Some(open) = open {
             return Ok(Found::Undecided(wheel.choice(&open), wheel.failed(Why::Undecided, Some(&open))));
         }
-        let failed =
-            wheel.failed(Why::Distance { filters, frames: most_frames, all_judged }, nearest.as_ref());
+        let failed = wheel.failed(
+            Why::Distance { filters: tried, frames: most_frames, all_judged, is_cut },
+            nearest.as_ref(),
+        );
         let near = nearest.map(|best| wheel.choice(&best));
         Ok(Found::Fails(Box::new(Misses { failed, near })))
     }
 
     /// Whether all bands at once tell the target from every alternative, as far as the states that were found show.
     fn may_do(&mut self, frames: u32, all: &[usize]) -> Result<bool> {
-        let Some(camera) = &self.wheel.study.camera else { return Ok(false) };
-        let required = self.wheel.study.required;
+        let Some(camera) = &self.wheel.first().study.camera else { return Ok(false) };
+        let required = self.wheel.first().study.required;
         let states = self.states(&at_frames(camera, frames))?;
         if states.square_of_all() < required * required * (1.0 - SAME) {
             demand::spared(Thing::CameraChoices, Reason::Bounded, 1);
@@ -205,7 +199,7 @@ impl Search<'_, '_> {
         let camera = at_frames(camera, frames);
         if self.wheel.kind == WheelKind::Own {
             let all: Vec<usize> = (0..self.wheel.filters.len()).collect();
-            let judged = self.judge(&all, frames, [0, 0], 0.0)?;
+            let judged = self.judge(&all, frames, [0; 3], 0.0)?;
             return Ok((Some(Best { chosen: all, judged, frames }), true));
         }
         if self.skipping == Skipping::Off {
@@ -213,7 +207,7 @@ impl Search<'_, '_> {
         }
         let mut without: Vec<Vec<usize>> = Vec::new();
         let mut best: Option<Best> = None;
-        let required = self.wheel.study.required;
+        let required = self.wheel.first().study.required;
         loop {
             let states = self.states(&camera)?;
             let Some(next) = states.best(k, &without) else { return Ok((best, true)) };
@@ -270,7 +264,7 @@ impl Search<'_, '_> {
         }
         let mut best: Option<Best> = None;
         for chosen in choices.into_iter().skip(1) {
-            let judged = self.judge(&chosen, frames, [0, 0], 0.0)?;
+            let judged = self.judge(&chosen, frames, [0; 3], 0.0)?;
             if best.as_ref().is_none_or(|best| rank(&judged) > rank(&best.judged)) {
                 best = Some(Best { chosen, judged, frames });
             }
@@ -278,63 +272,85 @@ impl Search<'_, '_> {
         Ok(best)
     }
 
-    /// What some bands tell, its nearest states added to those that are known.
-    fn judge(&mut self, chosen: &[usize], frames: u32, first: [usize; 2], goal: f64) -> Result<Judged> {
-        let mut study = self.wheel.study.with_bands_alone(chosen)?;
-        if let Some(camera) = study.camera.as_mut() {
-            camera.frames = frames;
-        }
-        let judged = study.judged(first, goal)?;
+    /// What some bands tell in every scene, its nearest states added to those that are known; distances of a scene that demands another
+    /// one count by their share of what it demands.
+    fn judge(&mut self, chosen: &[usize], frames: u32, first: [usize; 3], goal: f64) -> Result<Judged> {
+        let mut judged = Judged::nothing();
+        let scenes = &self.wheel.scenes;
+        let order = (0..scenes.len()).map(|scene| (scene + first[0]) % scenes.len());
         self.searches += 1;
-        for Nearest { pair: [t, a], state, distance, by_many } in &judged.states {
-            let pair = [*t, *a];
-            // Where counts are few another law decides, by which squares do not add up.
-            let is_known = self.pool.states.iter().any(|known| known.pair == pair && known.state == *state);
-            let Some(counting) = study.counting().filter(|_| *by_many && !is_known) else { continue };
-            let own = signal(&study, &study.of_target(*t).target.emissivity, &study.state);
-            let other = signal(&study, &study.alternatives[*a].emissivity, state);
-            let square: f64 = squares(&own, &other, &counting).iter().sum();
-            // What is not in the squares is what priors say; errors that readings share make the distance less.
-            let fixed = (distance * distance - square).max(0.0);
-            if study.unknowns.has_priors() || fixed <= FIXED * square {
-                self.pool.states.push(Known {
-                    pair,
-                    state: state.clone(),
-                    fixed: if study.unknowns.has_priors() { fixed } else { 0.0 },
-                });
+        for scene in order {
+            if judged.upper <= goal {
+                break;
             }
+            let mut study = scenes[scene].study.with_bands_alone(chosen)?;
+            if let Some(camera) = study.camera.as_mut() {
+                camera.frames = frames;
+            }
+            let (scale, pair) =
+                (self.wheel.scale(scene), if scene == first[0] { [first[1], first[2]] } else { [0, 0] });
+            let found = study.judged(pair, goal / scale)?;
+            self.keep(scene, &study, &found);
+            judged.with_scene(scene, scale, found);
         }
         Ok(judged)
     }
 
+    /// Adds the nearest states of a scene to those that are known.
+    fn keep(&mut self, scene: usize, study: &Study, found: &Judged) {
+        for Nearest { place: [_, t, a], state, distance, by_many } in &found.states {
+            let place = [scene, *t, *a];
+            // Where counts are few another law decides, by which squares do not add up.
+            let is_known = self.pool.states.iter().any(|known| known.place == place && known.state == *state);
+            let Some(counting) = study.counting().filter(|_| *by_many && !is_known) else { continue };
+            let own = signal(study, &study.of_target(*t).target.emissivity, &study.state);
+            let other = signal(study, &study.alternatives[*a].emissivity, state);
+            let square: f64 = squares(&own, &other, &counting).iter().sum();
+            // What is not in the squares is what priors say; errors that readings share make the distance less.
+            let left = (distance * distance - square).max(0.0);
+            let fixed = if study.unknowns.has_priors() { left } else { 0.0 };
+            if left == fixed || left <= FIXED * square {
+                self.pool.states.push(Known { place, state: state.clone(), fixed });
+            }
+        }
+    }
+
     /// Squares of all bands against all states that are known.
     fn states(&mut self, camera: &Camera) -> Result<States> {
-        let study = &self.wheel.study;
-        let counting = study.counting_of(camera);
+        let wheel = self.wheel;
         if self.own.is_empty() {
-            let targets = study.members[0].iter().flat_map(|members| &members.surfaces);
-            self.own = targets.map(|target| signal(study, &target.emissivity, &study.state)).collect();
+            let of = |scene: &Scene| {
+                let targets = scene.study.members[0].iter().flat_map(|members| &members.surfaces);
+                targets.map(|target| signal(&scene.study, &target.emissivity, &scene.study.state)).collect()
+            };
+            self.own = wheel.scenes.iter().map(of).collect();
         }
-        while let Some(known) = self.pool.states.get(self.signals.len()) {
-            self.signals.push(signal(study, &study.alternatives[known.pair[1]].emissivity, &known.state));
+        while let Some(Known { place: [scene, _, a], state, .. }) = self.pool.states.get(self.signals.len()) {
+            let study = &wheel.scenes[*scene].study;
+            self.signals.push(signal(study, &study.alternatives[*a].emissivity, state));
         }
-        let mut states = States::of(self.wheel.filters.len());
-        if let Some(next) = &self.wheel.next {
+        let countings: Vec<Counting> =
+            wheel.scenes.iter().map(|scene| scene.study.counting_of(camera)).collect();
+        let mut states = States::of(wheel.filters.len());
+        if let Some(next) = &wheel.next {
             states = states.with_next(next.clone());
         }
-        for (known, other) in self.pool.states.iter().zip(&self.signals) {
-            let Some(own) = self.own.get(known.pair[0]) else { continue };
-            states.add(&squares(own, other, &counting), known.fixed);
+        for (Known { place: [scene, t, _], fixed, .. }, other) in self.pool.states.iter().zip(&self.signals) {
+            let Some(own) = self.own[*scene].get(*t) else { continue };
+            let scale = wheel.scale(*scene).powi(2);
+            let squares: Vec<f64> =
+                squares(own, other, &countings[*scene]).iter().map(|square| scale * square).collect();
+            states.add(&squares, scale * fixed);
         }
         Ok(states)
     }
 
     /// The pair of the state that a choice tells least.
-    fn nearest_pair(&self, states: &States, chosen: &[usize]) -> [usize; 2] {
+    fn nearest_pair(&self, states: &States, chosen: &[usize]) -> [usize; 3] {
         states
             .nearest(chosen)
             .and_then(|place| self.pool.states.get(place))
-            .map_or([0, 0], |known| known.pair)
+            .map_or([0; 3], |known| known.place)
     }
 }
 
@@ -362,10 +378,6 @@ fn squares(own: &[f64], other: &[f64], counting: &Counting) -> Vec<f64> {
         if roots > 0.0 { ((counts - others) / roots).powi(2) } else { 0.0 }
     };
     own.iter().zip(other).enumerate().map(square).collect()
-}
-
-pub(super) fn at_frames(camera: &Camera, frames: u32) -> Camera {
-    Camera { frames, ..camera.clone() }
 }
 
 /// Choices of up to k of n.

@@ -4,8 +4,8 @@
 //! bands that lie in the range of its detector.
 
 use super::candidates::Candidate;
+use super::judged::Best;
 use super::results::{Choice, Failed, FilterUsed, LensUsed, Why};
-use super::searched::{Best, at_frames};
 use crate::{Study, bands, camera};
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::Result;
@@ -29,8 +29,8 @@ const SAME: f64 = 1e-9;
 pub(super) struct Supply<'q> {
     spec: &'q FindSpec,
     filters: Vec<Offered>,
-    /// The scene behind all of them without a camera, with the sine of the cone that they stand in where that counts.
-    scenes: Vec<(Option<f64>, Study)>,
+    /// Each scene behind all of them without a camera, with the sine of the cone that they stand in where that counts.
+    scenes: Vec<((usize, Option<f64>), Study)>,
 }
 
 /// A filter that may be chosen.
@@ -95,12 +95,13 @@ impl<'q> Supply<'q> {
         &mut self,
         candidate: &Candidate,
         inside: &[usize],
-        scenario: &Scenario,
+        (place, scenario): (usize, &Scenario),
         library: &Library,
     ) -> Result<Study> {
         let is_in_cone = matches!(self.spec.filters.place, Some(FilterPlace::Sensor { .. }));
         let sine = is_in_cone.then(|| candidate.made.rim_sine());
-        let place = match self.scenes.iter().position(|(known, _)| *known == sine) {
+        let key = (place, sine);
+        let place = match self.scenes.iter().position(|(known, _)| *known == key) {
             Some(place) => {
                 demand::spared(Thing::BandIntegrals, Reason::Shared, inside.len() as u64);
                 place
@@ -109,7 +110,7 @@ impl<'q> Supply<'q> {
                 let mut bare = scenario.clone();
                 bare.camera = None;
                 bare.bands.source = self.source(&(0..self.filters.len()).collect::<Vec<_>>());
-                self.scenes.push((sine, Study::with_members_in(&bare, library, sine)?.with_means()?));
+                self.scenes.push((key, Study::with_members_in(&bare, library, sine)?.with_means()?));
                 self.scenes.len() - 1
             }
         };
@@ -147,11 +148,19 @@ fn is_within([from, to]: [f64; 2], camera: &Camera) -> bool {
     from >= short * (1.0 - BEYOND) && to <= long * (1.0 + BEYOND)
 }
 
-/// A camera with a lens and all filters that it could have, as bands of one study.
+/// A scene before a camera.
+pub(super) struct Scene {
+    /// As it is asked.
+    pub(super) scenario: Scenario,
+    /// Behind all filters.
+    pub(super) study: Study,
+}
+
+/// A camera with a lens and all filters that it could have, in every scene.
 pub(super) struct Wheel<'a> {
     pub(super) candidate: &'a Candidate,
-    pub(super) scenario: Scenario,
-    pub(super) study: Study,
+    /// The first is the question's own.
+    pub(super) scenes: Vec<Scene>,
     /// What each band is.
     pub(super) filters: Vec<FilterUsed>,
     /// The first filter that may stand beside each one and behind it.
@@ -173,46 +182,86 @@ pub(super) enum WheelKind {
 }
 
 impl<'a> Wheel<'a> {
+    /// In some scenes, of which there is one at least.
     pub(super) fn new(
         candidate: &'a Candidate,
-        question: &Scenario,
+        questions: &[Scenario],
         supply: &mut Supply<'_>,
         library: &Library,
     ) -> Result<Self> {
         let camera = &candidate.made;
-        let mut scenario = question.clone();
-        scenario.find = None;
-        scenario.camera = Some(candidate.spec.clone());
         let inside = supply.inside(camera);
         let (source, kind) = match camera.spectral_bands.filter(|bands| *bands > 1) {
             Some(bands) => (own_grid(camera, bands), WheelKind::Own),
             None if inside.is_empty() => (BandSource::Unsaid, WheelKind::Nothing),
             None => (supply.source(&inside), WheelKind::Filters),
         };
-        scenario.bands.source = source;
-        let mut study = match (&camera.efficiency_curves[..], kind) {
-            ([], WheelKind::Filters) => supply.seen_by(candidate, &inside, &scenario, library)?,
-            _ => Study::with_members(&scenario, library)?.with_means()?,
-        };
-        let mut exposure_s = None;
-        let is_fixed = question.camera.as_ref().is_some_and(|camera| camera.exposure_s.is_some());
-        if let (Some(full), Some(made), false) = (camera.full_well, study.camera.clone(), is_fixed) {
-            let brightest = study.brightest_member(&made);
-            if let (true, Some(spec)) = (brightest > full, scenario.camera.as_mut()) {
-                exposure_s = Some(made.exposure_s * FULL * full / brightest);
-                spec.exposure_s = exposure_s;
+        let mut scenes = Vec::with_capacity(questions.len());
+        for (place, question) in questions.iter().enumerate() {
+            let mut scenario = question.clone();
+            scenario.find = None;
+            scenario.camera = Some(candidate.spec.clone());
+            scenario.bands.source = source.clone();
+            let study = match (&camera.efficiency_curves[..], kind) {
+                ([], WheelKind::Filters) => {
+                    supply.seen_by(candidate, &inside, (place, &scenario), library)?
+                }
+                _ => Study::with_members(&scenario, library)?.with_means()?,
+            };
+            scenes.push(Scene { scenario, study });
+        }
+        let next = supply.next(&inside);
+        let filter_price = supply.spec.filters.price.clone();
+        let mut wheel =
+            Self { candidate, scenes, filters: Vec::new(), next, exposure_s: None, filter_price, kind };
+        let bands = wheel.first().study.open_bands.bands();
+        let filters = bands.iter().map(|band| FilterUsed {
+            name: band.name.clone(),
+            range_um: [1e4 / band.high_cm1, 1e4 / band.low_cm1],
+        });
+        wheel.filters = filters.collect();
+        let is_fixed =
+            questions.iter().any(|asked| asked.camera.as_ref().is_some_and(|own| own.exposure_s.is_some()));
+        if !is_fixed {
+            wheel.shorten()?;
+        }
+        Ok(wheel)
+    }
+
+    /// The question's own scene.
+    pub(super) fn first(&self) -> &Scene {
+        &self.scenes[0]
+    }
+
+    /// How often the distances of a scene count beside those of the first.
+    pub(super) fn scale(&self, scene: usize) -> f64 {
+        self.first().study.required / self.scenes[scene].study.required
+    }
+
+    /// Counts of the fullest reading in any scene.
+    pub(super) fn brightest(&self, camera: &Camera) -> f64 {
+        self.scenes.iter().map(|scene| scene.study.brightest_member(camera)).fold(0.0, f64::max)
+    }
+
+    /// Shortens the exposure where a reading would overflow the well.
+    fn shorten(&mut self) -> Result<()> {
+        let Some(made) = self.first().study.camera.clone() else { return Ok(()) };
+        let Some(full) = made.full_well else { return Ok(()) };
+        let brightest = self.brightest(&made);
+        if brightest <= full {
+            return Ok(());
+        }
+        let exposure_s = made.exposure_s * FULL * full / brightest;
+        self.exposure_s = Some(exposure_s);
+        for Scene { scenario, study } in &mut self.scenes {
+            if let Some(spec) = scenario.camera.as_mut() {
+                spec.exposure_s = Some(exposure_s);
                 let mut made = camera::resolved(spec, &scenario.source)?;
                 made.sees(&study.open_bands);
                 study.camera = Some(made);
             }
         }
-        let filters = study.open_bands.bands().iter().map(|band| FilterUsed {
-            name: band.name.clone(),
-            range_um: [1e4 / band.high_cm1, 1e4 / band.low_cm1],
-        });
-        let (filters, next) = (filters.collect(), supply.next(&inside));
-        let filter_price = supply.spec.filters.price.clone();
-        Ok(Self { candidate, scenario, study, filters, next, exposure_s, filter_price, kind })
+        Ok(())
     }
 
     pub(super) fn failed(&self, why: Why, best: Option<&Best>) -> Failed {
@@ -227,15 +276,15 @@ impl<'a> Wheel<'a> {
 
     /// Apparent motion while so many bands are exposed, pixels; 0 where nothing moves, none where it is not known.
     pub(super) fn blur(&self, camera: &Camera, bands: usize) -> Option<f64> {
-        let Some(speed) = self.scenario.requirement.speed_m_s else { return Some(0.0) };
-        let motion = Motion::of(camera, self.scenario.target.distance_m)?;
+        let Some(speed) = self.first().scenario.requirement.speed_m_s else { return Some(0.0) };
+        let motion = Motion::of(camera, self.first().scenario.target.distance_m)?;
         Some(motion.blur_pixels(speed, camera.sweep_s(bands)))
     }
 
     /// Whether so many bands and frames are read in time and without a blur.
     pub(super) fn is_in_time(&self, camera: &Camera, bands: usize) -> bool {
         let is_late = |time_s: f64| camera.acquisition_s(bands) > time_s;
-        !self.scenario.requirement.time_s.is_some_and(is_late)
+        !self.first().scenario.requirement.time_s.is_some_and(is_late)
             && self.blur(camera, bands).is_some_and(|blur| blur < 1.0)
     }
 
@@ -243,7 +292,7 @@ impl<'a> Wheel<'a> {
     pub(super) fn choice(&self, best: &Best) -> Choice {
         let (candidate, camera) = (self.candidate, at_frames(&self.candidate.made, best.frames));
         let camera = Camera { exposure_s: self.exposure_s.unwrap_or(camera.exposure_s), ..camera };
-        let mut scenario = self.scenario.clone();
+        let mut scenario = self.first().scenario.clone();
         let filters: Vec<FilterUsed> = match self.kind {
             WheelKind::Filters => best.chosen.iter().filter_map(|w| self.filters.get(*w).cloned()).collect(),
             _ => Vec::new(),
@@ -283,12 +332,15 @@ impl<'a> Wheel<'a> {
             filters,
             price,
             price_without,
+            required_distance: self.first().study.required,
             lower: best.judged.lower,
             upper: best.judged.upper,
             limiting: String::new(),
             verdict: None,
             warnings: Vec::new(),
             scenario,
+            rule: None,
+            of_rule: None,
         }
     }
 }
@@ -299,4 +351,9 @@ fn own_grid(camera: &Camera, bands: u32) -> BandSource {
     let step = (high - low) / f64::from(bands);
     let [start, stop, step] = [low + 0.5 * step, high - 0.5 * step, step].map(Spectral::Wavenumber);
     if bands < 2 { BandSource::Unsaid } else { BandSource::Grid { start, stop, step } }
+}
+
+/// A camera that adds up so many frames.
+pub(super) fn at_frames(camera: &Camera, frames: u32) -> Camera {
+    Camera { frames, ..camera.clone() }
 }
