@@ -53,7 +53,7 @@ pub fn find(
     let (scenario, spec) = question(scenario)?;
     let required = resolve::required(&scenario)?;
     let (candidates, failed) = candidates::of(&scenario, &spec, own)?;
-    let mut supply = Supply::of(&spec, &candidates)?;
+    let mut supply = Supply::of(&spec, &candidates, &scenario, library)?;
     let mut pool = Pool::default();
     let scenes = std::slice::from_ref(&scenario);
     let asked = Asked { spec: &spec, candidates: &candidates, library, skipping };
@@ -61,6 +61,7 @@ pub fn find(
     let listed = chosen::confirmed(searched.met.clone(), &spec, |choice| put_to_size(choice, library))?;
     let mut answer = asked.answer(scenario.clone(), searched, listed, failed)?;
     answer.required_distance = required;
+    answer.filters_left_out.clone_from(&supply.left_out);
     answer.stats = ledger.close();
     Ok(answer)
 }
@@ -89,8 +90,8 @@ impl Asked<'_> {
         let (mut first_error, mut tried, mut without_filters) = (None, 0, 0);
         for candidate in self.candidates {
             hadar::stop::check();
-            let wheel = match Wheel::new(candidate, scenes, supply, self.library) {
-                Ok(wheel) => wheel,
+            let wheels = match Wheel::all(candidate, scenes, supply, self.library) {
+                Ok(wheels) => wheels,
                 // A camera that is named is told as it would be by itself.
                 Err(error) if candidate.is_named => return Err(error),
                 Err(error) => {
@@ -104,17 +105,23 @@ impl Asked<'_> {
                 // Other bands may have other alternatives.
                 *pool = Pool::default();
             }
-            match wheel.search(self.spec, pool, (self.skipping, all.met.is_empty()))? {
-                Found::Met(choices) => all.met.extend(choices),
-                Found::Fails(fails) => {
+            let mut found = Vec::with_capacity(wheels.len());
+            for wheel in &wheels {
+                let wants_near = all.met.is_empty();
+                found.push(wheel.search(self.spec, pool, (self.skipping, wants_near))?);
+            }
+            match Found::of_all(found) {
+                Some(Found::Met(choices)) => all.met.extend(choices),
+                Some(Found::Fails(fails)) => {
                     without_filters += u64::from(matches!(fails.failed.why, Why::NoFilter { .. }));
-                    all.missed.extend(fails.near);
+                    all.missed.extend(fails.near.filter(|near| near.upper > 0.0));
                     all.failed.push(fails.failed);
                 }
-                Found::Undecided(choice, fails) => {
-                    all.undecided.push(choice);
-                    all.failed.push(fails);
+                Some(Found::Undecided(both)) => {
+                    all.undecided.push(both.0);
+                    all.failed.push(both.1);
                 }
+                None => {}
             }
         }
         demand::computed(Thing::Cameras, tried);
@@ -155,6 +162,7 @@ impl Asked<'_> {
             listed: of(&best_first),
             also: of(&chosen::best_of_each(&met, &best_first)),
             undecided: chosen::distinct(undecided),
+            filters_left_out: Vec::new(),
             failed,
             near,
             warnings: Vec::new(),
@@ -193,6 +201,16 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
             found,
             "leave it out, or hold the camera that is found against it with `hadar rule`",
         );
+    }
+    if let Some(frames) = scenario.camera.as_ref().and_then(|camera| camera.frames) {
+        if scenario.source.lines.contains_key("find.frames") {
+            return refuse(
+                "find.frames",
+                "camera.frames is given as well".into(),
+                "keep only one of the two",
+            );
+        }
+        spec.frames = vec![frames];
     }
     // Said once, as what is demanded.
     if let Some(time_s) = spec.time_s.take() {

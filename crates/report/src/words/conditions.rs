@@ -206,7 +206,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 32] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 33] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -317,6 +317,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 32] = [
         "no-filter-light",
         "The light that filters send and throw back onto the sensor is left out.",
         "Write camera.sensor_temperature.",
+    ],
+    [
+        "filter-angle",
+        "An interference filter passes shorter waves at an angle; it is taken to pass at every angle of the beam what it passes at right angles.",
+        "Write place = \"sensor\" and index in [bands] (or find.filters): the transmission is then averaged over the cone of the lens; before the lens keep the target near the axis.",
     ],
     ["no-air", "There is no air on the path.", "Write [atmosphere] with model = \"us-standard\"."],
     [

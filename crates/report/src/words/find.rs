@@ -297,7 +297,11 @@ fn missing(found: &FindAnswer) -> String {
         .map(|one| one.camera.as_str())
         .collect();
     if !no_lens.is_empty() {
-        let _ = writeln!(out, "No document names a lens for {}: give find.lenses.\n", listed(&no_lens));
+        let _ = writeln!(
+            out,
+            "No lens fits what is stated of {}, and no document names one: give find.lenses.\n",
+            listed(&no_lens)
+        );
     }
     let mut blocks = String::new();
     for one in &found.failed {
@@ -339,6 +343,21 @@ fn footing(found: &FindAnswer) -> String {
             "filters are shapes of cameras/filters.toml, bands of instruments and choices: no list of stock filters with prices was found".into(),
         ),
         FilterSupply::List(_) => {}
+    }
+    if !found.filters_left_out.is_empty() {
+        notes.push(format!(
+            "not looked at, since a spectrum of the scene does not cover them: {}",
+            listed(&found.filters_left_out)
+        ));
+    }
+    let all = found
+        .listed
+        .iter()
+        .chain(&found.also)
+        .chain(&found.undecided)
+        .chain(found.near.iter().map(|near| &near.choice));
+    if all.into_iter().any(|choice| choice.exposure_s.is_some()) {
+        notes.push("where a well would overflow, exposures are tried in steps of 2, each with the filters that do not fill it".into());
     }
     let lines: Vec<String> = notes.iter().map(|note| format!("  {note}\n")).collect();
     format!("Assumptions\n{}", lines.concat())

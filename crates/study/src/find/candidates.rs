@@ -4,6 +4,7 @@ use super::results::{Failed, LensUsed, Why};
 use crate::{OwnCameras, camera};
 use hadar::error::{Error, Result};
 use hadar::instrument::catalogue::{self, is_like};
+use hadar::instrument::figures::TABLE;
 use hadar::instrument::presets::{self, Preset};
 use hadar::instrument::{Camera, CameraSpec, Price, Readout};
 use hadar_scenario::find::LensSpec;
@@ -52,9 +53,10 @@ pub(super) fn of(
             let of_camera = Of { preset, scenario, spec, own, is_named };
             match of_camera.candidates() {
                 Ok(found) => candidates.extend(found),
-                Err(why) => {
+                Err(Rejected { error: Some(error), .. }) if is_named => return Err(error),
+                Err(Rejected { why, .. }) => {
                     let camera = preset.name.clone();
-                    failed.push(Failed { camera, lens: None, why: *why, lower: None, upper: None });
+                    failed.push(Failed { camera, lens: None, why, lower: None, upper: None });
                 }
             }
         }
@@ -71,6 +73,31 @@ pub(super) fn of(
     Ok((candidates, failed))
 }
 
+/// That a camera cannot be asked.
+struct Rejected {
+    why: Why,
+    error: Option<Error>,
+}
+
+impl From<Why> for Rejected {
+    fn from(why: Why) -> Self {
+        Self { why, error: None }
+    }
+}
+
+/// Figures of a camera that may be fixed without making another device of it, whose price would be another.
+const SAME_DEVICE: [&str; 9] = [
+    "exposure",
+    "f_number",
+    "focal_length",
+    "frames",
+    "readout",
+    "optics_efficiency",
+    "field_of_view",
+    "sensor_temperature",
+    "filter_temperature",
+];
+
 /// A camera before it has a lens.
 struct Of<'a> {
     preset: &'a Preset,
@@ -81,9 +108,9 @@ struct Of<'a> {
 }
 
 impl Of<'_> {
-    fn candidates(&self) -> std::result::Result<Vec<Candidate>, Box<Why>> {
+    fn candidates(&self) -> std::result::Result<Vec<Candidate>, Rejected> {
         if self.preset.sold == Some(false) && !self.is_named {
-            return Err(Box::new(Why::NotSold));
+            return Err(Why::NotSold.into());
         }
         let fixed = self.scenario.camera.clone().unwrap_or_default();
         let states =
@@ -94,22 +121,21 @@ impl Of<'_> {
             (Some(f_number), Some(focal_length_m)) => {
                 vec![(Some(LensUsed { name: None, f_number, focal_length_m, document: None }), None)]
             }
-            _ => self.lenses(),
+            _ => self.lenses([f_number, focal_length_m]),
         };
         if lenses.is_empty() {
-            return Err(Box::new(Why::NoLens));
+            return Err(Why::NoLens.into());
         }
         lenses.into_iter().map(|(lens, price)| self.with_lens(&fixed, lens, price)).collect()
     }
 
     /// Lenses of the question, else of the catalogue; with what the camera states of its own.
-    fn lenses(&self) -> Vec<(Option<LensUsed>, Option<Price>)> {
-        let figures = &self.preset.figures;
+    fn lenses(&self, own: [Option<f64>; 2]) -> Vec<(Option<LensUsed>, Option<Price>)> {
         // Of a lens that the camera has in part only that one.
         let fits = |f_number: f64, focal_length_m: f64| {
             let same =
                 |own: Option<f64>, other: f64| own.is_none_or(|own| (own / other - 1.0).abs() < SAME_LENS);
-            same(figures.f_number, f_number) && same(figures.focal_length_m, focal_length_m)
+            same(own[0], f_number) && same(own[1], focal_length_m)
         };
         let of_question = |lens: &LensSpec| {
             let used = LensUsed {
@@ -121,7 +147,7 @@ impl Of<'_> {
             fits(lens.f_number, lens.focal_length_m).then(|| (Some(used), lens.price.clone()))
         };
         let given: Vec<_> = self.spec.lenses.iter().flatten().filter_map(of_question).collect();
-        let has_part = figures.f_number.is_some() || figures.focal_length_m.is_some();
+        let has_part = own.iter().any(Option::is_some);
         if !given.is_empty() || (self.spec.lenses.is_some() && !has_part) {
             return given;
         }
@@ -143,7 +169,7 @@ impl Of<'_> {
         fixed: &CameraSpec,
         lens: Option<LensUsed>,
         price: Option<Price>,
-    ) -> std::result::Result<Candidate, Box<Why>> {
+    ) -> std::result::Result<Candidate, Rejected> {
         let mut spec = fixed.clone();
         spec.preset = Some(self.preset.name.clone());
         let own = self.own.stated.iter().find(|own| own.name == self.preset.name);
@@ -156,17 +182,21 @@ impl Of<'_> {
         if self.preset.figures.spectral_bands == Some(1) && spec.readout.is_none() {
             spec.readout = Some(Readout::Sequential);
         }
-        let refused = |error: Error| Box::new(Why::Refused { because: error.to_string() });
+        let refused =
+            |error: Error| Rejected { why: Why::Refused { because: error.to_string() }, error: Some(error) };
         let stated = camera::stated_at(&spec, &|_| hadar::error::Place::default()).map_err(refused)?;
         if let Err(missing) = stated.camera() {
-            return Err(Box::new(Why::Figures { missing: missing.0 }));
+            return Err(Why::Figures { missing: missing.0 }.into());
         }
         let made = camera::resolved(&spec, &self.scenario.source).map_err(refused)?;
         let figures = &self.preset.figures;
         let has_lens = figures.f_number.is_some() || figures.focal_length_m.is_some();
         let is_without = self.preset.price_without_lens == Some(true) || !has_lens;
         let mut price_without = Vec::new();
-        let total = match (&self.preset.price, price) {
+        let is_same_device =
+            TABLE.iter().filter(|row| row.is_given(fixed)).all(|row| SAME_DEVICE.contains(&row.key));
+        let own_price = self.preset.price.as_ref().filter(|_| is_same_device);
+        let total = match (own_price, price) {
             (Some(camera), Some(lens)) => camera.and(&lens),
             (Some(camera), None) => {
                 if is_without {
@@ -176,8 +206,8 @@ impl Of<'_> {
             }
             (None, _) => None,
         };
-        let mismatch = self.preset.price.is_some() && total.is_none();
-        let total = if mismatch { self.preset.price.clone() } else { total };
+        let mismatch = own_price.is_some() && total.is_none();
+        let total = if mismatch { own_price.cloned() } else { total };
         Ok(Candidate {
             camera: self.preset.name.clone(),
             lens,

@@ -54,7 +54,7 @@ pub fn find_for_rule(
     let spec = first.find.clone().unwrap_or_default();
     let required = resolve::required(&first)?;
     let (candidates, failed) = candidates::of(&first, &spec, own)?;
-    let mut supply = Supply::of(&spec, &candidates)?;
+    let mut supply = Supply::of(&spec, &candidates, &first, library)?;
     let mut pool = Pool::default();
     let asked = Asked { spec: &spec, candidates: &candidates, library, skipping };
     let (mut refused, mut known): (Vec<Choice>, BTreeMap<String, Choice>) = (Vec::new(), BTreeMap::new());
@@ -101,6 +101,7 @@ pub fn find_for_rule(
                 );
                 answer.undecided = super::chosen::distinct(answer.undecided);
                 (answer.rule, answer.scenes) = (Some(rule.clone()), scenes.len());
+                answer.filters_left_out.clone_from(&supply.left_out);
                 (answer.required_distance, answer.stats) = (required, ledger.close());
                 return Ok(answer);
             }

@@ -29,6 +29,9 @@ pub struct FindAnswer {
     pub also: Vec<Choice>,
     /// Choices of which it is not shown whether they meet.
     pub undecided: Vec<Choice>,
+    /// Filters of the list that the spectra of the scene do not cover: not looked at.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub filters_left_out: Vec<String>,
     /// Cameras that do not, and why.
     pub failed: Vec<Failed>,
     /// Where none meets, what comes nearest.

@@ -14,8 +14,8 @@ use hadar::scene::State;
 use hadar_scenario::FindSpec;
 
 /// Choices that are judged at most for one number of filters and frames, and that `--no-skip` goes through at most.
-const MOST_JUDGED: usize = 300;
-const MOST_OF_ALL: f64 = 50_000.0;
+const MOST_JUDGED: usize = 100;
+const MOST_OF_ALL: f64 = 20_000.0;
 /// Frames that stand for any number of them.
 const FRAMES_WITHOUT_END: u32 = 100_000_000;
 /// Relative difference of squares that is rounding.
@@ -42,7 +42,35 @@ struct Known {
 pub(super) enum Found {
     Met(Vec<Ranked>),
     Fails(Box<Misses>),
-    Undecided(Choice, Failed),
+    Undecided(Box<(Choice, Failed)>),
+}
+
+impl Found {
+    /// What becomes of a camera that was searched at several exposures.
+    pub(super) fn of_all(all: Vec<Self>) -> Option<Self> {
+        let rank = |found: &Self| match found {
+            Self::Met(_) => (2, 0.0),
+            Self::Undecided(_) => (1, 0.0),
+            Self::Fails(fails) => (0, fails.failed.upper.unwrap_or(-1.0)),
+        };
+        let mut met = Vec::new();
+        let mut best: Option<Self> = None;
+        for found in all {
+            match found {
+                Self::Met(choices) => met.extend(choices),
+                other => {
+                    let is_better = best.as_ref().is_none_or(|best| {
+                        let (a, b) = (rank(&other), rank(best));
+                        a.0 > b.0 || (a.0 == b.0 && a.1 > b.1)
+                    });
+                    if is_better {
+                        best = Some(other);
+                    }
+                }
+            }
+        }
+        if met.is_empty() { best } else { Some(Self::Met(met)) }
+    }
 }
 
 impl Wheel<'_> {
@@ -84,6 +112,7 @@ impl Wheel<'_> {
             skipping,
             wants_near,
             searches: 0,
+            of_all: 0.0,
         };
         let found = search.run(spec, (least, most), camera)?;
         demand::computed(Thing::CameraChoices, search.searches);
@@ -101,6 +130,8 @@ struct Search<'w, 'a> {
     skipping: Skipping,
     wants_near: bool,
     searches: u64,
+    /// Choices that are gone through without skipping.
+    of_all: f64,
 }
 
 impl Search<'_, '_> {
@@ -132,8 +163,8 @@ impl Search<'_, '_> {
         let (mut nearest, mut open): (Option<Best>, Option<Best>) = (None, None);
         for frames in frames.iter().rev().copied() {
             let camera = at_frames(camera, frames);
-            let (mut is_met, mut is_late) = (false, false);
-            for k in from..=most {
+            let (mut is_met, mut is_late, first) = (false, false, from);
+            for k in first..=most {
                 if !wheel.is_in_time(&camera, k) {
                     (is_late, is_cut) = (true, true);
                     break;
@@ -170,7 +201,8 @@ impl Search<'_, '_> {
             return Ok(Found::Met(ranked.collect()));
         }
         if let Some(open) = open {
-            return Ok(Found::Undecided(wheel.choice(&open), wheel.failed(Why::Undecided, Some(&open))));
+            let both = (wheel.choice(&open), wheel.failed(Why::Undecided, Some(&open)));
+            return Ok(Found::Undecided(Box::new(both)));
         }
         let failed = wheel.failed(
             Why::Distance { filters: tried, frames: most_frames, all_judged, is_cut },
@@ -240,9 +272,11 @@ impl Search<'_, '_> {
     fn best_of_all(&mut self, frames: u32, k: usize) -> Result<Option<Best>> {
         let n = self.wheel.filters.len();
         let count = count_of(n, k);
-        if count > MOST_OF_ALL {
+        self.of_all += count;
+        if self.of_all > MOST_OF_ALL {
             let found = format!(
-                "without skipping {count:.0} choices of up to {k} of {n} filters would be judged for each number of frames"
+                "without skipping more than {:.0} choices of up to {k} of {n} filters would be judged",
+                self.of_all
             );
             return Err(Error::malformed(
                 found,

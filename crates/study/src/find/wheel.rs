@@ -6,10 +6,10 @@
 use super::candidates::Candidate;
 use super::judged::Best;
 use super::results::{Choice, Failed, FilterUsed, LensUsed, Why};
-use crate::{Study, bands, camera};
+use crate::{Study, bands, camera, camera_bands};
 use hadar::demand::{self, Reason, Thing};
-use hadar::error::Result;
-use hadar::instrument::{Camera, Price};
+use hadar::error::{Error, Result};
+use hadar::instrument::{Camera, CameraSpec, Price};
 use hadar::material::Library;
 use hadar::order;
 use hadar::policy::Motion;
@@ -22,6 +22,10 @@ use hadar_scenario::{BandSource, FilterPlace, Filters, FindSpec, Scenario};
 const FULL: f64 = 0.9;
 /// Share by which an edge of a filter may lie beyond the range of a detector, as ranges are stated in two digits.
 const BEYOND: f64 = 0.005;
+/// Filters to choose from at most.
+const MOST_FILTERS: usize = 500;
+/// Exposures that a camera whose well would overflow is tried at lie so far apart.
+const LADDER: f64 = 2.0;
 /// Relative difference of wavelengths that is rounding.
 const SAME: f64 = 1e-9;
 
@@ -31,6 +35,8 @@ pub(super) struct Supply<'q> {
     filters: Vec<Offered>,
     /// Each scene behind all of them without a camera, with the sine of the cone that they stand in where that counts.
     scenes: Vec<((usize, Option<f64>), Study)>,
+    /// Names of filters that the spectra of the scene do not cover.
+    pub(super) left_out: Vec<String>,
 }
 
 /// A filter that may be chosen.
@@ -42,8 +48,13 @@ struct Offered {
 }
 
 impl<'q> Supply<'q> {
-    /// Those that lie in the range of any of the cameras.
-    pub(super) fn of(spec: &'q FindSpec, candidates: &[Candidate]) -> Result<Self> {
+    /// Those that lie in the range of any of the cameras and that the spectra of a scene cover.
+    pub(super) fn of(
+        spec: &'q FindSpec,
+        candidates: &[Candidate],
+        scene: &Scenario,
+        library: &Library,
+    ) -> Result<Self> {
         let mut filters = match &spec.filters.from {
             FilterSupply::List(list) => {
                 let mut curves = bands::curves(list)?;
@@ -58,7 +69,44 @@ impl<'q> Supply<'q> {
             FilterSupply::Any { step_um } => free(*step_um, candidates),
         };
         filters.retain(|filter: &Offered| candidates.iter().any(|one| is_within(filter.range_um, &one.made)));
-        Ok(Self { spec, filters, scenes: Vec::new() })
+        if filters.len() > MOST_FILTERS {
+            let found = format!("{} filters to choose from", filters.len());
+            let error = Error::malformed(
+                found,
+                format!("give at most {MOST_FILTERS}: fewer in the file, or a larger step of free edges"),
+            );
+            return Err(error.at(scene.place("find.filters")));
+        }
+        let mut supply = Self { spec, filters, scenes: Vec::new(), left_out: Vec::new() };
+        if let (Err(error), false) = (supply.looked_up(None, scene, library), supply.filters.is_empty()) {
+            // One by one: a spectrum that ends within a filter is no reason against the others.
+            let whole = std::mem::take(&mut supply.filters);
+            for one in whole {
+                let name = one.name.clone().unwrap_or_else(|| format!("{:?} um", one.range_um));
+                let alone =
+                    Self { spec, filters: vec![one.clone()], scenes: Vec::new(), left_out: Vec::new() };
+                match alone.looked_up(None, scene, library) {
+                    Ok(_) => supply.filters.push(one),
+                    Err(_) => supply.left_out.push(name),
+                }
+            }
+            if supply.filters.is_empty() {
+                return Err(error);
+            }
+        }
+        Ok(supply)
+    }
+
+    /// A scene behind all filters, without a camera.
+    fn looked_up(&self, sine: Option<f64>, scene: &Scenario, library: &Library) -> Result<Study> {
+        let mut bare = scene.clone();
+        bare.camera = None;
+        bare.bands.source = self.source(&(0..self.filters.len()).collect::<Vec<_>>());
+        // Spectra are covered or not whatever the cone.
+        if let (BandSource::Filters(filters), None) = (&mut bare.bands.source, sine) {
+            filters.place = None;
+        }
+        Study::with_members_in(&bare, library, sine)?.with_means()
     }
 
     /// The bands that are these filters.
@@ -93,13 +141,13 @@ impl<'q> Supply<'q> {
     /// The scene behind some of the filters as a camera sees it.
     fn seen_by(
         &mut self,
-        candidate: &Candidate,
+        mut made: Camera,
         inside: &[usize],
         (place, scenario): (usize, &Scenario),
         library: &Library,
     ) -> Result<Study> {
         let is_in_cone = matches!(self.spec.filters.place, Some(FilterPlace::Sensor { .. }));
-        let sine = is_in_cone.then(|| candidate.made.rim_sine());
+        let sine = is_in_cone.then(|| made.rim_sine());
         let key = (place, sine);
         let place = match self.scenes.iter().position(|(known, _)| *known == key) {
             Some(place) => {
@@ -107,21 +155,22 @@ impl<'q> Supply<'q> {
                 place
             }
             None => {
-                let mut bare = scenario.clone();
-                bare.camera = None;
-                bare.bands.source = self.source(&(0..self.filters.len()).collect::<Vec<_>>());
-                self.scenes.push((key, Study::with_members_in(&bare, library, sine)?.with_means()?));
+                let study = self.looked_up(sine, scenario, library)?;
+                self.scenes.push((key, study));
                 self.scenes.len() - 1
             }
         };
         let mut study = self.scenes[place].1.with_bands_alone(inside)?;
-        let mut made = candidate.made.clone();
         made.sees(&study.open_bands);
         study.scenario.camera.clone_from(&scenario.camera);
         study.scenario.bands = scenario.bands.clone();
         study.camera = Some(made);
         (study.bands, study.air) = study.received(study.camera.as_ref(), study.scenario.target.distance_m)?;
         study.check_sight()?;
+        if let (Some(camera), Some(spec)) = (&study.camera, &scenario.camera) {
+            let at = |key: &str| scenario.place(key);
+            drop(camera_bands::check(camera, spec, &scenario.bands.source, &study.open_bands, &at)?);
+        }
         Ok(study)
     }
 }
@@ -133,8 +182,11 @@ fn free(step_um: f64, candidates: &[Candidate]) -> Vec<Offered> {
         ranges.fold([f64::INFINITY, 0.0_f64], |[short, long], [a, b]| [short.min(a), long.max(b)]);
     let first = (short * (1.0 - BEYOND) / step_um).ceil().clamp(1.0, 1e4) as usize;
     let last = (long * (1.0 + BEYOND) / step_um).floor().clamp(0.0, 1e4) as usize;
-    let run =
-        |from: usize, to: usize| Offered { name: None, range_um: [from, to].map(|at| at as f64 * step_um) };
+    let run = |from: usize, to: usize| Offered {
+        name: None,
+        // As one would write it.
+        range_um: [from, to].map(|at| (at as f64 * step_um * 1e9).round() / 1e9),
+    };
     (first + 1..=last).rev().flat_map(|to| (first..to).rev().map(move |from| run(from, to))).collect()
 }
 
@@ -182,49 +234,117 @@ pub(super) enum WheelKind {
 }
 
 impl<'a> Wheel<'a> {
-    /// In some scenes, of which there is one at least.
-    pub(super) fn new(
+    /// In some scenes, of which there is one at least; a camera whose well would overflow at several exposures, each with the filters
+    /// that do not fill it.
+    pub(super) fn all(
         candidate: &'a Candidate,
+        questions: &[Scenario],
+        supply: &mut Supply<'_>,
+        library: &Library,
+    ) -> Result<Vec<Self>> {
+        let mut inside = supply.inside(&candidate.made);
+        let mut whole = Self::new(candidate, None, &inside, questions, supply, library);
+        if whole.is_err() && candidate.made.spectral_bands.is_none_or(|bands| bands == 1) {
+            // A table of the camera that ends within a filter is no reason against the others.
+            let all = std::mem::take(&mut inside);
+            for w in all {
+                if Self::new(candidate, None, &[w], questions, supply, library).is_ok() {
+                    inside.push(w);
+                }
+            }
+            if !inside.is_empty() {
+                whole = Self::new(candidate, None, &inside, questions, supply, library);
+            }
+        }
+        let whole = whole?;
+        let Some(made) = whole.first().study.camera.clone().filter(|_| whole.kind != WheelKind::Nothing)
+        else {
+            return Ok(vec![whole]);
+        };
+        let Some(full) = made.full_well.filter(|full| whole.brightest(&made) > *full) else {
+            return Ok(vec![whole]);
+        };
+        if whole.kind == WheelKind::Own {
+            let longest_s = made.exposure_s * FULL * full / whole.brightest(&made);
+            return Ok(vec![Self::new(candidate, Some(longest_s), &inside, questions, supply, library)?]);
+        }
+        // The longest exposure of each filter by itself.
+        let mut longest_s = Vec::with_capacity(inside.len());
+        for at in 0..inside.len() {
+            let mut brightest: f64 = 0.0;
+            for scene in &whole.scenes {
+                brightest = brightest.max(scene.study.with_bands_alone(&[at])?.brightest_member(&made));
+            }
+            longest_s.push(if brightest > full {
+                made.exposure_s * FULL * full / brightest
+            } else {
+                made.exposure_s
+            });
+        }
+        let is_fixed =
+            questions.iter().any(|asked| asked.camera.as_ref().is_some_and(|own| own.exposure_s.is_some()));
+        let mut exposures_s = vec![made.exposure_s];
+        if !is_fixed {
+            let mut at_s = longest_s.iter().copied().fold(f64::INFINITY, f64::min);
+            exposures_s.clear();
+            while at_s < made.exposure_s {
+                exposures_s.push(at_s);
+                at_s *= LADDER;
+            }
+            exposures_s.push(made.exposure_s);
+        }
+        let mut wheels = Vec::with_capacity(exposures_s.len());
+        for exposure_s in exposures_s {
+            let fits =
+                |(w, longest_s): (&usize, &f64)| (exposure_s <= longest_s * (1.0 + SAME)).then_some(*w);
+            let kept: Vec<usize> = inside.iter().zip(&longest_s).filter_map(fits).collect();
+            if !kept.is_empty() {
+                let own_s = (exposure_s != made.exposure_s).then_some(exposure_s);
+                wheels.push(Self::new(candidate, own_s, &kept, questions, supply, library)?);
+            }
+        }
+        Ok(if wheels.is_empty() { vec![whole] } else { wheels })
+    }
+
+    /// With some of the filters, at an exposure of its own or that of the camera.
+    fn new(
+        candidate: &'a Candidate,
+        exposure_s: Option<f64>,
+        inside: &[usize],
         questions: &[Scenario],
         supply: &mut Supply<'_>,
         library: &Library,
     ) -> Result<Self> {
         let camera = &candidate.made;
-        let inside = supply.inside(camera);
         let (source, kind) = match camera.spectral_bands.filter(|bands| *bands > 1) {
             Some(bands) => (own_grid(camera, bands), WheelKind::Own),
             None if inside.is_empty() => (BandSource::Unsaid, WheelKind::Nothing),
-            None => (supply.source(&inside), WheelKind::Filters),
+            None => (supply.source(inside), WheelKind::Filters),
         };
         let mut scenes = Vec::with_capacity(questions.len());
         for (place, question) in questions.iter().enumerate() {
             let mut scenario = question.clone();
             scenario.find = None;
-            scenario.camera = Some(candidate.spec.clone());
+            let spec =
+                CameraSpec { exposure_s: exposure_s.or(candidate.spec.exposure_s), ..candidate.spec.clone() };
+            let made = camera::resolved(&spec, &scenario.source)?;
+            scenario.camera = Some(spec);
             scenario.bands.source = source.clone();
             let study = match (&camera.efficiency_curves[..], kind) {
-                ([], WheelKind::Filters) => {
-                    supply.seen_by(candidate, &inside, (place, &scenario), library)?
-                }
+                ([], WheelKind::Filters) => supply.seen_by(made, inside, (place, &scenario), library)?,
                 _ => Study::with_members(&scenario, library)?.with_means()?,
             };
             scenes.push(Scene { scenario, study });
         }
-        let next = supply.next(&inside);
+        let next = supply.next(inside);
         let filter_price = supply.spec.filters.price.clone();
-        let mut wheel =
-            Self { candidate, scenes, filters: Vec::new(), next, exposure_s: None, filter_price, kind };
+        let mut wheel = Self { candidate, scenes, filters: Vec::new(), next, exposure_s, filter_price, kind };
         let bands = wheel.first().study.open_bands.bands();
         let filters = bands.iter().map(|band| FilterUsed {
             name: band.name.clone(),
             range_um: [1e4 / band.high_cm1, 1e4 / band.low_cm1],
         });
         wheel.filters = filters.collect();
-        let is_fixed =
-            questions.iter().any(|asked| asked.camera.as_ref().is_some_and(|own| own.exposure_s.is_some()));
-        if !is_fixed {
-            wheel.shorten()?;
-        }
         Ok(wheel)
     }
 
@@ -241,27 +361,6 @@ impl<'a> Wheel<'a> {
     /// Counts of the fullest reading in any scene.
     pub(super) fn brightest(&self, camera: &Camera) -> f64 {
         self.scenes.iter().map(|scene| scene.study.brightest_member(camera)).fold(0.0, f64::max)
-    }
-
-    /// Shortens the exposure where a reading would overflow the well.
-    fn shorten(&mut self) -> Result<()> {
-        let Some(made) = self.first().study.camera.clone() else { return Ok(()) };
-        let Some(full) = made.full_well else { return Ok(()) };
-        let brightest = self.brightest(&made);
-        if brightest <= full {
-            return Ok(());
-        }
-        let exposure_s = made.exposure_s * FULL * full / brightest;
-        self.exposure_s = Some(exposure_s);
-        for Scene { scenario, study } in &mut self.scenes {
-            if let Some(spec) = scenario.camera.as_mut() {
-                spec.exposure_s = Some(exposure_s);
-                let mut made = camera::resolved(spec, &scenario.source)?;
-                made.sees(&study.open_bands);
-                study.camera = Some(made);
-            }
-        }
-        Ok(())
     }
 
     pub(super) fn failed(&self, why: Why, best: Option<&Best>) -> Failed {

@@ -122,9 +122,9 @@ impl States {
                 largest.insert(place, squares[w]);
                 largest.truncate(k);
                 let mut sum = 0.0;
-                for count in 1..=k {
+                for (count, of_state) in most[w].iter_mut().enumerate().skip(1) {
                     sum += largest.get(count - 1).copied().unwrap_or(0.0);
-                    most[w][count][s] = sum;
+                    of_state[s] = sum;
                 }
             }
         }
