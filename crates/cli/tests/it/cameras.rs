@@ -55,6 +55,7 @@ fn the_json_of_show_and_compare() {
             "caveats",
             "common_range_cm1",
             "hadar",
+            "lens_of_both",
             "ratios",
             "scene_temperature_k",
             "schema",

@@ -36,7 +36,8 @@ fn walk(value: &Json, path: &str, found: &mut BTreeSet<(String, String)>) {
                 if !own {
                     found.insert((key.clone(), path.to_owned()));
                 }
-                if !["scenario", "rule"].contains(&key.as_str()) || path.contains('.') {
+                let is_of_choice = path.starts_with("find.") && key == "scenario";
+                if !is_of_choice && (!["scenario", "rule"].contains(&key.as_str()) || path.contains('.')) {
                     walk(value, &format!("{path}.{key}"), found);
                 }
             }
@@ -72,6 +73,12 @@ fn every_key_of_real_answers_is_explained() {
     see(&["simulate", "a.toml", "--thermometry", "30 degC..40 degC", "--spectra", "50"]);
     see(&["explain", "temperature"]);
     see(&["explain"]);
+    see(&["init", "find"]);
+    let question = fs::read_to_string(folder.path().join("find.toml")).unwrap();
+    for (name, camera) in [("meets.toml", "flir-boson-plus-640"), ("fails.toml", "flir-boson-320")] {
+        folder.file(name, &question.replace("\"*\"", &format!("{camera:?}")));
+        see(&["find", name]);
+    }
     see(&["init", "range"]);
     see(&["init", "air"]);
     see(&["init", "decompose"]);

@@ -29,9 +29,9 @@ pub(crate) fn comparison_sentence(both: &SideBySide) -> String {
             times(ratios.distance_in_same_time.powi(sign))
         ),
     };
-    let lens = both.lens.map_or_else(String::new, |lens| format!(", both behind {}", lens_of_both(lens)));
+    let lens = both.lens.map_or_else(String::new, |lens| format!(", both behind {},", lens_of_both(lens)));
     format!(
-        "In one acquisition{lens}, {}, and {}. In a scene of 300 K a pair whose spectra differ little has {} times the distance d \
+        "In one acquisition{lens} {}, and {}. In a scene of 300 K a pair whose spectra differ little has {} times the distance d \
          with {better} that it has with {worse}{same_time}.",
         photons(ratios.photons, a, b),
         noises(ratios, a, b),
