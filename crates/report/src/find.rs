@@ -138,7 +138,7 @@ fn drawn(found: &FindAnswer) -> Option<Plot> {
         Axis::log("statistical distance that is proved").range(distances.0, distances.1),
     );
     figure = figure.series(Series::line(
-        format!("required, d = {}", hadar::words::significant(required, 3)),
+        format!("required, d = {}", hadar::words::significant(required, 4)),
         vec![times.0, times.1],
         vec![required; 2],
     ));

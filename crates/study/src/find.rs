@@ -147,8 +147,17 @@ impl Asked<'_> {
     ) -> Result<FindAnswer> {
         let Listed { met, refused, .. } = listed;
         let mut undecided = searched.undecided;
-        undecided.extend(refused);
         failed.extend(searched.failed);
+        // What the main job or the rule does not call met is not shown to meet, or shown not to.
+        for choice in chosen::distinct(refused) {
+            let (lens, is_open) = (Some(choice.lens.clone()), choice.is_undecided());
+            let why = if is_open { Why::Undecided } else { Why::NotAsAWhole };
+            let (lower, upper) = (Some(choice.lower), Some(choice.upper));
+            failed.push(Failed { camera: choice.camera.clone(), lens, why, lower, upper });
+            if is_open {
+                undecided.push(choice);
+            }
+        }
         let best_first = beaten_by_none(&met, self.spec);
         let near = if met.is_empty() { near_miss(&searched.missed, self.library)? } else { None };
         let of = |places: &[usize]| places.iter().map(|index| met[*index].choice.clone()).collect();

@@ -48,7 +48,7 @@ pub struct SideBySide {
     /// Both before the same scene, where both are complete.
     pub comparison: Option<Comparison>,
     /// F-number and focal length, m, of the lens that was put before a camera of which no document names one: that of the other, else
-    /// [`LENS`].
+    /// f/1 of 14 mm.
     pub lens: Option<[f64; 2]>,
 }
 

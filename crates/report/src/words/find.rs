@@ -73,7 +73,12 @@ pub fn sentence(found: &FindAnswer) -> String {
         };
     };
     let first = match merits(found).first() {
-        Some(Merit::Price) if best.price.is_some() => "The cheapest that meets",
+        Some(Merit::Price) if best.price.is_some() => {
+            match found.listed.iter().chain(&found.also).all(|one| one.price.is_some()) {
+                true => "The cheapest that meets",
+                false => "The cheapest of those whose price is known that meets",
+            }
+        }
         Some(Merit::Price) => "No price is known of any; the first by the rest that meets",
         Some(Merit::Time) => "The fastest that meets",
         Some(Merit::Filters) => "That with the fewest filters that meets",
@@ -230,8 +235,11 @@ fn of_others(found: &FindAnswer) -> String {
 
 /// Why the others do not meet.
 fn failures(found: &FindAnswer) -> String {
-    let shown: Vec<&Failed> =
-        found.failed.iter().filter(|one| !matches!(one.why, Why::Figures { .. } | Why::NoLens)).collect();
+    let shown: Vec<&Failed> = found
+        .failed
+        .iter()
+        .filter(|one| !matches!(one.why, Why::Figures { .. } | Why::NoLens | Why::NotSold))
+        .collect();
     if shown.is_empty() {
         return String::new();
     }
@@ -284,12 +292,26 @@ pub fn why(failed: &Failed, required: f64) -> String {
         Why::Motion => "the target moves by a pixel or more while its bands are exposed".into(),
         Why::FullWell => "a reading overflows its full well at the exposure that is fixed".into(),
         Why::Undecided => "undecided".into(),
+        Why::NotAsAWhole => "its best choice tells every pair, and is not met as a whole: ask it with `hadar size` or `hadar rule`".into(),
     }
 }
 
 /// What the cameras lack that could not be asked, in one block to be filled in.
 fn missing(found: &FindAnswer) -> String {
     let mut out = String::new();
+    let not_sold: Vec<&str> = found
+        .failed
+        .iter()
+        .filter(|one| matches!(one.why, Why::NotSold))
+        .map(|one| one.camera.as_str())
+        .collect();
+    if !not_sold.is_empty() {
+        let _ = writeln!(
+            out,
+            "Not looked at, since nobody can order them as cameras: {}. Name one in find.cameras to ask it.\n",
+            listed(&not_sold)
+        );
+    }
     let no_lens: Vec<&str> = found
         .failed
         .iter()

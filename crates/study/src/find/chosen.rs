@@ -132,10 +132,17 @@ fn order(all: &[Ranked], spec: &FindSpec, a: usize, b: usize) -> std::cmp::Order
     spec.least.iter().map(by).find(|order| order.is_ne()).unwrap_or_else(|| a.cmp(&b))
 }
 
-/// Those of another camera, lens or number of filters.
-pub(super) fn distinct(mut all: Vec<Choice>) -> Vec<Choice> {
-    all.dedup_by(|a, b| {
-        a.camera == b.camera && a.lens == b.lens && a.filters == b.filters && a.frames == b.frames
-    });
-    all
+/// Each choice once.
+pub(super) fn distinct(all: Vec<Choice>) -> Vec<Choice> {
+    let mut once: Vec<Choice> = Vec::with_capacity(all.len());
+    for one in all {
+        let is_same = |other: &Choice| {
+            (&other.camera, &other.lens, &other.filters, other.frames)
+                == (&one.camera, &one.lens, &one.filters, one.frames)
+        };
+        if !once.iter().any(is_same) {
+            once.push(one);
+        }
+    }
+    once
 }

@@ -93,13 +93,8 @@ pub fn find_for_rule(
         match added.filter(|_| *again) {
             Some(scene) => scenes.push(scene),
             None => {
+                let found = Listed { refused, ..found };
                 let mut answer = asked.answer(first, searched, found, failed)?;
-                answer.undecided.extend(
-                    refused.into_iter().filter(|one| {
-                        one.of_rule.as_ref().is_some_and(|found| found.verdict != Verdict::Fails)
-                    }),
-                );
-                answer.undecided = super::chosen::distinct(answer.undecided);
                 (answer.rule, answer.scenes) = (Some(rule.clone()), scenes.len());
                 answer.filters_left_out.clone_from(&supply.left_out);
                 (answer.required_distance, answer.stats) = (required, ledger.close());

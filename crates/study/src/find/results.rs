@@ -1,7 +1,7 @@
 //! What was found: choices that meet, those that do not and why.
 
 use crate::size::{Sizing, Solutions, Verdict};
-use crate::{CameraAnswer, Condition, Warning};
+use crate::{CameraAnswer, Condition, Warning, YesNo};
 use hadar::demand::Work;
 use hadar::instrument::Price;
 use hadar_scenario::{Rule, Scenario};
@@ -92,6 +92,15 @@ impl Choice {
     /// Whether it was put to the main job, or to the rule.
     pub(super) fn is_judged(&self) -> bool {
         self.verdict.is_some() || self.of_rule.is_some()
+    }
+
+    /// Whether the main job, or the rule, leaves it open.
+    pub(super) fn is_undecided(&self) -> bool {
+        match (&self.of_rule, &self.verdict) {
+            (Some(found), _) => found.verdict == hadar_scenario::rule::Verdict::Undecided,
+            (None, Some(verdict)) => verdict.answer == Some(YesNo::Undecided),
+            (None, None) => true,
+        }
     }
 
     /// What it rests on that it meets, hardest first.
@@ -193,6 +202,8 @@ pub enum Why {
     FullWell,
     /// What is proved does not reach the distance, and what was found does.
     Undecided,
+    /// Its best choice meets pair by pair, and the main job, or the rule, does not call it met.
+    NotAsAWhole,
 }
 
 /// The choice that comes nearest where none meets, and what it would have to be.
