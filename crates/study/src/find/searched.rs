@@ -137,6 +137,7 @@ struct Search<'w, 'a> {
 impl Search<'_, '_> {
     fn run(&mut self, spec: &FindSpec, (least, most): (usize, usize), camera: &Camera) -> Result<Found> {
         let wheel = self.wheel;
+        let required = wheel.first().study.required;
         let all: Vec<usize> = (0..wheel.filters.len()).collect();
         let mut frames: Vec<u32> = spec.frames.clone();
         frames.retain(|frames| wheel.is_in_time(&at_frames(camera, *frames), least));
@@ -149,11 +150,12 @@ impl Search<'_, '_> {
         };
         if self.skipping == Skipping::On && wheel.kind == WheelKind::Filters {
             // All filters at once: what they do not tell, a few do not.
-            if !self.may_do(most_frames, &all)? {
-                let why = Why::AllFilters { frames_would_do: self.may_do(FRAMES_WITHOUT_END, &all)? };
+            let most_told = self.told_by_all(most_frames, &all)?;
+            if most_told < required {
+                let frames_would_do = self.told_by_all(FRAMES_WITHOUT_END, &all)? >= required;
                 let best = if self.wants_near { self.best(most_frames, most, camera)?.0 } else { None };
-                let mut failed = wheel.failed(why, best.as_ref());
-                failed.upper = Some(self.states(&at_frames(camera, most_frames))?.square_of_all().sqrt());
+                let mut failed = wheel.failed(Why::AllFilters { frames_would_do }, best.as_ref());
+                failed.upper = Some(most_told);
                 let near = best.map(|best| wheel.choice(&best));
                 return Ok(Found::Fails(Box::new(Misses { failed, near })));
             }
@@ -212,17 +214,24 @@ impl Search<'_, '_> {
         Ok(Found::Fails(Box::new(Misses { failed, near })))
     }
 
-    /// Whether all bands at once tell the target from every alternative, as far as the states that were found show.
-    fn may_do(&mut self, frames: u32, all: &[usize]) -> Result<bool> {
-        let Some(camera) = &self.wheel.first().study.camera else { return Ok(false) };
+    /// What all bands at once tell at most, as far as the states that were found show; looked into no further than to below what is
+    /// required.
+    fn told_by_all(&mut self, frames: u32, all: &[usize]) -> Result<f64> {
+        let Some(camera) = &self.wheel.first().study.camera else { return Ok(0.0) };
         let required = self.wheel.first().study.required;
         let states = self.states(&at_frames(camera, frames))?;
-        if states.square_of_all() < required * required * (1.0 - SAME) {
+        let bound = states.square_of_all().sqrt();
+        if bound < required * (1.0 - SAME) {
             demand::spared(Thing::CameraChoices, Reason::Bounded, 1);
-            return Ok(false);
+            return Ok(bound);
         }
-        Ok(self.judge(all, frames, self.nearest_pair(&states, all), required * (1.0 - SAME))?.told
-            != YesNo::No)
+        let judged = self.judge(all, frames, self.nearest_pair(&states, all), required * (1.0 - SAME))?;
+        // Of few counts another law decides than the distance.
+        Ok(if judged.told == YesNo::No {
+            judged.upper.min(bound).min(required * (1.0 - SAME))
+        } else {
+            f64::INFINITY
+        })
     }
 
     /// The best choice of at most k bands at so many frames, one that is told before one that is not; and whether nothing was left
