@@ -7,6 +7,7 @@ use crate::file::text_of_file;
 use hadar::error::{Error, Result, check};
 use hadar::grid::Grid;
 use hadar::spectrum::{Bands, FilterCurve};
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Reads a file with one row per band.
@@ -107,10 +108,11 @@ fn curves(text: &str) -> Result<Vec<FilterCurve>> {
         axis.iter().zip(&grid.rows).map(row).collect()
     };
     let mut filters: Vec<FilterCurve> = Vec::new();
+    let mut names: HashSet<&str> = HashSet::new();
     for (column, header) in grid.header.iter().enumerate().skip(1) {
         let at_column = |error: Error| error.for_key(header.clone()).on_line(grid.header_line);
         let Some(of) = header.strip_suffix(REFLECTANCE) else {
-            if filters.iter().any(|filter| filter.name() == header) {
+            if !names.insert(header) {
                 let found = format!("another filter is called `{header}` too");
                 return Err(at_column(Error::malformed(found, "give each a name of its own")));
             }

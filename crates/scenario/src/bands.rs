@@ -148,7 +148,7 @@ impl FilterPlace {
 
 /// A file of filters, or the catalogue of the program.
 pub(super) fn filter_list(entry: &Entry<'_>) -> Result<FilterList> {
-    match entry.text("\"filters.csv\"")?.trim() {
+    match entry.text("\"my_data.csv\"")?.trim() {
         CATALOGUE => Ok(FilterList::Catalogue),
         _ => file(entry).map(FilterList::File),
     }

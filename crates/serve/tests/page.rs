@@ -149,7 +149,8 @@ fn no_key_reads_a_file() {
     let there = std::env::current_exe().unwrap().display().to_string();
     let begin = SCENARIO.replace("step = \"20 cm^-1\"\n", "")
         + "[background]\ntemperature = \"5 degC\"\n[class.own]\nmaterials = [\"skin\"]\n\
-           [envelope]\ntemperature = [\"30 degC\", \"40 degC\"]\n[atmosphere]\nmodel = \"us-standard\"\n";
+           [envelope]\ntemperature = [\"30 degC\", \"40 degC\"]\n[atmosphere]\nmodel = \"us-standard\"\n\
+           [find.filters]\nfrom = \"catalogue\"\n";
     for (key, list) in keys {
         let said = [there.as_str(), "/nowhere/at-all.csv", "../Cargo.toml", "C:\\x.csv"].map(|path| {
             let value = if list { json!([path]).to_string() } else { path.to_owned() };

@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 use toml::value::Date;
 
 /// Tables and keys at the top of a rule that hold no figures of its own.
-const NO_FIGURES: &[&str] = &["title", "cameras", "rule", "camera", "source", "test"];
+const NO_FIGURES: &[&str] = &["title", "cameras", "rule", "camera", "source", "test", "find"];
 /// The same of a clause.
 const NO_FIGURES_OF_CLAUSE: &[&str] = &["name", "kind", "text"];
 

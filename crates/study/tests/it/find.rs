@@ -180,7 +180,7 @@ fn where_none_meets_the_nearest_is_told_with_what_it_would_have_to_be() {
     let text = question(
         "\"plastic\"",
         "[requirement]\ndetection_probability = 0.999999",
-        &format!("cameras = [\"flir-boson-*\"]\n{LENS}\nframes = [1, 4]\nfilters = {{ at_most = 2 }}"),
+        &format!("cameras = [\"flir-boson-*\"]\n{LENS}\nframes = [1, 4]\nfilters = {{ at_most = 4 }}"),
     );
     let answer = found(&text);
     assert!(!answer.met && answer.best.is_none() && answer.listed.is_empty());

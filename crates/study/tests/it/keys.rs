@@ -29,13 +29,14 @@ const LIBRARY: &str = "[library]\nmaterials = [\"skin\"]\n[class.x]\nmaterials =
 const BLACKBODIES: &str = "[[blackbody]]\ntemperature = \"10 degC\"\ndata = \"a.npy\"\n\
     [[blackbody]]\ntemperature = \"60 degC\"\ndata = \"b.npy\"\n[noise]\nsample = 1.5\n";
 
+const FIND: &str = "[[find.lenses]]\nf_number = 1.0\nfocal_length = \"14 mm\"\n";
 const CATEGORY: &str = "[[category]]\nname = \"person\"\nmaterials = [\"skin\"]\n";
 
 /// A file of a kind in which any key may be set.
 fn base(kind: &str) -> String {
     match kind {
-        "task" => format!("{TASK}{CATEGORY}"),
-        "rule" => format!("{TASK}{RULE}{CATEGORY}"),
+        "task" => format!("{TASK}{CATEGORY}{FIND}"),
+        "rule" => format!("{TASK}{RULE}{CATEGORY}{FIND}"),
         "stereo" => format!("{VIEWS}{CAMERA}"),
         "scene" => format!("{STREET}{CAMERA}"),
         "air" => {
