@@ -156,7 +156,16 @@ pub fn find(name: &str) -> Result<Preset> {
     let cameras = all()?;
     match cameras.iter().find(|camera| camera.name == name) {
         Some(camera) => {
-            inputs::built_in("camera", name, || serde_json::to_vec(camera).unwrap_or_default());
+            // What it costs is no figure that an answer rests on.
+            let figures = || Preset {
+                kind: None,
+                sold: None,
+                price: None,
+                price_without_lens: None,
+                price_source: None,
+                ..camera.clone()
+            };
+            inputs::built_in("camera", name, || serde_json::to_vec(&figures()).unwrap_or_default());
             Ok(camera.clone())
         }
         None => Err(Error::unknown_name("camera", name, cameras.iter().map(|camera| camera.name.as_str()))),

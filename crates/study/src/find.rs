@@ -24,6 +24,7 @@ mod judged;
 mod of_rule;
 mod results;
 mod searched;
+mod supply;
 mod wheel;
 
 pub use of_rule::find_for_rule;
@@ -32,9 +33,10 @@ pub use results::{Choice, Failed, FilterUsed, FindAnswer, LensUsed, Misses, Near
 use self::candidates::Candidate;
 use self::chosen::{Listed, Put, Ranked, beaten_by_none};
 use self::searched::{Found, Pool};
-use self::wheel::{Supply, Wheel};
+use self::supply::Supply;
+use self::wheel::Wheel;
 use crate::{OwnCameras, SizeAsked, Study, YesNo, resolve};
-use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
+use hadar::demand::{self, Ledger, Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_scenario::{BandSource, DistanceKind, FindSpec, Scenario};
@@ -51,19 +53,14 @@ pub fn find(
 ) -> Result<FindAnswer> {
     let ledger = Ledger::open();
     let (scenario, spec) = question(scenario)?;
-    let required = resolve::required(&scenario)?;
     let (candidates, failed) = candidates::of(&scenario, &spec, own)?;
     let mut supply = Supply::of(&spec, &candidates, &scenario, library)?;
-    let mut pool = Pool::default();
-    let scenes = std::slice::from_ref(&scenario);
     let asked = Asked { spec: &spec, candidates: &candidates, library, skipping };
-    let searched = asked.search(scenes, &mut supply, &mut pool)?;
-    let listed = chosen::confirmed(searched.met.clone(), &spec, |choice| put_to_size(choice, library))?;
-    let mut answer = asked.answer(scenario.clone(), searched, listed, failed)?;
-    answer.required_distance = required;
-    answer.filters_left_out.clone_from(&supply.left_out);
-    answer.stats = ledger.close();
-    Ok(answer)
+    let searched = asked.search(std::slice::from_ref(&scenario), &mut supply, &mut Pool::default())?;
+    let listed = chosen::confirmed(searched.sought.clone(), &spec, |choice| put_to_size(choice, library))?;
+    let filters_left_out = supply.left_out;
+    let answer = asked.answer(scenario, searched, listed, failed)?;
+    Ok(FindAnswer { filters_left_out, stats: ledger.close(), ..answer })
 }
 
 /// What is asked of every camera.
@@ -77,10 +74,11 @@ struct Asked<'a> {
 /// What a search comes to, before anything was put to the main job or the rule.
 #[derive(Debug, Default)]
 struct Searched {
-    met: Vec<Ranked>,
-    undecided: Vec<Choice>,
+    sought: Vec<Ranked>,
     failed: Vec<Failed>,
     missed: Vec<Choice>,
+    /// Whether exposures were tried.
+    exposures: bool,
 }
 
 impl Asked<'_> {
@@ -105,21 +103,18 @@ impl Asked<'_> {
                 // Other bands may have other alternatives.
                 *pool = Pool::default();
             }
+            all.exposures |= wheels.len() > 1;
             let mut found = Vec::with_capacity(wheels.len());
             for wheel in &wheels {
-                let wants_near = all.met.is_empty();
+                let wants_near = all.sought.is_empty();
                 found.push(wheel.search(self.spec, pool, (self.skipping, wants_near))?);
             }
             match Found::of_all(found) {
-                Some(Found::Met(choices)) => all.met.extend(choices),
+                Some(Found::Sought(choices)) => all.sought.extend(choices),
                 Some(Found::Fails(fails)) => {
                     without_filters += u64::from(matches!(fails.failed.why, Why::NoFilter { .. }));
                     all.missed.extend(fails.near.filter(|near| near.upper > 0.0));
                     all.failed.push(fails.failed);
-                }
-                Some(Found::Undecided(both)) => {
-                    all.undecided.push(both.0);
-                    all.failed.push(both.1);
                 }
                 None => {}
             }
@@ -146,7 +141,7 @@ impl Asked<'_> {
         mut failed: Vec<Failed>,
     ) -> Result<FindAnswer> {
         let Listed { met, refused, .. } = listed;
-        let mut undecided = searched.undecided;
+        let mut undecided = Vec::new();
         failed.extend(searched.failed);
         // What the main job or the rule does not call met is not shown to meet, or shown not to.
         for choice in chosen::distinct(refused) {
@@ -160,22 +155,26 @@ impl Asked<'_> {
         }
         let best_first = beaten_by_none(&met, self.spec);
         let near = if met.is_empty() { near_miss(&searched.missed, self.library)? } else { None };
-        let of = |places: &[usize]| places.iter().map(|index| met[*index].choice.clone()).collect();
+        let of = |places: &[usize]| -> Vec<Choice> {
+            places.iter().map(|index| met[*index].choice.clone()).collect()
+        };
+        let listed = of(&best_first);
         Ok(FindAnswer {
+            required_distance: resolve::required(&scenario)?,
             scenario,
             rule: None,
             scenes: 1,
-            required_distance: f64::NAN,
-            met: !best_first.is_empty(),
-            best: best_first.first().map(|index| met[*index].choice.clone()),
-            listed: of(&best_first),
+            met: !listed.is_empty(),
+            warnings: listed.first().map_or_else(Vec::new, |best| best.warnings.clone()),
+            best: listed.first().cloned(),
+            listed,
+            exposures_tried: searched.exposures,
             also: of(&chosen::best_of_each(&met, &best_first)),
-            undecided: chosen::distinct(undecided),
+            undecided,
             filters_left_out: Vec::new(),
             failed,
             near,
-            warnings: Vec::new(),
-            stats: hadar::demand::Work::default(),
+            stats: Work::default(),
         })
     }
 }
@@ -204,12 +203,8 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
         );
     }
     if scenario.envelope.is_some() {
-        let found = "an envelope of scenes, of which one camera is sought for each".into();
-        return refuse(
-            "envelope",
-            found,
-            "leave it out, or hold the camera that is found against it with `hadar rule`",
-        );
+        let found = "an envelope of scenes, which is a rule".into();
+        return refuse("envelope", found, "read the file as a rule, or leave the envelope out");
     }
     if let Some(frames) = scenario.camera.as_ref().and_then(|camera| camera.frames) {
         if scenario.source.lines.contains_key("find.frames") {

@@ -88,7 +88,7 @@ impl FilterCurve {
     /// Reflectance at a wavenumber in cm⁻¹: 1 where the filter has no rows.
     #[must_use]
     pub fn reflectance(&self, wavenumber_cm1: f64) -> f64 {
-        let (low, high) = self.support();
+        let (low, high) = self.range_cm1();
         if self.reflectances.is_empty() || !(low..=high).contains(&wavenumber_cm1) {
             return 1.0 - self.transmittance(wavenumber_cm1);
         }
@@ -142,17 +142,11 @@ impl FilterCurve {
     /// Transmittance at a wavenumber in cm⁻¹.
     #[must_use]
     pub fn transmittance(&self, wavenumber_cm1: f64) -> f64 {
-        let (low, high) = self.support();
+        let (low, high) = self.range_cm1();
         if !(low..=high).contains(&wavenumber_cm1) {
             return 0.0;
         }
         interpolated(&self.wavenumbers_cm1, &self.transmittances, wavenumber_cm1)
-    }
-
-    /// Lowest and highest wavenumber of its rows, cm⁻¹.
-    #[must_use]
-    pub fn range_cm1(&self) -> (f64, f64) {
-        self.support()
     }
 
     /// Lowest and highest wavenumber at which it transmits half of its most, cm⁻¹, on the straight lines between its rows.
@@ -173,7 +167,9 @@ impl FilterCurve {
         [low, high]
     }
 
-    pub(super) fn support(&self) -> (f64, f64) {
+    /// Lowest and highest wavenumber of its rows, cm⁻¹.
+    #[must_use]
+    pub fn range_cm1(&self) -> (f64, f64) {
         (self.wavenumbers_cm1[0], self.wavenumbers_cm1[self.wavenumbers_cm1.len() - 1])
     }
 }
@@ -202,6 +198,14 @@ mod tests {
             let exact = (1.0 - beyond).clamp(0.0, 1.0);
             assert!((cone.transmittance(nu) - exact).abs() < 0.6 / RINGS as f64, "{nu}");
         }
+        // ∫T dν beyond the edge, whose shift is of 1/n².
+        let rim = edge / (1.0 - (sine / index).powi(2)).sqrt();
+        let exact =
+            (rim - edge) - (index / sine).powi(2) * ((rim - edge) - edge * edge * (1.0 / edge - 1.0 / rim));
+        let step = 0.01;
+        let middle = |i: i32| edge + (f64::from(i) + 0.5) * step;
+        let found: f64 = (0..4000).map(|i| step * cone.transmittance(middle(i))).sum();
+        assert!((found / exact - 1.0).abs() < 5e-3, "{found} {exact}");
         assert_eq!(filter.in_cone(index, 0.0).unwrap(), filter);
         assert!(filter.in_cone(0.9, 0.1).is_err() && filter.in_cone(f64::NAN, 0.1).is_err());
         assert!(filter.in_cone(2.0, 1.1).is_err());

@@ -51,7 +51,9 @@ pub fn text(found: &FindAnswer) -> String {
 pub fn sentence(found: &FindAnswer) -> String {
     let required = significant(found.required_distance, 4);
     let Some(best) = &found.best else {
-        let judged = found.failed.iter().filter(|one| one.upper.is_some()).count() + found.undecided.len();
+        let judged = found.failed.iter().filter(|one| one.upper.is_some()).count();
+        let all_judged =
+            !found.failed.iter().any(|one| matches!(one.why, Why::Distance { all_judged: false, .. }));
         let near = found.near.as_ref().map_or_else(String::new, |near| {
             let choice = &near.choice;
             let d = significant(choice.upper, 3);
@@ -66,7 +68,12 @@ pub fn sentence(found: &FindAnswer) -> String {
         }
         return match judged {
             0 => "No: not one of the cameras can be asked; what each lacks is below.".into(),
-            1 => format!("No: the one camera that can be asked does not reach d = {required}.{near}"),
+            1 if all_judged => {
+                format!("No: the one camera that can be asked does not reach d = {required}.{near}")
+            }
+            _ if !all_judged => format!(
+                "No camera was found that reaches d = {required}, as far as {judged} of them with their lenses were searched.{near}"
+            ),
             _ => format!(
                 "No: of {judged} cameras with their lenses that can be asked none reaches d = {required}.{near}"
             ),
@@ -299,12 +306,10 @@ pub fn why(failed: &Failed, required: f64) -> String {
 /// What the cameras lack that could not be asked, in one block to be filled in.
 fn missing(found: &FindAnswer) -> String {
     let mut out = String::new();
-    let not_sold: Vec<&str> = found
-        .failed
-        .iter()
-        .filter(|one| matches!(one.why, Why::NotSold))
-        .map(|one| one.camera.as_str())
-        .collect();
+    let of = |is_so: &dyn Fn(&Why) -> bool| -> Vec<&str> {
+        found.failed.iter().filter(|one| is_so(&one.why)).map(|one| one.camera.as_str()).collect()
+    };
+    let (not_sold, no_lens) = (of(&|why| *why == Why::NotSold), of(&|why| *why == Why::NoLens));
     if !not_sold.is_empty() {
         let _ = writeln!(
             out,
@@ -312,12 +317,6 @@ fn missing(found: &FindAnswer) -> String {
             listed(&not_sold)
         );
     }
-    let no_lens: Vec<&str> = found
-        .failed
-        .iter()
-        .filter(|one| matches!(one.why, Why::NoLens))
-        .map(|one| one.camera.as_str())
-        .collect();
     if !no_lens.is_empty() {
         let _ = writeln!(
             out,
@@ -372,13 +371,7 @@ fn footing(found: &FindAnswer) -> String {
             listed(&found.filters_left_out)
         ));
     }
-    let all = found
-        .listed
-        .iter()
-        .chain(&found.also)
-        .chain(&found.undecided)
-        .chain(found.near.iter().map(|near| &near.choice));
-    if all.into_iter().any(|choice| choice.exposure_s.is_some()) {
+    if found.exposures_tried {
         notes.push("where a well would overflow, exposures are tried in steps of 2, each with the filters that do not fill it".into());
     }
     let lines: Vec<String> = notes.iter().map(|note| format!("  {note}\n")).collect();

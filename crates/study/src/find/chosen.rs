@@ -136,11 +136,7 @@ fn order(all: &[Ranked], spec: &FindSpec, a: usize, b: usize) -> std::cmp::Order
 pub(super) fn distinct(all: Vec<Choice>) -> Vec<Choice> {
     let mut once: Vec<Choice> = Vec::with_capacity(all.len());
     for one in all {
-        let is_same = |other: &Choice| {
-            (&other.camera, &other.lens, &other.filters, other.frames)
-                == (&one.camera, &one.lens, &one.filters, one.frames)
-        };
-        if !once.iter().any(is_same) {
+        if !once.iter().any(|other| other.is_same(&one)) {
             once.push(one);
         }
     }

@@ -6,9 +6,9 @@
 
 use super::chosen::{Listed, Put, confirmed};
 use super::searched::Pool;
-use super::wheel::Supply;
+use super::supply::Supply;
 use super::{Asked, Choice, FindAnswer, candidates, question};
-use crate::{CameraVerdict, Extent, LimitingScene, OwnCameras, RuleAsked, RuleStudy, Shortfall, resolve};
+use crate::{CameraVerdict, Extent, LimitingScene, OwnCameras, RuleAsked, RuleStudy, Shortfall};
 use hadar::demand::{Ledger, Skipping};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
@@ -52,25 +52,24 @@ pub fn find_for_rule(
         return Err(error.at(rule.scenario.place("clause")));
     };
     let spec = first.find.clone().unwrap_or_default();
-    let required = resolve::required(&first)?;
     let (candidates, failed) = candidates::of(&first, &spec, own)?;
     let mut supply = Supply::of(&spec, &candidates, &first, library)?;
     let mut pool = Pool::default();
     let asked = Asked { spec: &spec, candidates: &candidates, library, skipping };
-    let (mut refused, mut known): (Vec<Choice>, BTreeMap<String, Choice>) = (Vec::new(), BTreeMap::new());
+    let (mut refused, mut known): (Vec<Choice>, Vec<Choice>) = (Vec::new(), Vec::new());
     loop {
         let mut searched = asked.search(&scenes, &mut supply, &mut pool)?;
-        searched.met.retain(|one| !refused.iter().any(|other| is_same(&one.choice, other)));
+        searched.sought.retain(|one| !refused.iter().any(|other| one.choice.is_same(other)));
         let mut added = None;
-        let found = confirmed(searched.met.clone(), &spec, |choice| {
+        let found = confirmed(searched.sought.clone(), &spec, |choice| {
             // What met the rule before meets it now.
-            if let Some(judged) = known.get(&key(choice)) {
+            if let Some(judged) = known.iter().find(|other| choice.is_same(other)) {
                 judged.clone_into(choice);
                 return Ok(Put::Met);
             }
             match put_to_rule(choice, rule, library, skipping)? {
                 None => {
-                    drop(known.insert(key(choice), choice.clone()));
+                    known.push(choice.clone());
                     Ok(Put::Met)
                 }
                 Some(Limit { clause, scene }) => {
@@ -94,11 +93,10 @@ pub fn find_for_rule(
             Some(scene) => scenes.push(scene),
             None => {
                 let found = Listed { refused, ..found };
-                let mut answer = asked.answer(first, searched, found, failed)?;
-                (answer.rule, answer.scenes) = (Some(rule.clone()), scenes.len());
-                answer.filters_left_out.clone_from(&supply.left_out);
-                (answer.required_distance, answer.stats) = (required, ledger.close());
-                return Ok(answer);
+                let answer = asked.answer(first, searched, found, failed)?;
+                let (filters_left_out, stats) = (supply.left_out, ledger.close());
+                let (rule, scenes) = (Some(rule.clone()), scenes.len());
+                return Ok(FindAnswer { rule, scenes, filters_left_out, stats, ..answer });
             }
         }
     }
@@ -106,16 +104,6 @@ pub fn find_for_rule(
 
 fn is_apart(clause: &Clause) -> bool {
     matches!(clause.demand, Demand::TellApart | Demand::FalseAlarm)
-}
-
-fn key(choice: &Choice) -> String {
-    let filters: Vec<String> =
-        choice.filters.iter().map(|filter| format!("{:?} {:?}", filter.name, filter.range_um)).collect();
-    format!("{} {:?} {} {}", choice.camera, choice.lens, choice.frames, filters.join(" "))
-}
-
-fn is_same(one: &Choice, other: &Choice) -> bool {
-    key(one) == key(other)
 }
 
 /// The scene that a clause describes, from as far away as it holds.
@@ -179,7 +167,7 @@ fn put_to_rule(
     own.scenario.bands.source.clone_from(source);
     for clause in own.clauses.iter_mut() {
         clause.scenario.find = None;
-        if is_apart(clause) && clause.scenario.bands.source == BandSource::Unsaid {
+        if clause.scenario.bands.source == BandSource::Unsaid {
             clause.scenario.bands.source.clone_from(source);
         }
     }

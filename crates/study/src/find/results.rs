@@ -32,11 +32,13 @@ pub struct FindAnswer {
     /// Filters of the list that the spectra of the scene do not cover: not looked at.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub filters_left_out: Vec<String>,
+    /// Whether a well would overflow, so that exposures were tried a factor 2 apart.
+    pub exposures_tried: bool,
     /// Cameras that do not, and why.
     pub failed: Vec<Failed>,
     /// Where none meets, what comes nearest.
     pub near: Option<NearMiss>,
-    /// What the reader must know.
+    /// What the reader must know of the best.
     pub warnings: Vec<Warning>,
     /// What it took.
     pub stats: Work,
@@ -89,6 +91,12 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// Whether another is the same camera, lens, filters, frames and exposure.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        (&self.camera, &self.lens, &self.filters, self.frames, self.exposure_s)
+            == (&other.camera, &other.lens, &other.filters, other.frames, other.exposure_s)
+    }
+
     /// Whether it was put to the main job, or to the rule.
     pub(super) fn is_judged(&self) -> bool {
         self.verdict.is_some() || self.of_rule.is_some()

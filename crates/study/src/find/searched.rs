@@ -2,7 +2,7 @@
 
 use super::chosen::{Ranked, Sought};
 use super::judged::{Best, Judged, Nearest};
-use super::results::{Choice, Failed, Misses, Why};
+use super::results::{Misses, Why};
 use super::wheel::{Scene, Wheel, WheelKind, at_frames};
 use crate::{Study, YesNo};
 use hadar::demand::{self, Reason, Skipping, Thing};
@@ -40,36 +40,28 @@ struct Known {
 
 /// What became of a camera.
 pub(super) enum Found {
-    Met(Vec<Ranked>),
+    /// Choices that meet pair by pair; without such the best of which that is open.
+    Sought(Vec<Ranked>),
     Fails(Box<Misses>),
-    Undecided(Box<(Choice, Failed)>),
 }
 
 impl Found {
     /// What becomes of a camera that was searched at several exposures.
     pub(super) fn of_all(all: Vec<Self>) -> Option<Self> {
-        let rank = |found: &Self| match found {
-            Self::Met(_) => (2, 0.0),
-            Self::Undecided(_) => (1, 0.0),
-            Self::Fails(fails) => (0, fails.failed.upper.unwrap_or(-1.0)),
-        };
-        let mut met = Vec::new();
-        let mut best: Option<Self> = None;
+        let mut sought = Vec::new();
+        let mut best: Option<Box<Misses>> = None;
         for found in all {
             match found {
-                Self::Met(choices) => met.extend(choices),
-                other => {
-                    let is_better = best.as_ref().is_none_or(|best| {
-                        let (a, b) = (rank(&other), rank(best));
-                        a.0 > b.0 || (a.0 == b.0 && a.1 > b.1)
-                    });
-                    if is_better {
-                        best = Some(other);
+                Self::Sought(choices) => sought.extend(choices),
+                Self::Fails(fails) => {
+                    let most = |fails: &Misses| fails.failed.upper.unwrap_or(-1.0);
+                    if best.as_ref().is_none_or(|best| most(&fails) > most(best)) {
+                        best = Some(fails);
                     }
                 }
             }
         }
-        if met.is_empty() { best } else { Some(Self::Met(met)) }
+        if sought.is_empty() { best.map(Self::Fails) } else { Some(Self::Sought(sought)) }
     }
 }
 
@@ -182,10 +174,10 @@ impl Search<'_, '_> {
                         (from, is_met) = (k, true);
                         break;
                     }
-                    YesNo::Undecided if open.is_none() => open = Some(best),
-                    _ => {
-                        if nearest.as_ref().is_none_or(|known| best.judged.upper > known.judged.upper) {
-                            nearest = Some(best);
+                    told => {
+                        let known = if told == YesNo::Undecided { &mut open } else { &mut nearest };
+                        if known.as_ref().is_none_or(|known| best.judged.upper > known.judged.upper) {
+                            *known = Some(best);
                         }
                     }
                 }
@@ -195,16 +187,16 @@ impl Search<'_, '_> {
                 break;
             }
         }
+        // What is open is for the main job or the rule to say.
+        if met.is_empty() {
+            met.extend(open);
+        }
         if !met.is_empty() {
             let ranked = met.iter().map(|best| {
                 let choice = wheel.choice(best);
                 Ranked { sought: Sought::of(&choice), choice }
             });
-            return Ok(Found::Met(ranked.collect()));
-        }
-        if let Some(open) = open {
-            let both = (wheel.choice(&open), wheel.failed(Why::Undecided, Some(&open)));
-            return Ok(Found::Undecided(Box::new(both)));
+            return Ok(Found::Sought(ranked.collect()));
         }
         let failed = wheel.failed(
             Why::Distance { filters: tried, frames: most_frames, all_judged, is_cut },

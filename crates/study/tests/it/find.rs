@@ -1,6 +1,6 @@
 //! Cameras that are found: the same without skipping, each met by the main job, and what cannot be asked is said.
 
-use hadar::demand::Skipping;
+use hadar::demand::{Skipping, Thing};
 use hadar::material::Library;
 use hadar_scenario::cameras::StatedCameras;
 use hadar_scenario::{Rule, Scenario, Written};
@@ -114,6 +114,9 @@ fn the_list_is_that_of_going_through_every_choice() {
         assert_eq!(on.met, off.met);
         assert_eq!(on.failed.len(), off.failed.len());
         assert!(on.met, "{supply}");
+        // The bound is that of the distances: few choices are left to be judged.
+        let judged = [&on, &off].map(|answer| answer.stats.computed(Thing::CameraChoices));
+        assert!(judged[0] * 3 < judged[1], "{supply}: {judged:?}");
     }
 }
 

@@ -146,9 +146,9 @@ impl Bands {
     /// # Errors
     /// No filters.
     pub fn from_filters(mut filters: Vec<FilterCurve>) -> Result<Self> {
-        order::ascending(&mut filters, |a| a.support().0);
+        order::ascending(&mut filters, |a| a.range_cm1().0);
         let shaped = filters.into_iter().map(|filter| {
-            let (low, high) = filter.support();
+            let (low, high) = filter.range_cm1();
             let band = Band {
                 center_cm1: 0.5 * (low + high),
                 low_cm1: low,
