@@ -110,6 +110,11 @@ impl Camera {
         var
     }
 
+    /// By how much the variance of a reading grows in a band of a spectrum: an interferogram spreads it.
+    pub(super) fn spread(&self, bands: usize) -> f64 {
+        if self.readout == Readout::FourierTransform { 8.0 * bands as f64 } else { 1.0 }
+    }
+
     /// Every line but the target's own shot noise, band by band, of the sum over the pixels of the view; those of no variance are left out.
     #[must_use]
     pub fn added_noise(&self, bands: &Bands, view: &View) -> Vec<BandLine> {
@@ -122,7 +127,7 @@ impl Camera {
             false => counts,
         };
         // Of every reading: as it is, or as the interferogram spreads it.
-        let spread = if interferometer { 8.0 * bands.len() as f64 } else { 1.0 };
+        let spread = self.spread(bands.len());
         let every = |var: f64| vec![var * spread; bands.len()];
         let pixels = view.extent.pixels();
         let mut lines: Vec<BandLine> = Vec::new();

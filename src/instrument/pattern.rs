@@ -1,19 +1,20 @@
 //! Noise in three dimensions: what readings of one array have in common, beside the noise that each pixel has for itself.
 //!
 //! A reading of pixel (v, h) in frame t is its signal plus independent deviations that differ from pixel to pixel (VH), from row to
-//! row (V), from column to column (H), and from frame to frame of each (TVH, TV, TH, T). A NETD is TVH; the other six are here. Of
-//! the sum over h rows and w columns of an object in one frame the variance is
+//! row (V), from column to column (H), and from frame to frame of each (TVH, TV, TH, T). A NETD is TVH; the other six are here, and what all
+//! readings of a band have in common from calibration to calibration (S), which a cube does not show. Of the sum over h rows and w columns of an object in one frame the variance is
 //!
 //! | term | key | variance, counts² | grows as |
 //! |---|---|---|---|
 //! | σ_VH | `fixed_pattern` | h w σ² | t² |
 //! | σ_V | `row_noise` | h w² σ² | t² |
 //! | σ_H | `column_noise` | h² w σ² | t² |
+//! | σ_S | `offset_drift` | h² w² σ² | t² |
 //! | σ_TV | `temporal_row_noise` | h w² σ² | t |
 //! | σ_TH | `temporal_column_noise` | h² w σ² | t |
 //! | σ_T | `frame_noise` | h² w² σ² | t |
 //!
-//! so that the mean of N frames has σ_TVH²/(Nhw) + σ_VH²/(hw) + σ_TV²/(Nh) + σ_TH²/(Nw) + σ_V²/h + σ_H²/w + σ_T²/N. They are
+//! so that the mean of N frames has σ_TVH²/(Nhw) + σ_VH²/(hw) + σ_TV²/(Nh) + σ_TH²/(Nw) + σ_V²/h + σ_H²/w + σ_T²/N + σ_S². They are
 //! stated in K as the NETD is; the NETD of one pixel holds what changes from frame to frame, so that this counts for an object
 //! alone, and σ = K dN/dT counts of a reading follows at its conditions. A pattern that is a new one after
 //! the time τ has (2τ/t)(1 − (τ/t)(1 − exp(−t/τ))) of its variance left in the mean over t.
@@ -54,27 +55,51 @@ impl Camera {
         if pattern.is_none() {
             return Vec::new();
         }
-        let per_kelvin = per_kelvin(self, pattern.at);
-        let stretch = self.integration_s() / self.noise_exposure_s;
-        let left = pattern.left_after(self.integration_s());
         let [rows, columns] = view.extent.sides();
         let pixels = rows * columns;
         let mut lines = Vec::new();
-        let counts = |term: &&Term| term.is_fixed || view.of_object;
-        for (term, sigma_k) in TERMS.iter().zip(pattern.sigmas_k()).filter(|(term, _)| counts(term)) {
+        for (term, var) in self.pattern_terms().filter(|(term, _)| term.is_fixed || view.of_object) {
             let [of_row, of_column] = term.of_each;
             let alike = (if of_row { 1.0 } else { rows }) * (if of_column { 1.0 } else { columns });
-            let grown = if term.is_fixed { stretch * stretch * left } else { stretch };
-            let var = (sigma_k * per_kelvin).powi(2) * grown * pixels * alike;
             lines.push(BandLine {
                 label: term.label,
-                var_counts: vec![var; bands],
+                var_counts: vec![var * pixels * alike; bands],
                 scaling: if term.is_fixed { "t^2" } else { "t" },
                 source: term.key,
                 with_photons: false,
             });
         }
         lines
+    }
+
+    /// Every term with its variance in the counts of one pixel.
+    fn pattern_terms(&self) -> impl Iterator<Item = (&'static Term, f64)> {
+        let pattern = &self.pattern;
+        let per_kelvin = per_kelvin(self, pattern.at);
+        let stretch = self.integration_s() / self.noise_exposure_s;
+        let left = pattern.left_after(self.integration_s());
+        TERMS.iter().zip(pattern.sigmas_k()).map(move |(term, sigma_k)| {
+            let grown = if term.is_fixed { stretch * stretch * left } else { stretch };
+            (term, (sigma_k * per_kelvin).powi(2) * grown)
+        })
+    }
+
+    /// Variance that the counts of a pixel have in common with its row, with its column and with the whole picture, counts², in each of so many
+    /// bands; what it has for itself is the noise of a camera whose pattern is [`Pattern::of_pixels`].
+    #[must_use]
+    pub fn var_in_common(&self, bands: usize) -> [f64; 3] {
+        let mut common = [0.0; 3];
+        if self.pattern.is_shared() {
+            for (term, var) in self.pattern_terms() {
+                match term.of_each {
+                    [true, false] => common[0] += var,
+                    [false, true] => common[1] += var,
+                    [false, false] => common[2] += var,
+                    [true, true] => {}
+                }
+            }
+        }
+        common.map(|var| var * self.spread(bands))
     }
 
     /// Share of the variance of the electronic noise of a band, at the exposure for which it is stated, that grows as the square of the
@@ -150,7 +175,7 @@ mod tests {
     #[test]
     fn sums_over_drawn_cubes_scatter_as_the_budget_says() {
         let (rows, columns, frames, draws) = (4usize, 3usize, 5usize, 4000);
-        let terms_k = [0.03, 0.02, 0.025, 0.04, 0.035, 0.015];
+        let terms_k = [0.03, 0.02, 0.025, 0.012, 0.04, 0.035, 0.015];
         let stated = PatternFigures::of_sigmas(terms_k.map(Some), None);
         let own = boson();
         let camera = Camera {
@@ -163,12 +188,13 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(3);
         let mut normals =
             |count: usize| -> Vec<f64> { (0..count).map(|_| StandardNormal.sample(&mut random)).collect() };
-        let [vh, v, h, tv, th, t] = terms_k;
+        let [vh, v, h, s, tv, th, t] = terms_k;
         let mut squares = 0.0;
         for _ in 0..draws {
             let (of_pixel, of_row, of_column) = (normals(rows * columns), normals(rows), normals(columns));
             let (rows_t, columns_t, frames_t) =
                 (normals(frames * rows), normals(frames * columns), normals(frames));
+            let offset = normals(1)[0];
             let mut sum = 0.0;
             for frame in 0..frames {
                 for row in 0..rows {
@@ -176,6 +202,7 @@ mod tests {
                         sum += vh * of_pixel[row * columns + column]
                             + v * of_row[row]
                             + h * of_column[column]
+                            + s * offset
                             + tv * rows_t[frame * rows + row]
                             + th * columns_t[frame * columns + column]
                             + t * frames_t[frame];
@@ -217,7 +244,7 @@ mod tests {
             let counting = camera.counting(&bands, &View { extent, of_object: true, ..View::at(None) });
             counting.counts_per_radiance / counting.var_added[0].sqrt()
         };
-        let with = |sigmas_k: [f64; 6], drift_s: Option<f64>, frames: u32| {
+        let with = |sigmas_k: [f64; 7], drift_s: Option<f64>, frames: u32| {
             let own = boson();
             let stated = PatternFigures::of_sigmas(sigmas_k.map(Some), drift_s);
             Camera { frames, pattern: Pattern::new(stated, own.pattern.at), ..own }
@@ -225,16 +252,16 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         for _ in 0..300 {
-            let sigmas_k = [(); 6].map(|()| (draw() - 1.0).max(0.0) * 0.05);
+            let sigmas_k = [(); 7].map(|()| (draw() - 1.0).max(0.0) * 0.05);
             let drift_s = Some(draw().exp()).filter(|_| draw() > 0.0);
             let frames = (draw().abs() * 50.0) as u32 + 1;
             let sides = [1.0 + draw().abs() * 20.0, 1.0 + draw().abs() * 20.0];
             let extent = Extent::new(sides).unwrap();
             let camera = with(sigmas_k, drift_s, frames);
             let here = quality(&camera, extent);
-            let silent = quality(&with([0.0; 6], None, frames), extent);
+            let silent = quality(&with([0.0; 7], None, frames), extent);
             assert!(here <= silent * (1.0 + 1e-12));
-            let white = quality(&with([0.0; 6], None, 1), Extent::ONE);
+            let white = quality(&with([0.0; 7], None, 1), Extent::ONE);
             let root = (extent.pixels() * f64::from(frames)).sqrt();
             assert!(
                 (silent / (white * root) - 1.0).abs() < 1e-12,
@@ -244,7 +271,7 @@ mod tests {
                 assert!(quality(&camera, Extent::new(more).unwrap()) >= here * (1.0 - 1e-12));
             }
             assert!(quality(&with(sigmas_k, drift_s, frames + 1), extent) >= here * (1.0 - 1e-12));
-            for term in 0..6 {
+            for term in 0..7 {
                 let mut noisier = sigmas_k;
                 noisier[term] += 0.01;
                 assert!(quality(&with(noisier, drift_s, frames), extent) <= here);

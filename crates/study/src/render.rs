@@ -22,6 +22,8 @@ use hadar_estimate::decompose::NO_MATERIAL;
 use hadar_scenario::RenderScenario;
 use hadar_simulate::draws::{Draws, generator};
 use hadar_simulate::render::{Emissivity, Part, Rig, View};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 
 /// Lighting below which a surface is none of the surroundings.
@@ -39,6 +41,8 @@ pub struct RenderStudy {
     staged: Staged,
     rig: Rig,
     counting: Counting,
+    /// What each pixel counts for itself, without what rows and columns share.
+    alone: Counting,
 }
 
 /// How a scene is rendered.
@@ -157,6 +161,8 @@ impl RenderStudy {
         let baseline_m = scenario.stereo.as_ref().map_or(BASELINE_M, |stereo| stereo.baseline_m);
         let rig = stage::rig(&scenario.scene, &camera, baseline_m, &bands, &place)?;
         let counting = camera.counting(&bands, &OpticalView::default());
+        let own = Camera { pattern: camera.pattern.of_pixels(), ..camera.clone() };
+        let alone = own.counting(&bands, &OpticalView::default());
         let surfaces = || staged.scene.surfaces().iter().map(|surface| surface.name.as_str());
         for (i, category) in scenario.categories.iter().enumerate() {
             if let Some(j) = category.surfaces.iter().position(|one| surfaces().all(|name| name != one)) {
@@ -164,7 +170,7 @@ impl RenderStudy {
                 return Err(error.at(scenario.place(&format!("category[{i}].surfaces[{j}]"))));
             }
         }
-        let study = Self { scenario, camera, bands, staged, rig, counting };
+        let study = Self { scenario, camera, bands, staged, rig, counting, alone };
         let (materials, _) = study.materials();
         for (i, category) in study.scenario.categories.iter().enumerate() {
             let is_there = |one: &String| materials.iter().any(|(name, _)| name == one);
@@ -179,6 +185,12 @@ impl RenderStudy {
             }
         }
         Ok(study)
+    }
+
+    /// Its camera.
+    #[must_use]
+    pub fn camera(&self) -> &Camera {
+        &self.camera
     }
 
     /// Its bands, as the camera receives them.
@@ -287,8 +299,19 @@ impl RenderStudy {
         draw: Option<(u64, u64)>,
     ) -> Result<Picture> {
         let (shape, surfaces) = (view.shape(), self.staged.scene.surfaces().len());
-        let var: Vec<f64> = (0..shape.bands()).map(|band| self.counting.var_added(band)).collect();
-        let noisy = !matches!(camera_noise(&self.counting, shape.bands()), NoiseVariance::None);
+        let var: Vec<f64> = (0..shape.bands()).map(|band| self.alone.var_added(band)).collect();
+        let noisy = !matches!(camera_noise(&self.alone, shape.bands()), NoiseVariance::None);
+        // A pattern of one array in every band: what a row, a column and the picture have in common.
+        let [of_row, of_column, of_all] = self.camera.var_in_common(shape.bands()).map(f64::sqrt);
+        let mut alike = vec![0.0; shape.row_len()];
+        if let (Some((seed, side)), true) = (draw, of_column.max(of_all) > 0.0) {
+            let mut rng = generator(seed, (side << 32) + (1 << 31));
+            let all = normals(&mut rng, of_all, shape.bands());
+            for pixel in alike.chunks_mut(shape.bands()) {
+                let own = normals(&mut rng, of_column, shape.bands());
+                pixel.iter_mut().zip(all.iter().zip(own)).for_each(|(sum, (all, own))| *sum = all + own);
+            }
+        }
         let mut counts = vec![0.0_f32; shape.len()];
         parallel::fill(&mut counts, shape.row_len(), Vec::new, |row_of: &mut Vec<f64>, row, out| {
             view.rows_into(Part::Total, self.counting.counts_per_radiance, row..row + 1, row_of);
@@ -301,6 +324,12 @@ impl RenderStudy {
                     }
                     draws.draw_into(&mut rng, pixel);
                 }
+                if of_row > 0.0 {
+                    let own = normals(&mut rng, of_row, shape.bands());
+                    let all = row_of.iter_mut().zip(own.iter().cycle());
+                    all.for_each(|(count, own)| *count += own);
+                }
+                row_of.iter_mut().zip(&alike).for_each(|(count, common)| *count += common);
             }
             out.iter_mut().zip(row_of.iter()).for_each(|(to, from)| *to = *from as f32);
             Ok::<(), Error>(())
@@ -375,6 +404,11 @@ fn surroundings(view: &View, surfaces: usize) -> (Vec<usize>, f64) {
         .map(|(lit, _)| left_out(lit))
         .fold(0.0, f64::max);
     (chosen, largest)
+}
+
+/// So many normal numbers of one deviation.
+fn normals(rng: &mut impl Rng, sigma: f64, count: usize) -> Vec<f64> {
+    StandardNormal.sample_iter(rng).take(count).map(|z: f64| sigma * z).collect()
 }
 
 fn at_nodes(emissivity: &Emissivity, nodes: usize) -> Vec<f64> {

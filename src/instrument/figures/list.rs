@@ -202,6 +202,11 @@ macro_rules! every_figure {
             "\"14 mK\"",
             "Deviation from column to column that stays (sigma_H), as row_noise.",
             "noise of pixels, rows, columns and frames"),
+        row("offset_drift", "drift of the offset", Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.offset_k)),
+            "\"50 mK\"",
+            "Deviation that all readings of a band share since it was calibrated, as fixed_pattern: neither pixels nor frames average it away. \
+             For a gain that drifts make gain unknown, with its deviation as a prior.",
+            "noise of pixels, rows, columns and frames"),
         row("temporal_row_noise", "temporal row noise",
             Kind::Quantity(Dimension::TemperatureDifference, FROM_ZERO, slot!(pattern.temporal_row_k)), "\"5 mK\"",
             "Deviation from row to row that is another one in every frame (sigma_TV), beside the NETD; 0 where it is not stated, which is a \

@@ -12,6 +12,8 @@ pub struct PatternFigures {
     pub row_k: Option<f64>,
     /// σ_H, from column to column, K.
     pub column_k: Option<f64>,
+    /// Of all readings of a band, from calibration to calibration, K.
+    pub offset_k: Option<f64>,
     /// σ_TV, from row to row and frame to frame, K.
     pub temporal_row_k: Option<f64>,
     /// σ_TH, from column to column and frame to frame, K.
@@ -37,18 +39,20 @@ const fn term(label: &'static str, key: &'static str, is_fixed: bool, of_each: [
 }
 
 /// In the order of the fields.
-pub(super) const TERMS: [Term; 6] = [
+pub(super) const TERMS: [Term; 7] = [
     term("fixed pattern", "fixed_pattern", true, [true, true]),
     term("row noise", "row_noise", true, [true, false]),
     term("column noise", "column_noise", true, [false, true]),
+    term("offset drift", "offset_drift", true, [false, false]),
     term("temporal row noise", "temporal_row_noise", false, [true, false]),
     term("temporal column noise", "temporal_column_noise", false, [false, true]),
     term("frame noise", "frame_noise", false, [false, false]),
 ];
 
 impl PatternFigures {
-    pub(super) const fn sigmas_k(&self) -> [Option<f64>; 6] {
-        [self.pixel_k, self.row_k, self.column_k, self.temporal_row_k, self.temporal_column_k, self.frame_k]
+    pub(super) const fn sigmas_k(&self) -> [Option<f64>; 7] {
+        let Self { pixel_k, row_k, column_k, offset_k, .. } = *self;
+        [pixel_k, row_k, column_k, offset_k, self.temporal_row_k, self.temporal_column_k, self.frame_k]
     }
 
     /// Keys of those of one kind, fixed or from frame to frame, that are not stated.
@@ -59,10 +63,10 @@ impl PatternFigures {
     }
 
     pub(super) const fn of_sigmas(
-        [pixel_k, row_k, column_k, temporal_row_k, temporal_column_k, frame_k]: [Option<f64>; 6],
+        [pixel_k, row_k, column_k, offset_k, temporal_row_k, temporal_column_k, frame_k]: [Option<f64>; 7],
         drift_s: Option<f64>,
     ) -> Self {
-        Self { pixel_k, row_k, column_k, temporal_row_k, temporal_column_k, frame_k, drift_s }
+        Self { pixel_k, row_k, column_k, offset_k, temporal_row_k, temporal_column_k, frame_k, drift_s }
     }
 }
 
@@ -89,14 +93,21 @@ impl Pattern {
         self.stated.unstated(is_fixed)
     }
 
-    pub(super) fn sigmas_k(&self) -> [f64; 6] {
+    pub(super) fn sigmas_k(&self) -> [f64; 7] {
         self.stated.sigmas_k().map(Option::unwrap_or_default)
+    }
+
+    /// What of it each pixel has for itself.
+    #[must_use]
+    pub fn of_pixels(&self) -> Self {
+        let PatternFigures { pixel_k, drift_s, .. } = self.stated;
+        Self { stated: PatternFigures { pixel_k, drift_s, ..PatternFigures::default() }, at: self.at }
     }
 
     /// Whether there is none.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.sigmas_k() == [0.0; 6]
+        self.sigmas_k() == [0.0; 7]
     }
 
     /// Whether pixels share some of it.
@@ -108,7 +119,7 @@ impl Pattern {
     /// Whether there is some that no number of frames averages away.
     #[must_use]
     pub fn has_fixed(&self) -> bool {
-        self.stated.drift_s.is_none() && self.sigmas_k()[..3].iter().any(|sigma_k| *sigma_k > 0.0)
+        self.stated.drift_s.is_none() && self.sigmas_k()[..4].iter().any(|sigma_k| *sigma_k > 0.0)
     }
 
     /// Share of the variance of a pattern that is left in the mean over a time, s.

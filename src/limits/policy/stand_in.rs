@@ -3,7 +3,8 @@
 //!
 //! The stand-in has the emissivity e(ν) + δ, the same δ at all wavenumbers, and the temperature T; it is lit by V_k from objects of T_k. In all
 //! these it may be anywhere in a box. The person has the temperature T′ and lighting V′ that make it most like the stand-in, each
-//! as it is where the scene says that it is known. D is the largest nearest statistical distance over the box: no test tells a
+//! as it is where the scene says that it is known. A person lit as the stand-in is is one too, also where objects light by different amounts and
+//! the range that all of them have in common does not hold that. D is the largest nearest statistical distance over the box: no test tells a
 //! stand-in within these tolerances from a person more often than Φ(D).
 //!
 //! **Attained**: the largest distance at corners of boxes. **Proved**: a bound from above, box by box. With chords of Planck's law for
@@ -87,6 +88,8 @@ struct Piece {
 struct Search<'a, 'b> {
     scene: &'b EnvelopeScene<'a>,
     solver: NearestSolver<'a>,
+    /// Of persons lit as the stand-in is, where its own lighting may be one that persons of the scene's range do not have.
+    lit_alike: Option<NearestSolver<'a>>,
     objects: usize,
     corners: HashMap<Vec<u64>, Corner>,
 }
@@ -115,8 +118,16 @@ pub fn farthest(
     let known = scene.unknowns.nuisances().iter().copied();
     let held = known.filter(|nuisance| matches!(nuisance, Nuisance::Temperature | Nuisance::Lighting));
     let unknowns = Unknowns::new(held)?.lighting_total(scene.unknowns.known_lighting_total())?;
+    let [dim, bright] = scene.range.lighting;
+    let within = ranges.lighting().iter().all(|[low, high]| dim <= *low && *high <= bright);
+    let lit_alike = if unknowns.contains(Nuisance::Lighting) && !within {
+        let alike = unknowns.nuisances().iter().copied().filter(|nuisance| *nuisance != Nuisance::Lighting);
+        Some(NearestSolver::new(scene.bands, scene.surroundings, Unknowns::new(alike)?, scene.range))
+    } else {
+        None
+    };
     let solver = NearestSolver::new(scene.bands, scene.surroundings, unknowns, scene.range);
-    let mut search = Search { scene, solver, objects, corners: HashMap::new() };
+    let mut search = Search { scene, solver, lit_alike, objects, corners: HashMap::new() };
     let mut best: Option<(f64, Vec<f64>)> = None;
     let mut waiting = BestFirst::new(effort.boxes as u64);
     let mut parts = vec![[low, high]];
@@ -194,7 +205,11 @@ impl Search<'_, '_> {
             let offset = place.first().copied().unwrap_or(0.0);
             let emissivity: Vec<f64> = self.scene.emissivity.iter().map(|e| e + offset).collect();
             let counting = self.scene.counting;
-            let found = self.solver.with_counting(&emissivity, self.scene.alternative, &state, counting)?;
+            let mut found = self.solver.with_counting(&emissivity, self.scene.alternative, &state, counting)?;
+            if let Some(solver) = &mut self.lit_alike {
+                let alike = solver.with_counting(&emissivity, self.scene.alternative, &state, counting)?;
+                found = if alike.distance < found.distance { alike } else { found };
+            }
             let (bands, surroundings) = (self.scene.bands, self.scene.surroundings);
             let counts = |emissivity: &[f64], state: &State| {
                 let mut counts = bands.weigh(&surroundings.signal(emissivity, state));

@@ -82,7 +82,7 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),
         "fixed_pattern" => {
             return format!(
-                "correction leaves no pattern of pixels, rows and columns that frames do not average away ({} not stated)",
+                "correction leaves no pattern of pixels, rows and columns, and no offset, that frames do not average away ({} not stated)",
                 taken.trim_start_matches("0 (").trim_end_matches(')')
             );
         }

@@ -7,7 +7,8 @@
 //!
 //! As all verdicts of a rule it is about what one pixel counts, in all bands and frames: shape, motion and many pixels tell more.
 //!
-//! The person's lighting is within the envelope as the stand-in's is, and its temperature where that is known: a stand-in outside is told.
+//! The person's lighting is within the envelope as the stand-in's is (of objects with ranges of their own: within what these have in common, or as the
+//! stand-in is lit), and its temperature where that is known: a stand-in outside is told.
 //!
 //! Proved is a ΔT a little smaller, at which the bound from above is no more than the demand. Cameras are taken from both ends of the
 //! distance, at one of which they count most, with the least noise of the envelope and with uncertain figures on all sides, as far as the
@@ -19,7 +20,7 @@ use super::uncertainty::Uncertain;
 use super::{Kind, NotInForce, RuleStudy};
 use crate::{Study, Surface, Warning};
 use hadar::error::{Error, Result};
-use hadar::fisher::Nuisance;
+use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
@@ -119,8 +120,8 @@ struct Before<'a> {
     envelope: &'a Envelope,
     required: f64,
     person_k: [f64; 2],
-    /// Of every object.
-    person_lighting: [f64; 2],
+    /// In common to every object; `None` where there is none.
+    person_lighting: Option<[f64; 2]>,
     temperature_k: f64,
 }
 
@@ -337,11 +338,8 @@ impl<'a> Before<'a> {
         let lighting = ranges.lighting().iter();
         let person_lighting =
             lighting.fold(study.range.lighting, |[a, b], [low, high]| [a.max(*low), b.min(*high)]);
-        if person_lighting[0] > person_lighting[1] {
-            let found = "the objects have no lighting in common, within which a person could be";
-            let error = Error::malformed(found, "write one range of lighting for all objects");
-            return Err(error.at(study.scenario.place("envelope.lighting")));
-        }
+        // Without one a person is lit as the stand-in is.
+        let person_lighting = Some(person_lighting).filter(|[low, high]| low <= high);
         Ok(Self { study, stand_in, counting, envelope, required, person_k, person_lighting, temperature_k })
     }
 
@@ -366,14 +364,20 @@ impl<'a> Before<'a> {
         let ranges = study.ranges(self.envelope)?;
         let around = [self.temperature_k - temperature_k, self.temperature_k + temperature_k];
         let ranges = Ranges::new(around, ranges.lighting().to_vec(), ranges.environment_k().to_vec())?;
+        let own = study.unknowns.nuisances().iter().copied();
+        let unknowns = match self.person_lighting {
+            Some(_) => study.unknowns.clone(),
+            None => Unknowns::new(own.filter(|nuisance| *nuisance != Nuisance::Lighting))?,
+        };
+        let lighting = self.person_lighting.unwrap_or(study.range.lighting);
         let scene = EnvelopeScene {
             bands: &study.bands,
             surroundings: &study.surroundings,
             emissivity: &self.stand_in.emissivity,
             alternative: &study.target.emissivity,
             counting: &self.counting,
-            unknowns: &study.unknowns,
-            range: StateRange { temperature_k: self.person_k, lighting: self.person_lighting, ..study.range },
+            unknowns: &unknowns,
+            range: StateRange { temperature_k: self.person_k, lighting, ..study.range },
         };
         farthest(&scene, offsets, &ranges, effort)
     }

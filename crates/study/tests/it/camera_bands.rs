@@ -244,7 +244,7 @@ fn what_is_assumed_of_a_camera_of_ones_own_is_said() {
     // Whether the noise was measured through the same optics nobody says.
     assert!(found.contains(&("optics_efficiency", true)), "{found:?}");
     assert!(!assumed(&format!("{own}readout = \"simultaneous\"")).iter().any(|one| one.0 == "frame_rate"));
-    let stated = "optics_efficiency = 0.9\nflicker_fraction = 0.1\nfixed_pattern = \"20 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\nframe_rate = \"60 Hz\"\nreadout = \"sequential\"\n\
+    let stated = "optics_efficiency = 0.9\nflicker_fraction = 0.1\nfixed_pattern = \"20 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\noffset_drift = \"0 mK\"\nframe_rate = \"60 Hz\"\nreadout = \"sequential\"\n\
                   full_well = 1e9\nquantisation_bits = 14\nspectral_range = [\"8 um\", \"14 um\"]\nnetd_temperature = \"30 degC\"\n\
                   netd_f_number = 1.0\nnetd_optics_efficiency = 0.9\nquantum_efficiency = 0.8\ndark_rate = \"0 1/s\"\nread_noise = 0\nnetd_pixel = \"12 um\"\nnoise_exposure = \"8 ms\"\n";
     assert_eq!(assumed(&format!("{own}{stated}")), []);

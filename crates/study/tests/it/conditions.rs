@@ -34,6 +34,7 @@ const STATED: &[[&str; 3]] = &[
     ["camera", "fixed_pattern", "\"20 mK\""],
     ["camera", "row_noise", "\"10 mK\""],
     ["camera", "column_noise", "\"10 mK\""],
+    ["camera", "offset_drift", "\"10 mK\""],
     ["camera", "pattern_drift", "\"1 min\""],
     ["camera", "dark_rate", "\"1e6 1/s\""],
     ["camera", "read_noise", "100"],
@@ -68,6 +69,7 @@ const OTHERS: &[(&str, &str, &[&str])] = &[
     ("camera", "fixed_pattern", &["\"0 mK\"", "\"100 mK\""]),
     ("camera", "row_noise", &["\"0 mK\"", "\"100 mK\""]),
     ("camera", "column_noise", &["\"0 mK\"", "\"100 mK\""]),
+    ("camera", "offset_drift", &["\"0 mK\"", "\"100 mK\""]),
     ("camera", "pattern_drift", &["\"1 ms\"", "\"1 h\""]),
     ("camera", "temporal_row_noise", &["\"0 mK\"", "\"100 mK\""]),
     ("camera", "temporal_column_noise", &["\"0 mK\"", "\"100 mK\""]),
@@ -173,7 +175,7 @@ fn about(table: &str, key: &str) -> Vec<String> {
     let table = table.trim_matches(['[', ']']);
     // One condition says all of a kind that are not stated.
     let of_kind = match key {
-        "row_noise" | "column_noise" => "fixed_pattern",
+        "row_noise" | "column_noise" | "offset_drift" => "fixed_pattern",
         "temporal_row_noise" | "temporal_column_noise" => "frame_noise",
         key => key,
     };

@@ -11,6 +11,7 @@ mod keys;
 mod object;
 mod ordered;
 mod published;
+mod rendered;
 mod rule_air;
 mod scenario;
 mod scenario_messages;
