@@ -14,6 +14,7 @@
 
 pub mod caps;
 pub mod elasticity;
+pub mod encounter;
 pub mod envelope;
 pub mod motion;
 pub mod practice;

@@ -232,7 +232,7 @@ fn dispatch(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Size(args) => size::run(args, global),
         Command::Identify(args) => identify::run(args, global),
         Command::Find(args) => find::run(args, global),
-        Command::Rule(args) => rule::run(args, global),
+        Command::Rule(args) => rule::run(args, global, &read_again),
         Command::Range(args) => range::run(args, global),
         Command::Decompose(args) => decompose::run(args, global),
         Command::Library(args) => library::run(args, global),

@@ -5,16 +5,18 @@
 use super::figures::Plot;
 use super::folder::{Folder, Held};
 use super::html;
+use super::json;
 use super::manifest::Provenance;
 use super::parquet;
 use super::plot::{Drawn, Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar::words::visible;
 use hadar_study::{Condition, Warning};
 use rayon::prelude::*;
-use std::path::PathBuf;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 /// The file of what a verdict rests on.
 pub(crate) const CONDITIONS: &str = "conditions.csv";
@@ -32,6 +34,10 @@ pub struct Bundle {
     warnings: Vec<Warning>,
     /// What was asked, as a file that asks it again.
     asked: Option<(&'static str, String)>,
+    /// What stands before everything else on the page, as HTML.
+    first: String,
+    /// A statement about all other files, without its subjects.
+    statement: Option<(&'static str, &'static str, Value)>,
 }
 
 /// What a file holds.
@@ -82,6 +88,16 @@ impl Bundle {
         let text = text.into();
         self.add(name, text.clone());
         self.asked = Some((name, text));
+    }
+
+    /// What stands before everything else on the page, as HTML.
+    pub(crate) fn begin_with(&mut self, html: String) {
+        self.first = html;
+    }
+
+    /// Adds a statement whose `subject` will be all other files of the report, the one that it is about first.
+    pub(crate) fn add_statement(&mut self, name: &'static str, about: &'static str, statement: Value) {
+        self.statement = Some((name, about, statement));
     }
 
     /// Adds a table as CSV.
@@ -190,6 +206,18 @@ impl Bundle {
                 .push((ANSWER.into(), format!("{}\n", visible(about.answer.trim_end())).into_bytes().into()));
         }
         files.push(("report.html".into(), page.into_bytes().into()));
+        if let Some((name, about, statement)) = &self.statement {
+            let mut subject = Vec::with_capacity(files.len());
+            for (name, held) in &files {
+                let hash = held.sha256().map_err(|error| Error::file("read", Path::new(name), error.kind()))?;
+                subject.push(json!({ "name": name, "digest": { "sha256": hash } }));
+            }
+            // What it is about before what belongs to it.
+            subject.sort_by_key(|one| one["name"] != *about);
+            let mut statement = statement.clone();
+            statement["subject"] = subject.into();
+            files.push(((*name).to_owned(), (json::pretty(&statement)? + "\n").into_bytes().into()));
+        }
         folder.write(&files, about.provenance, about.inputs)?;
         Ok(files.len() + 1)
     }
@@ -210,6 +238,7 @@ impl Bundle {
             said: figure.subtitle(),
         });
         html::page(&html::Page {
+            first: &self.first,
             title: self.title.as_deref(),
             answer: about.answer,
             drawings: drawings.collect(),

@@ -53,7 +53,7 @@ impl From<Vec<u8>> for Held {
 }
 
 impl Held {
-    fn sha256(&self) -> io::Result<String> {
+    pub(crate) fn sha256(&self) -> io::Result<String> {
         match self {
             Self::Bytes(bytes) => Ok(manifest::sha256(bytes)),
             Self::File(path) => {

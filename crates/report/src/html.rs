@@ -5,7 +5,7 @@
 //! of reading. It is set for a telephone, a screen and paper by one style sheet.
 
 mod answer;
-mod element;
+pub(crate) mod element;
 mod table;
 
 use self::element::{escape, table, wide};
@@ -32,6 +32,8 @@ pub(crate) struct Drawing<'a> {
 /// What is on a page.
 pub(crate) struct Page<'a> {
     pub(crate) title: Option<&'a str>,
+    /// What stands before everything else, as HTML; nothing where empty.
+    pub(crate) first: &'a str,
     /// The answer, as it is printed.
     pub(crate) answer: &'a str,
     pub(crate) drawings: Vec<Drawing<'a>>,
@@ -47,7 +49,7 @@ pub(crate) struct Page<'a> {
 pub(crate) fn page(page: &Page<'_>) -> String {
     let answer = answer::Answer::of(page.answer);
     let title = escape(page.title.unwrap_or(words::TITLE));
-    let mut sections = vec![("answer", "Answer", lines(answer.details))];
+    let mut sections = vec![("first", words::FIRST, page.first.to_owned()), ("answer", "Answer", lines(answer.details))];
     let pictures: String =
         page.drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
     sections.push(("pictures", "Pictures", pictures));

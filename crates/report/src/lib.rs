@@ -12,6 +12,7 @@ pub mod classes;
 pub mod cube_format;
 pub mod decompose;
 pub mod diff;
+mod document;
 pub mod explain;
 pub mod figures;
 pub mod find;

@@ -7,6 +7,7 @@ mod stand_in;
 
 pub use crate::words::rule::{check, sources, stand_in, tests, text};
 pub use record::{agreement, parsed, record};
+pub(crate) use record::STATEMENT;
 pub use stand_in::stand_in_bundle;
 
 use super::bundle::Bundle;
@@ -19,7 +20,6 @@ use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
-use hadar::words::visible;
 use hadar_scenario::rule::Verdict;
 use hadar_study::companion::Companion;
 use hadar_study::{CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning};
@@ -48,11 +48,11 @@ pub struct Output<'a> {
 pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> Result<Bundle> {
     let title = certificate::title(answer);
     let mut bundle = Bundle::about(Some(&title));
-    bundle.add("certificate.md", visible(&certificate::page(study, answer, provenance)).into_owned());
+    bundle.add("certificate.md", certificate::page(study, answer, provenance));
+    bundle.begin_with(certificate::first_page(answer, provenance).to_html());
     let data = record::text(&record::record(study, answer, provenance)?)?;
-    let statement = record::statement(answer, provenance, &data);
     bundle.add(record::NAME, data);
-    bundle.add("certificate.intoto.json", record::text(&statement)?);
+    bundle.add_statement(record::STATEMENT, record::NAME, record::statement(answer, provenance));
     bundle.add_asked("rule.toml", study.rule().to_toml());
     // What is filled in has no source: only the rule itself, word by word, says where its figures are from.
     bundle.add(AS_READ, study.rule().text());

@@ -11,9 +11,11 @@ use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::path::Path;
 
+mod demands;
 mod verified;
 
 pub use crate::words::verify::text;
+pub use demands::Demands;
 pub use verified::{Difference, Verified};
 
 /// Files that ask again what a report answers.
@@ -62,7 +64,7 @@ impl Stored {
     }
 
     /// Holds the report in `folder` against the one that its command has `made` elsewhere, of the inputs `now`. `asked` says whether the
-    /// file of the question was found, and with which hash.
+    /// file of the question was found, and with which hash; the statement of the folder is held against the `demands`.
     ///
     /// # Errors
     /// A folder that cannot be read; a command that made no report.
@@ -73,6 +75,7 @@ impl Stored {
         now: &[Input],
         asked: Option<&str>,
         commit: &str,
+        demands: &Demands,
     ) -> Result<Verified> {
         let unread = |error: std::io::Error| Error::file("read the report", made, error.kind());
         let Some(again) = Manifest::in_folder(made).map_err(unread)? else {
@@ -88,6 +91,8 @@ impl Stored {
         let inputs = self.compare_inputs(now, asked, &mut differences);
         self.compare_files(folder, &again, &mut differences)?;
         let strangers = self.strangers(folder)?;
+        let (unmet, signed_by) = if demands.is_none() { Default::default() } else { demands.unmet(folder)? };
+        differences.extend(unmet);
         let is_none = |difference: &Difference| matches!(difference, Difference::Program { .. });
         Ok(Verified {
             verified: differences.iter().all(is_none),
@@ -96,6 +101,7 @@ impl Stored {
             command: self.provenance().command_line(),
             differences,
             strangers,
+            signed_by,
             question_compared: self.asked.is_none() || asked.is_some(),
         })
     }

@@ -52,7 +52,9 @@ pub(super) fn read_with(
             && uncertain(row, &entry)?
         {
             // Its value alone, if it has one of its own.
-            if let Some(value) = entry.section_of(&UNCERTAIN)?.get("value") {
+            let table = entry.section_of(&UNCERTAIN)?;
+            let value = ["value", "at_most", "at_least"].into_iter().find_map(|key| table.get(key));
+            if let Some(value) = value {
                 let number = match row.kind {
                     Kind::Quantity(dimension, allowed, _) => value.quantity_as(dimension, allowed)?,
                     Kind::Number(allowed, _) | Kind::Efficiency(allowed, _) => {

@@ -5,6 +5,7 @@ use serde::ser::{SerializeMap, Serializer};
 use std::collections::BTreeMap;
 use toml::Value;
 
+use super::rule::{Known, Uncertainty};
 use super::source::{Source, dotted};
 use hadar::units::Dimension;
 
@@ -220,18 +221,30 @@ impl Entries {
         }
     }
 
-    /// The same, each of these keys with the standard uncertainty of its value beside it.
-    pub(super) fn with_uncertainty(mut self, uncertainty: &BTreeMap<&'static str, f64>) -> Self {
+    /// The same, each of these keys with how well its value is known beside it.
+    pub(super) fn with_uncertainty(mut self, uncertainty: &BTreeMap<&'static str, Known>) -> Self {
         for entry in &mut self.entries {
-            let Some(u) = uncertainty.get(entry.key) else { continue };
+            let Some(known) = uncertainty.get(entry.key) else { continue };
             let mut both = toml::Table::new();
-            both.insert("value".to_owned(), entry.value.clone());
-            let difference = match entry.dimension {
-                Some(Dimension::Temperature) => Some(Dimension::TemperatureDifference),
-                other => other,
+            match known {
+                Known::AtMost => both.insert("at_most".to_owned(), entry.value.clone()),
+                Known::AtLeast => both.insert("at_least".to_owned(), entry.value.clone()),
+                Known::Within(_) => both.insert("value".to_owned(), entry.value.clone()),
             };
-            let u = difference.map_or_else(|| Value::from(*u), |dimension| dimension.format(*u).into());
-            both.insert("u".to_owned(), u);
+            if let Known::Within(Uncertainty { sigma, rectangular, same }) = known {
+                let difference = match entry.dimension {
+                    Some(Dimension::Temperature) => Some(Dimension::TemperatureDifference),
+                    other => other,
+                };
+                let u = difference.map_or_else(|| Value::from(*sigma), |dimension| dimension.format(*sigma).into());
+                both.insert("u".to_owned(), u);
+                if *rectangular {
+                    both.insert("law".to_owned(), "rectangular".into());
+                }
+                if let Some(same) = same {
+                    both.insert("same".to_owned(), same.as_str().into());
+                }
+            }
             entry.value = Value::Table(both);
         }
         self

@@ -15,7 +15,7 @@ mod stand_in;
 mod stop;
 mod test;
 
-pub use camera::RuleCamera;
+pub use camera::{Known, RuleCamera, Uncertainty};
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::Clause;
 pub use demand::{Demand, DepthDemand, DepthObject};
@@ -118,6 +118,7 @@ impl Rule {
             return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
         }
         let (scenario, clauses) = clause::read(root)?;
+        camera::check(&cameras, |index, key| scenario.place(&format!("{}.{key}", cameras[index].key)))?;
         let tests = test::read(root, &cameras, &clauses)?;
         let sources = citation::read(root)?;
         let stand_in = root.read("stand_in", StandInSpec::read)?;

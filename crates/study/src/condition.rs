@@ -14,6 +14,7 @@
 //! | `[alternatives]` ranges | all that physics allows, the worst; where a range that was set decides, [`Condition::Range`] |
 //! | `gain`, `environment-temperature` among `unknown.nuisances` | they are known: [`Condition::Calibrated`], [`Condition::SurroundingsKnown`] |
 //! | `requirement.speed` | nothing moves while frames and bands are read: [`Condition::StillScene`] |
+//! | `stop.crossing_speed` | nothing but the vehicle moves: [`Condition::NobodyCrosses`]; of who crosses [`Condition::InView`] where the view is not stated |
 //! | `requirement.time` | the decision may wait: [`Condition::StillScene`], at a speed [`Condition::Waits`] |
 //! | reliability | d = 1, which the sentence tells |
 
@@ -212,6 +213,13 @@ conditions! {
     } = "photon-bunching", Assumed, "camera.photon_bunching";
     /// Filters neither shine nor throw the sensor's light back.
     NoFilterLight = "no-filter-light", Assumed, "camera.sensor_temperature";
+    /// Nothing but the vehicle moves: what is looked for neither crosses nor leaves the view.
+    NobodyCrosses = "nobody-crosses", Proviso, "stop.crossing_speed";
+    /// Who crosses is in the view until the decision.
+    InView {
+        /// How far beside the axis that is, rad.
+        bearing_rad: f64,
+    } = "in-view", Assumed, "camera.field_of_view";
     /// Filters pass at the angles of the beam what they pass at right angles.
     FilterAngle {
         /// Whether they stand before the lens, so that the target must be near the axis.
@@ -386,6 +394,7 @@ impl Condition {
             Self::Sampled { width_cm1 } => Taken::Number(*width_cm1),
             Self::ErrorsCorrelated { length_cm1 } => Taken::Number(*length_cm1),
             Self::InOnePixel { fill } => Taken::Number(*fill),
+            Self::InView { bearing_rad } => Taken::Number(*bearing_rad),
             Self::FilterAngle { sine, .. } => Taken::Number(*sine),
             Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
@@ -397,6 +406,7 @@ impl Condition {
             Self::NoLimit
             | Self::FillsPixel { .. }
             | Self::NoFilterLight
+            | Self::NobodyCrosses
             | Self::NoAir
             | Self::EmissivityKnown
             | Self::OneScene

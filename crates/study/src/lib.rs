@@ -88,10 +88,10 @@ pub use looked_up::Study;
 pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
-    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer,
+    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraBeforeClause, CameraVerdict, Certified, ClauseAnswer, CrossingResult,
     Definition, Drawn, EmissivityError, EnvelopeResult, Extent, Fixes, Found, IdealCamera, LightTime,
     LimitingScene, Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict,
-    Neighbourhood, NotIdentifiable, NotInForce, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    Neighbourhood, NotIdentifiable, NotInForce, NotPassed, Outcome, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
     RuleStudy, SafetyOfRule, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told,
     WhoMeets, WithoutPlaceholders,
 };

@@ -25,10 +25,12 @@ const UNLIT: f64 = 1e-9;
 const SAME: f64 = 1e-9;
 
 /// What the camera and the scene are asked about.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Circumstances {
     /// Speed of the vehicle, m s⁻¹, if one is demanded.
     pub(crate) speed_m_s: Option<f64>,
+    /// What nobody stated of where the target is in the picture.
+    pub(crate) path: Option<Condition>,
     /// The farthest target, m, where that is known.
     pub(crate) distance_m: Option<f64>,
     /// Whether a rule asks, whose own text then stands above what is set over it.
@@ -189,7 +191,8 @@ impl Study {
         let (distance_m, is_timed) =
             (self.scenario.target.distance_m, self.scenario.requirement.time_s.is_some());
         let unlit = 1.0 - self.state.lighting.iter().sum::<f64>();
-        let asked = Circumstances { speed_m_s, distance_m, of_rule: false, is_timed, unlit };
+        let path = speed_m_s.map(|_| Condition::NobodyCrosses);
+        let asked = Circumstances { speed_m_s, path, distance_m, of_rule: false, is_timed, unlit };
         found.extend(self.of_scene(camera, asked));
         found
     }
@@ -214,6 +217,7 @@ impl Study {
     pub(crate) fn of_scene(&self, camera: &Camera, asked: Circumstances) -> Vec<Condition> {
         let scenario = &self.scenario;
         let mut found = meanwhile(camera, self.bands.len(), asked.speed_m_s, asked.is_timed);
+        found.extend(asked.path);
         if scenario.requirement.by != DistanceKind::Nearest {
             found.push(Condition::NoLimit);
         }
@@ -400,12 +404,13 @@ fn settings(set: &[Setting], of_rule: bool) -> impl Iterator<Item = Condition> {
 pub(crate) fn of_measured(
     figures: Vec<Condition>,
     (camera, bands): (&Camera, usize),
-    (speed_m_s, is_timed): (Option<f64>, bool),
+    (speed_m_s, path, is_timed): (Option<f64>, Option<Condition>, bool),
     set: &[Setting],
     met: bool,
 ) -> Vec<Condition> {
     let mut found = figures;
     found.extend(meanwhile(camera, bands, speed_m_s, is_timed));
+    found.extend(path);
     found.extend(settings(set, true));
     found.retain(|one| one.counts(met));
     hardest_first(&mut found);

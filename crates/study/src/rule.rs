@@ -21,6 +21,7 @@ mod results;
 mod safety;
 mod search;
 mod stand_in;
+mod standing;
 mod temperature;
 mod uncertainty;
 
@@ -32,12 +33,13 @@ pub use clauses::{
 pub use expected::{TestCheck, TestResult, Told};
 pub use not_in_force::NotInForce;
 pub use results::{
-    ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime,
+    ApproachResult, CameraVerdict, Certified, CrossingResult, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime,
     LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult, WhoMeets,
     WithoutPlaceholders,
 };
 pub use safety::SafetyOfRule;
 pub use stand_in::{StandIn, StandInAnswer, StandInScene};
+pub use standing::{Outcome, Place as CameraBeforeClause, Reason as NotPassed};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
 
 use self::apart::TellApart;
@@ -51,7 +53,7 @@ use crate::grade::Grade;
 use hadar::demand::{self, Ledger, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar_scenario::rule::{Clause, Demand, StopSpec, Verdict};
+use hadar_scenario::rule::{Clause, Demand, Verdict};
 use hadar_scenario::{Date, Rule};
 
 /// A rule with everything it names looked up and checked.
@@ -239,7 +241,7 @@ fn answered(clause: &Clause, found: Found) -> ClauseAnswer {
         name: clause.name.clone(),
         kind: clause.demand.kind(),
         text: clause.text.clone(),
-        stop: clause.stop.as_ref().map(|spec: &StopSpec| StopResult::of(spec.stop())),
+        stop: clause.stop.as_ref().map(StopResult::of),
         sentence: WhoMeets::default(),
         found,
     };

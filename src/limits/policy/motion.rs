@@ -17,7 +17,7 @@
 //! Averaged frames are laid over each other before they are summed, so that each counts by itself.
 
 use crate::instrument::Camera;
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_PI_2;
 
 /// What the blur of a moving target depends on beside speed and time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,21 +33,26 @@ impl Motion {
     /// Of a camera whose target is at `distance_m`; `None` where that is not known.
     #[must_use]
     pub fn of(camera: &Camera, distance_m: Option<f64>) -> Option<Self> {
-        let distance_m = distance_m?;
+        distance_m.map(|distance_m| Self::within(camera, distance_m, FRAC_PI_2))
+    }
+
+    /// The same of a target that is no farther beside the axis than `bearing_rad`.
+    pub(super) fn within(camera: &Camera, distance_m: f64, bearing_rad: f64) -> Self {
         let by_lens = camera.pixel_m / camera.focal_length_m;
         let Some((view_rad, pixels)) = camera.view_and_pixels() else {
-            return Some(Self { per_angle: by_lens.recip(), transverse: 1.0, distance_m });
+            let transverse = bearing_rad.sin();
+            return Self { per_angle: transverse / by_lens, transverse, distance_m };
         };
-        let transverse = |view_rad: f64| (0.5 * view_rad.min(PI)).sin();
+        let transverse = |view_rad: f64| (0.5 * view_rad).min(bearing_rad).sin();
         let readings = [(by_lens, view_rad), (by_lens, pixels * by_lens), (view_rad / pixels, view_rad)];
         let most = |of: &dyn Fn(f64, f64) -> f64| {
             readings.iter().map(|(pixel_rad, view_rad)| of(*pixel_rad, *view_rad)).fold(0.0, f64::max)
         };
-        Some(Self {
+        Self {
             per_angle: most(&|pixel_rad, view_rad| transverse(view_rad) / pixel_rad),
             transverse: most(&|_, view_rad| transverse(view_rad)),
             distance_m,
-        })
+        }
     }
 
     /// Pixels that the target moves in `time_s`, the vehicle at `speed_m_s`.
@@ -132,7 +137,7 @@ mod tests {
             };
             let motion = Motion::of(&camera, Some(distance_m)).unwrap();
             let blur = motion.blur_pixels(2.0, 0.01);
-            let of = |pixel_rad: f64, view_rad: f64| 2.0 * (0.5 * view_rad.min(PI)).sin() * 0.01 / (distance_m * pixel_rad);
+            let of = |pixel_rad: f64, view_rad: f64| 2.0 * (0.5 * view_rad.min(std::f64::consts::PI)).sin() * 0.01 / (distance_m * pixel_rad);
             let consistent = [of(by_lens, view_rad), of(by_lens, count * by_lens), of(view_rad / count, view_rad)];
             for least in consistent {
                 prop_assert!(blur >= least * (1.0 - 1e-12), "{blur} {consistent:?}");

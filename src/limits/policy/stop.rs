@@ -162,7 +162,7 @@ impl Stop {
     }
 
     /// At a speed between the ends.
-    fn at(&self, speed_m_s: f64) -> Decision {
+    pub(super) fn at(&self, speed_m_s: f64) -> Decision {
         let closing_m_s = speed_m_s - self.target_m_s;
         let brake_s = speed_m_s.min(closing_m_s) / self.deceleration_m_s2;
         // Of the braking, the mean of the closing speeds at its begin and its end.

@@ -2,6 +2,7 @@
 
 use super::global::{Global, condition};
 use super::several;
+use super::verify::{Again, VerifyArgs};
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
@@ -9,8 +10,9 @@ use hadar::inputs::{self, inputs_of};
 use hadar::material::Library;
 use hadar_formats::file;
 use hadar_formats::hash::{nearest_folder, sha256_of_file};
-use hadar_report::manifest::Input;
+use hadar_report::manifest::{self, Input};
 use hadar_report::rule;
+use hadar_report::verify::{Verified, text as of_report};
 use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::sweep::Question;
@@ -64,13 +66,17 @@ impl RuleArgs {
     }
 }
 
-fn on(text: &str) -> std::result::Result<Date, String> {
+pub(super) fn on(text: &str) -> std::result::Result<Date, String> {
     day(text).ok_or_else(|| "write year, month and day, as in 2029-09-01".to_owned())
 }
 
-pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
+pub(super) fn run(
+    args: &RuleArgs,
+    global: &Global,
+    read_again: &dyn Fn(&[String]) -> Option<Again>,
+) -> Result<ExitCode> {
     if let Some(certificate) = &args.verify {
-        return verify(certificate, global);
+        return verify(certificate, global, read_again);
     }
     let alone = [(args.test, "--test"), (args.sources, "--sources"), (args.stand_in, "--stand-in")];
     if let Some((_, flag)) = alone.into_iter().find(|(asked, _)| *asked && args.rules.len() > 1) {
@@ -133,7 +139,11 @@ struct Set {
 }
 
 /// Whether a certificate says what is found now.
-fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
+fn verify(
+    certificate: &Path,
+    global: &Global,
+    read_again: &dyn Fn(&[String]) -> Option<Again>,
+) -> Result<ExitCode> {
     global.writes_nothing("--verify")?;
     global.sets_nothing("a certificate")?;
     let told = |found: String| {
@@ -211,15 +221,28 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     struct Output {
         verified: bool,
         largest_difference: f64,
+        /// Of the report that the certificate is in.
+        report: Option<Verified>,
     }
     let digits = if off == 0.0 { "to the last digit".to_owned() } else { format!("to {off:.1e}") };
-    let text = format!(
-        "Verified: {} inputs are as they were, and all that {} says was found again, {digits}.\n",
+    let found = format!(
+        "{} inputs are as they were, and all that {} says was found again, {digits}",
         listed.len(),
         inputs::called(None, certificate)
     );
-    global.answer(&Output { verified: true, largest_difference: off }, &text, &answer.stats)?;
-    Ok(ExitCode::SUCCESS)
+    // Every other file of a report says the same, and is as easily changed.
+    let folder = certificate.parent().map(|folder| if folder == Path::new("") { Path::new(".") } else { folder });
+    let report = folder.filter(|folder| folder.join(manifest::NAME).exists());
+    let report = report
+        .map(|folder| super::verify::verified(&VerifyArgs::of(folder.to_owned(), global.inputs.clone()), global, read_again))
+        .transpose()?;
+    let text = match &report {
+        Some(report) => format!("{found}.\nThe report that it is in: {}", of_report(report)),
+        None => format!("Verified: {found}. It is no part of a report: other files beside it were not looked at.\n"),
+    };
+    let verified = report.as_ref().is_none_or(|report| report.verified);
+    global.answer(&Output { verified, largest_difference: off, report }, &text, &answer.stats)?;
+    Ok(ExitCode::from(u8::from(!verified)))
 }
 
 /// The rule of a certificate: where it is told to be, else by its content from here or near the certificate.

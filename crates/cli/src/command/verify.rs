@@ -5,10 +5,13 @@ use super::provenance;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar::inputs::inputs_of;
+use hadar_formats::file;
 use hadar_formats::hash::{nearest_folder, sha256_of_file};
 use hadar_report::folder::Scratch;
 use hadar_report::manifest::{Input, Provenance};
-use hadar_report::verify::{Stored, text};
+use hadar_report::verify::{Demands, Stored, Verified, text};
+use hadar_scenario::Date;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -20,7 +23,43 @@ pub(super) struct VerifyArgs {
     /// The folder that the report's inputs are in, by the names that it gives them (default: one near by in which they are as they were)
     #[arg(long, value_name = "DIR")]
     inputs: Option<PathBuf>,
+    /// Demand that the statement says PASSED
+    #[arg(long)]
+    passed: bool,
+    /// Demand that it is about this rule, with nothing set over it and no condition accepted
+    #[arg(long, value_name = "RULE")]
+    rule: Option<PathBuf>,
+    /// Demand that it is about this day
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = super::rule::on)]
+    on: Option<Date>,
+    /// Demand that this DSSE envelope holds the statement; whose signature it has is for the tool to say that made it
+    #[arg(long, value_name = "FILE")]
+    envelope: Option<PathBuf>,
 }
+
+impl VerifyArgs {
+    /// Of a folder, without further demands.
+    pub(super) fn of(folder: PathBuf, inputs: Option<PathBuf>) -> Self {
+        Self { folder, inputs, passed: false, rule: None, on: None, envelope: None }
+    }
+
+    fn demands(&self) -> Result<Demands> {
+        let unread = |path: &Path, kind| Error::file("read", path, kind);
+        let rule = match &self.rule {
+            Some(path) => {
+                let hash = sha256_of_file(path).map_err(|error| unread(path, error.kind()))?;
+                Some(hash.ok_or_else(|| unread(path, ErrorKind::InvalidInput))?)
+            }
+            None => None,
+        };
+        let envelope = self.envelope.as_deref().map(|path| file::bytes(path, "read the envelope", LONGEST_ENVELOPE));
+        let on = self.on.map(|day| day.to_string());
+        Ok(Demands { passed: self.passed, rule, on, envelope: envelope.transpose()? })
+    }
+}
+
+/// The longest envelope, bytes.
+const LONGEST_ENVELOPE: u64 = 1 << 27;
 
 /// What does a command as it is told.
 type Run = Box<dyn Fn(&Global) -> Result<ExitCode>>;
@@ -39,6 +78,18 @@ pub(super) fn run(
     global: &Global,
     read_again: &dyn Fn(&[String]) -> Option<Again>,
 ) -> Result<ExitCode> {
+    let verified = verified(args, global, read_again)?;
+    global.print(&verified, &text(&verified))?;
+    Ok(ExitCode::from(u8::from(!verified.verified)))
+}
+
+/// What comes of it. What is read later is read from the folder of the inputs.
+pub(super) fn verified(
+    args: &VerifyArgs,
+    global: &Global,
+    read_again: &dyn Fn(&[String]) -> Option<Again>,
+) -> Result<Verified> {
+    let demands = args.demands()?;
     let folder = std::path::absolute(&args.folder)
         .map_err(|error| Error::file("read the report", &args.folder, error.kind()))?;
     let stored = Stored::read(&folder)?;
@@ -64,9 +115,7 @@ pub(super) fn run(
     let given = again.given.made_again(&made, Arc::clone(&remade), global);
     let (outcome, _) = inputs_of(|| (again.run)(&given));
     outcome?;
-    let verified = stored.against(&folder, &made, &remade.inputs(), asked.as_deref(), provenance::COMMIT)?;
-    global.print(&verified, &text(&verified))?;
-    Ok(ExitCode::from(u8::from(!verified.verified)))
+    stored.against(&folder, &made, &remade.inputs(), asked.as_deref(), provenance::COMMIT, &demands)
 }
 
 /// The command of a report, if it is one that makes reports and says nothing of where they go.

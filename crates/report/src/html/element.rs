@@ -3,7 +3,7 @@
 use hadar::words::visible;
 
 /// What may be wider than the page, and is then moved by itself, by keys too.
-pub(super) fn wide(name: &str, content: &str) -> String {
+pub(crate) fn wide(name: &str, content: &str) -> String {
     format!("<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{name}\">\n{content}</div>\n")
 }
 
@@ -23,7 +23,7 @@ pub(super) fn table(
 }
 
 /// Text that can stand anywhere in the page.
-pub(super) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for char in visible(text).chars() {
         match char {

@@ -2,8 +2,9 @@
 //! an in-toto statement, for the tools with which people sign; and whether one that was made before says what is found now.
 //!
 //! `certificate.json` has the form of `schemas/certificate.schema.json`. `certificate.intoto.json` is an unsigned Statement (v1) about it
-//! with the predicate `test-result/v0.1`: a line that meets its clause with proof is a passed test, one that fails a failed one, and
-//! what is undecided or met without proof is a warned one; the result of a rule that does not hold on the day is a warning.
+//! and all other files of the report, with the predicate `test-result/v0.1`: a line that meets its clause, proved and unconditionally, on a stated day on
+//! which the rule as it is written holds, is a passed test, one that fails a failed one, and all else a warned one ([`RuleAnswer::outcome`]). Beside the keys
+//! of that predicate: `reasons`, `on`, `policy` (rule and settings in one digest), `evidence`, `conditions`, `accepted`, `verifier`, `command`, `seed`.
 //!
 //! Source: in-toto attestation framework, Statement v1 and predicate `test-result` v0.1 (github.com/in-toto/attestation).
 
@@ -14,11 +15,13 @@ use crate::words::rule::{measure, together};
 use hadar::error::{Error, Result};
 use hadar::inputs::called;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{ClauseAnswer, Condition, Found, Grade, Line, RuleAnswer, RuleStudy};
+use hadar_study::{CameraBeforeClause, ClauseAnswer, Condition, Found, Line, NotPassed, RuleAnswer, RuleStudy};
 use serde_json::{Value, json};
 
 /// Its name in a report.
 pub(super) const NAME: &str = "certificate.json";
+/// The name of the statement.
+pub(crate) const STATEMENT: &str = "certificate.intoto.json";
 const NAMED: &str = "name the certificate.json of a report by hadar rule";
 /// Share by which numbers of two runs may differ: nothing is random in them but rounding of another build.
 const SAME: f64 = 1e-6;
@@ -45,6 +48,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
         })
     });
     let set = &study.rule().scenario.source.settings;
+    let (outcome, reasons) = answer.outcome();
     let mut record = json!({
         "hadar": VERSION,
         "schema": SCHEMA,
@@ -63,6 +67,8 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
         },
         "sources": json::value(&answer.rule.sources)?,
         "sentence": answer.sentence.say(),
+        "result": outcome,
+        "reasons": reasons,
         "cameras": cameras.collect::<Vec<_>>(),
         "clauses": clauses,
         "warnings": json::value(&together(answer))?,
@@ -131,9 +137,9 @@ pub(super) fn text(record: &Value) -> Result<String> {
     Ok(json::pretty(record)? + "\n")
 }
 
-/// The statement about a certificate of such a text.
-pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificate: &str) -> Value {
-    let of = |wanted: &dyn Fn(&Line<'_>) -> bool| -> Vec<String> {
+/// The statement about a report, whose files are its subjects.
+pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance) -> Value {
+    let of = |wanted: &dyn Fn(&ClauseAnswer, &Line<'_>) -> bool| -> Vec<String> {
         let name = |clause: &ClauseAnswer, line: &Line<'_>| match &clause.name {
             Some(clause) => format!("{}: {clause}", line.camera),
             None => line.camera.to_owned(),
@@ -142,34 +148,23 @@ pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificat
         clauses
             .flat_map(|clause| {
                 let lines = clause.lines();
-                lines.iter().filter(|line| wanted(line)).map(|line| name(clause, line)).collect::<Vec<_>>()
+                let wanted = lines.iter().filter(|line| wanted(clause, line));
+                wanted.map(|line| name(clause, line)).collect::<Vec<_>>()
             })
             .collect()
-    };
-    // What rests on something that nobody stated or checked is no pass, unless whoever asks accepts it.
-    // A rule with a value set over it is not the rule of the file that the statement names.
-    let surely = |line: &Line<'_>| {
-        let is_another = line.conditions.iter().any(|one| matches!(one, Condition::Setting { .. }));
-        let is_open = Condition::unaccepted(line.conditions, &answer.accepted).next().is_some();
-        !is_another && !is_open && line.evidence == Grade::Proved
     };
     let rests_on = answer.cameras.iter().map(|camera| {
         let open: Vec<String> = Condition::open(&camera.conditions).map(Condition::code).collect();
         (camera.name.clone(), json!(open))
     });
-    let passed = of(&|line| line.verdict == Verdict::Meets && surely(line));
-    let failed = of(&|line| line.verdict == Verdict::Fails);
-    let warned = of(&|line| match line.verdict {
-        Verdict::Undecided => true,
-        Verdict::Meets => !surely(line),
-        Verdict::Fails => false,
-    });
-    let result = match (failed.is_empty(), warned.is_empty()) {
-        // Of a rule that does not hold nothing is passed or failed.
-        _ if answer.sentence.idle.is_some() => "WARNED",
-        (false, _) => "FAILED",
-        (true, false) => "WARNED",
-        (true, true) => "PASSED",
+    let grades = answer.cameras.iter().map(|camera| (camera.name.clone(), json!(camera.grade.name())));
+    let (outcome, reasons) = answer.outcome();
+    let is_of = |reason: &NotPassed, clause: &ClauseAnswer, line: &Line<'_>| {
+        let of = |place: &CameraBeforeClause| place.camera == line.camera && place.clause == clause.name;
+        reason.place().is_none_or(of)
+    };
+    let warned = |clause: &ClauseAnswer, line: &Line<'_>| {
+        line.verdict != Verdict::Fails && reasons.iter().any(|reason| is_of(reason, clause, line))
     };
     let resource = |input: &Input| match &input.sha256 {
         Some(hash) => json!({ "name": input.path, "digest": { "sha256": hash } }),
@@ -177,18 +172,36 @@ pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificat
     };
     json!({
         "_type": "https://in-toto.io/Statement/v1",
-        "subject": [{ "name": NAME, "digest": { "sha256": sha256(certificate.as_bytes()) } }],
+        "subject": [],
         "predicateType": "https://in-toto.io/attestation/test-result/v0.1",
         "predicate": {
-            "result": result,
+            "result": outcome.word(),
+            "reasons": reasons,
+            "on": answer.on.map(|day| day.to_string()),
+            "policy": policy(answer, provenance),
             "configuration": provenance.inputs.iter().map(resource).collect::<Vec<_>>(),
-            "passedTests": passed,
-            "warnedTests": warned,
-            "failedTests": failed,
+            "passedTests": of(&|clause, line| line.verdict == Verdict::Meets && !warned(clause, line)),
+            "warnedTests": of(&warned),
+            "failedTests": of(&|_, line| line.verdict == Verdict::Fails),
             "conditions": rests_on.collect::<serde_json::Map<_, _>>(),
+            "evidence": grades.collect::<serde_json::Map<_, _>>(),
             "accepted": answer.accepted,
+            "verifier": { "id": "hadar", "version": VERSION, "commit": provenance.commit },
+            "command": provenance.command,
+            "seed": provenance.seed,
         },
     })
+}
+
+/// The rule and all that changes what it says in one digest: that of the file itself where nothing does.
+fn policy(answer: &RuleAnswer, provenance: &Provenance) -> Value {
+    let Some(rule) = provenance.inputs.first() else { return Value::Null };
+    let settings = &answer.rule.scenario.source.settings;
+    let mut lines = vec![rule.sha256.clone().unwrap_or_default()];
+    lines.extend(settings.iter().map(|set| format!("set {}={}", set.key, set.value)));
+    lines.extend(answer.accepted.iter().map(|code| format!("accept {code}")));
+    let digest = if lines.len() == 1 { lines.remove(0) } else { sha256(lines.join("\n").as_bytes()) };
+    json!({ "uri": rule.path, "digest": { "sha256": digest }, "set": settings, "accept": answer.accepted })
 }
 
 /// Whether a certificate says what is found now; the largest difference of two numbers, as a share of them.

@@ -41,6 +41,18 @@ pub enum Difference {
         /// SHA-256 of what was read now.
         is: Option<String>,
     },
+    /// The statement does not say what is demanded.
+    Demand {
+        /// What must stand there.
+        demanded: String,
+        /// What does.
+        found: String,
+    },
+    /// An envelope is not about this statement.
+    Envelope {
+        /// What is wrong with it.
+        found: String,
+    },
     /// Another program made it: no difference by itself.
     Program {
         /// Version and commit.
@@ -65,6 +77,9 @@ pub struct Verified {
     pub command: String,
     /// What is not as it should be.
     pub differences: Vec<Difference>,
+    /// By which keys an envelope says that it is signed; whether it is, is not checked here.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub signed_by: Vec<String>,
     /// Files in the folder that are not the report's, of which nothing is said.
     pub strangers: Vec<String>,
 }

@@ -124,6 +124,11 @@ impl Say for Condition {
             Self::ErrorsCorrelated { length_cm1 } => {
                 format!("errors of the emissivities are correlated over {length_cm1} cm^-1 and no more")
             }
+            Self::NobodyCrosses => "what is looked for neither crosses the way nor leaves the view".into(),
+            Self::InView { bearing_rad } => format!(
+                "who crosses, up to {} deg beside the axis, is in its view (field_of_view is not stated)",
+                significant(bearing_rad.to_degrees(), 2)
+            ),
             Self::PatternOfEachBand => {
                 "the pattern of the array is another one in each band, as a correction behind each filter leaves it".into()
             }
@@ -206,7 +211,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 33] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 35] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -242,6 +247,16 @@ pub(crate) const EXPLAINED: [[&str; 3]; 33] = [
         "errors-correlated",
         "Over which length errors of the emissivities are correlated is not stated.",
         "State sensitivity.correlation beside the error.",
+    ],
+    [
+        "nobody-crosses",
+        "Only the vehicle moves: who crosses blurs more, and is outside the view of a slow vehicle's camera.",
+        "State [stop] crossing_speed, 0 of one that stands, and offset.",
+    ],
+    [
+        "in-view",
+        "Whether who crosses is in the view until the decision is not known.",
+        "State camera.field_of_view, or pixels.",
     ],
     [
         "pattern-of-each-band",

@@ -2,6 +2,8 @@
 
 /// The title of a page about a scenario that has none.
 pub(crate) const TITLE: &str = "What a thermal camera can see";
+/// The heading of what stands before everything else.
+pub(crate) const FIRST: &str = "On one page";
 /// What the file with the question is good for.
 pub(crate) const ASKED_AGAIN: &str = "All of it, with what was left to the program filled in. Given to the program again, it gives this report again.";
 /// The caption of the inputs.

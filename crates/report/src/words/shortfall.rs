@@ -19,6 +19,7 @@ const fn clause(by: Shortfall) -> &'static str {
         Shortfall::MotionUnknown => {
             "whether the target moves by a pixel while all bands are exposed is not known without target.distance"
         }
+        Shortfall::OutOfView => "who crosses is not in the view until the decision",
         Shortfall::FullWell => "a reading does not fit into the full well",
         Shortfall::FrameRate => "the exposure is longer than a frame",
         Shortfall::Diffraction => "the lens blurs a point over more than the pixel",
@@ -35,6 +36,7 @@ pub(crate) fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::Distance => "distance",
         Shortfall::MotionBlur => "motion blur of a pixel or more",
         Shortfall::MotionUnknown => "motion that is not known without a distance",
+        Shortfall::OutOfView => "who crosses is outside the view",
         Shortfall::FullWell => "the brightest scene fills the well",
         Shortfall::FrameRate => "longer than a frame",
         Shortfall::Impractical => "not a practical camera",

@@ -33,6 +33,13 @@ pub fn text(verified: &Verified) -> String {
     if let Some(more) = verified.differences.len().checked_sub(TOLD).filter(|more| *more > 0) {
         let _ = writeln!(text, "  and {more} more");
     }
+    if !verified.signed_by.is_empty() {
+        let _ = writeln!(
+            text,
+            "The envelope holds this statement, signed by {}; whether the signature is theirs the tool that made it says.",
+            verified.signed_by.join(", ")
+        );
+    }
     let _ = writeln!(text, "The command that was given again: {}", verified.command);
     if !verified.strangers.is_empty() {
         let _ = writeln!(text, "Not of the report, and not looked at: {}", verified.strangers.join(", "));
@@ -54,6 +61,8 @@ impl Say for Difference {
             Self::Input { path, was, is } => {
                 format!("input {path}: its SHA-256 was {} and is {}", hash(was), hash(is))
             }
+            Self::Demand { demanded, found } => format!("the statement says {found}, and {demanded} is demanded"),
+            Self::Envelope { found } => format!("the envelope: {found}"),
             Self::Program { was, is } => format!("made by {was}; made again by {is}"),
         }
     }

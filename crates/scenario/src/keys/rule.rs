@@ -154,15 +154,47 @@ const UNCERTAIN_KEYS: &[Key] = &[
     Key::row(
         "u",
         Value::Figure,
-        Refused,
+        Means("must be there beside value"),
         "\"5 mK\"",
         "Its standard uncertainty, 0 or above, in the unit of the figure.",
         "budget of the margin: u times how the margin changes with the figure (GUM)",
     ),
+    Key::row(
+        "law",
+        Value::Choice(&["gaussian", "rectangular"]),
+        Is("\"gaussian\""),
+        "\"rectangular\"",
+        "How its error is distributed: rectangular errors, as of a tolerance, go to sqrt(3) u and no farther.",
+        "draws and ends of the figure",
+    ),
+    Key::row(
+        "same",
+        Value::Text,
+        Means("independent of all other figures"),
+        "\"lens\"",
+        "Figures of one camera that name the same have one error, so many deviations each.",
+        "contributions that are added before they are squared; draws",
+    ),
+    Key::row(
+        "at_most",
+        Value::Figure,
+        Means("no limit"),
+        "\"50 mK\"",
+        "In the place of value: a noise that is no larger than this, as a sheet promises it. A camera that fails by the margin is undecided.",
+        "the margin at the limit",
+    ),
+    Key::row(
+        "at_least",
+        Value::Figure,
+        Means("no limit"),
+        "\"30 Hz\"",
+        "In the place of value: a frame_rate that is no lower than this.",
+        "the margin at the limit",
+    ),
 ];
 /// A figure with its uncertainty.
 pub(crate) static UNCERTAIN: Table =
-    Table::of("A figure of a camera and its standard uncertainty.", &[UNCERTAIN_KEYS]);
+    Table::of("A figure of a camera with its standard uncertainty, or a limit of it.", &[UNCERTAIN_KEYS]);
 
 const SOURCE_KEYS: &[Key] = &[
     Key::row(

@@ -63,6 +63,22 @@ const STOP_KEYS: &[Key] = &[
         "Speed at which vehicle and target come together.",
         "closing speed",
     ),
+    Key::row(
+        "crossing_speed",
+        Value::Quantity(Dimension::Speed, FROM_ZERO),
+        Means("nothing is known of its way: the target does not cross, a condition, and blurs as at the edge of the view"),
+        "\"5 km/h\"",
+        "How fast the target crosses the way; 0 of one that stands on it.",
+        "motion blur, and whether the target is in the view until the decision",
+    ),
+    Key::row(
+        "offset",
+        LENGTH_FROM_ZERO,
+        Means("1 m, where crossing_speed is stated"),
+        "\"0.5 m\"",
+        "How far beside the camera's axis target and vehicle would meet, at most.",
+        "bearing of the target until the decision",
+    ),
 ];
 /// `[stop]`.
 pub(crate) static STOP: Table =

@@ -5,7 +5,7 @@ use crate::camera::read_with;
 use crate::keys::rule::UNCERTAIN;
 use crate::section::Entry;
 use hadar::allowed::FROM_ZERO;
-use hadar::error::{Error, Result};
+use hadar::error::{Error, Place, Result};
 use hadar::instrument::figures::{Kind, Row};
 use hadar::units::Dimension;
 use std::collections::BTreeMap;
@@ -20,11 +20,51 @@ pub struct RuleCamera {
     pub name: Option<String>,
     /// What it is.
     pub spec: CameraSpec,
-    /// Standard uncertainties of figures, by their keys, in the units used inside; not negative.
-    pub uncertainty: BTreeMap<&'static str, f64>,
+    /// How well figures are known, by their keys.
+    pub uncertainty: BTreeMap<&'static str, Known>,
     /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
     pub key: String,
 }
+
+/// How well a figure is known.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Known {
+    /// It has an error.
+    Within(Uncertainty),
+    /// It is no larger than is stated.
+    AtMost,
+    /// It is no smaller than is stated.
+    AtLeast,
+}
+
+/// The error of a figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uncertainty {
+    /// Its standard uncertainty, in the unit used inside; not negative.
+    pub sigma: f64,
+    /// Whether it is anything within √3 of that, and no more; else Gaussian.
+    pub rectangular: bool,
+    /// What has the same error, so many deviations of its own.
+    pub same: Option<String>,
+}
+
+/// Of which a larger one is never better: noise.
+const NOISE: [&str; 12] = [
+    "netd",
+    "noise_electrons",
+    "read_noise",
+    "dark_rate",
+    "flicker_fraction",
+    "fixed_pattern",
+    "row_noise",
+    "column_noise",
+    "offset_drift",
+    "temporal_row_noise",
+    "temporal_column_noise",
+    "frame_noise",
+];
+/// Of which a smaller one is never better.
+const SPEED: [&str; 1] = ["frame_rate"];
 
 impl RuleCamera {
     /// What it is called in a rule: the name it is given, or that of a known camera.
@@ -73,12 +113,33 @@ pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
         .collect()
 }
 
-/// A figure as a table of its value and its standard uncertainty, which is noted; whether it is one.
-fn uncertain(row: &'static Row, entry: &Entry<'_>, noted: &mut BTreeMap<&'static str, f64>) -> Result<bool> {
+/// A figure as a table of its value and how well it is known, which is noted; whether it is one.
+fn uncertain(
+    row: &'static Row,
+    entry: &Entry<'_>,
+    noted: &mut BTreeMap<&'static str, Known>,
+) -> Result<bool> {
     if !entry.is_table() {
         return Ok(false);
     }
     let section = entry.section_of(&UNCERTAIN)?;
+    section.at_most_one(&["value", "at_most", "at_least"])?;
+    for (key, known, of) in [("at_most", Known::AtMost, NOISE.as_slice()), ("at_least", Known::AtLeast, &SPEED)] {
+        if !section.has_own(key) {
+            continue;
+        }
+        if let Some(beside) = ["u", "law", "same"].into_iter().find(|beside| section.has_own(beside)) {
+            let found = format!("{beside} beside {key}");
+            return Err(section.fail(beside, Error::malformed(found, format!("write value and u, or {key} alone"))));
+        }
+        if !of.contains(&row.key) {
+            let found = format!("a limit of {}, of which it is not known which side is worse", row.key);
+            let instead = format!("write {} = {{ value = ..., u = ... }}; {key} is for {}", row.key, of.join(", "));
+            return Err(section.fail(key, Error::malformed(found, instead)));
+        }
+        noted.insert(row.key, known);
+        return Ok(true);
+    }
     let u = section.require("u")?;
     let sigma = match row.kind {
         // Of a difference of temperatures, not of a temperature.
@@ -92,6 +153,32 @@ fn uncertain(row: &'static Row, entry: &Entry<'_>, noted: &mut BTreeMap<&'static
             return Err(entry.fail(Error::malformed(found, format!("write {} = {}", row.key, row.example))));
         }
     };
-    noted.insert(row.key, sigma);
+    let rectangular = section.choice("law", &[("gaussian", false), ("rectangular", true)])?.unwrap_or(false);
+    let same = section.text("same", "\"lens\"")?;
+    noted.insert(row.key, Known::Within(Uncertainty { sigma, rectangular, same }));
     Ok(true)
+}
+
+/// Refuses a name of figures with the same error that one figure of a camera has alone: errors of two cameras, which are judged apart, have nothing
+/// to do with each other.
+pub(super) fn check(cameras: &[RuleCamera], place: impl Fn(usize, &str) -> Place) -> Result<()> {
+    let named = |camera: &RuleCamera, name: &str| {
+        let all = camera.uncertainty.values();
+        all.filter(|known| matches!(known, Known::Within(one) if one.same.as_deref() == Some(name))).count()
+    };
+    for (index, camera) in cameras.iter().enumerate() {
+        for (key, known) in &camera.uncertainty {
+            let Known::Within(Uncertainty { same: Some(same), .. }) = known else { continue };
+            if named(camera, same) < 2 {
+                let elsewhere = cameras.iter().any(|other| other.key != camera.key && named(other, same) > 0);
+                let found = match elsewhere {
+                    true => format!("one error, {same:?}, of figures of two cameras, which are judged apart"),
+                    false => format!("no other figure has the same error, {same:?}"),
+                };
+                let instead = format!("give two figures of this camera same = {same:?}, or leave it out");
+                return Err(Error::malformed(found, instead).at(place(index, key)));
+            }
+        }
+    }
+    Ok(())
 }

@@ -6,6 +6,7 @@
 use crate::entries::Entries;
 use crate::section::{Entry, Section};
 use hadar::error::{Error, Result};
+use hadar::policy::encounter::Encounter;
 use hadar::policy::stop::{Start, Stop, StopFigures};
 use hadar::units::Dimension;
 
@@ -14,7 +15,11 @@ use hadar::units::Dimension;
 pub struct StopSpec {
     figures: StopFigures,
     stop: Stop,
+    encounter: Option<Encounter>,
 }
+
+/// How far from the camera's axis a target meets the vehicle at most where nobody says, m: half a car, and a person.
+const OFFSET_M: f64 = 1.0;
 
 impl StopSpec {
     /// The manoeuvre.
@@ -27,6 +32,12 @@ impl StopSpec {
     #[must_use]
     pub fn figures(&self) -> &StopFigures {
         &self.figures
+    }
+
+    /// That the target crosses, where it is said how fast.
+    #[must_use]
+    pub fn encounter(&self) -> Option<&Encounter> {
+        self.encounter.as_ref()
     }
 
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
@@ -57,7 +68,19 @@ impl StopSpec {
             start: section.read("start", start)?,
         };
         let stop = Stop::new(figures).map_err(|error| misfit(&section, error))?;
-        Ok(Self { figures, stop })
+        let offset_m = section.quantity("offset")?;
+        let encounter = match (section.quantity("crossing_speed")?, offset_m) {
+            (None, Some(_)) => {
+                let found = "where a target crosses, and not how fast";
+                let instead = "write crossing_speed = \"5 km/h\" beside it, or \"0 km/h\" of one that stands";
+                return Err(section.fail("offset", Error::malformed(found, instead)));
+            }
+            (crossing, offset_m) => crossing
+                .map(|crossing_m_s| Encounter::new(stop, crossing_m_s, offset_m.unwrap_or(OFFSET_M)))
+                .transpose()
+                .map_err(|error| section.fail("crossing_speed", error))?,
+        };
+        Ok(Self { figures, stop, encounter })
     }
 
     pub(super) fn entries(self) -> Entries {
@@ -73,7 +96,9 @@ impl StopSpec {
             .put_quantity("target_speed", Dimension::Speed, Some(target_m_s))
             .put_quantity("latency", Dimension::Time, Some(latency_s))
             .put_quantity("deceleration", Dimension::Acceleration, Some(deceleration_m_s2))
-            .put_quantity("margin", Dimension::Length, Some(margin_m));
+            .put_quantity("margin", Dimension::Length, Some(margin_m))
+            .put_quantity("crossing_speed", Dimension::Speed, self.encounter.map(|one| one.crossing_m_s()))
+            .put_quantity("offset", Dimension::Length, self.encounter.map(|one| one.offset_m()));
         match start {
             Some(Start::TimeToContact(time_s)) => {
                 entries.put_quantity("start", Dimension::Time, Some(time_s))

@@ -278,7 +278,7 @@ impl TellApart {
             envelope: envelope.clone(),
             required: self.required,
             speed_m_s,
-            stop: self.stop.map(|spec| StopResult::of(spec.stop())),
+            stop: self.stop.as_ref().map(StopResult::of),
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
             of_object: self.scenario.is_of_object(),
             units: self.scenario.units(),
@@ -321,7 +321,7 @@ fn candidate(
         let all_close = at(least)?;
         near.extend(all_close.iter().map(|close| close.study.clone()));
         let bands = all_close.first().map_or(1, |close| close.study.bands.len());
-        let own = stop.map(|stop| Approach::of(stop, &named.camera, bands));
+        let own = clause.stop.as_ref().map(|spec| Approach::of(spec, &named.camera, bands));
         let most = own.as_ref().map(|own| own.distance_m[1]).or(envelope.distance_m.map(|[_, most]| most));
         approach = own.or(approach);
         if least == most {

@@ -5,48 +5,91 @@
 //! that of as many frames from the worst of these distances. Over a range of speeds both ends are farthest for the highest
 //! one; frames must fit into the least time that any speed leaves.
 
-use super::results::{ApproachResult, StopResult};
+use super::results::{ApproachResult, CrossingResult, StopResult};
+use crate::condition::Condition;
 use crate::Shortfall;
 use hadar::instrument::Camera;
 use hadar::policy::Motion;
-use hadar::policy::stop::Stop;
-use hadar_scenario::rule::Clause;
+use hadar::policy::encounter::Encounter;
+use hadar::policy::stop::Decision;
+use hadar_scenario::rule::{Clause, StopSpec};
 
 /// Speed and distance at which the picture moves fastest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Moving {
     pub(super) speed_m_s: f64,
     pub(super) distance_m: Option<f64>,
+    /// Highest speed, m s⁻¹.
+    pub(super) fastest_m_s: f64,
+    /// The target's own way across, where it is said.
+    pub(super) encounter: Option<Encounter>,
 }
 
 impl Moving {
     /// Of a clause, from the least of its distances; `None` where no speed is demanded.
     pub(super) fn of(clause: &Clause) -> Option<Self> {
         match &clause.stop {
-            Some(spec) => Some(Self::before(spec.stop())),
+            Some(spec) => {
+                let pace = |one: Decision| one.speed_m_s.max(one.closing_m_s);
+                let swiftest = spec.stop().swiftest();
+                Some(Self {
+                    speed_m_s: pace(swiftest),
+                    distance_m: Some(swiftest.distance_m),
+                    fastest_m_s: pace(spec.stop().decisions()[1]),
+                    encounter: spec.encounter().copied(),
+                })
+            }
             None => clause.scenario.requirement.speed_m_s.map(|speed_m_s| Self {
                 speed_m_s,
                 distance_m: clause.envelope().distance_m.map(|[least, _]| least),
+                fastest_m_s: speed_m_s,
+                encounter: None,
             }),
         }
     }
 
-    fn before(stop: &Stop) -> Self {
-        let swiftest = stop.swiftest();
-        let speed_m_s = swiftest.speed_m_s.max(swiftest.closing_m_s);
-        Self { speed_m_s, distance_m: Some(swiftest.distance_m) }
+    /// Pixels that the picture moves in a second, at most; `None` without a distance.
+    fn pixels_per_s(self, camera: &Camera) -> Option<f64> {
+        match self.encounter {
+            Some(encounter) => Some(encounter.pixels_per_s(camera).0),
+            None => Some(Motion::of(camera, self.distance_m)?.blur_pixels(self.speed_m_s, 1.0)),
+        }
     }
 
-    /// Pixels that the picture moves while all bands are exposed, at most; `None` without a distance.
+    /// The same while all bands are exposed.
     pub(super) fn blur_pixels(self, camera: &Camera, bands: usize) -> Option<f64> {
-        let motion = Motion::of(camera, self.distance_m)?;
-        Some(motion.blur_pixels(self.speed_m_s, camera.sweep_s(bands)))
+        Some(self.pixels_per_s(camera)? * camera.sweep_s(bands))
     }
 
-    /// How far it moves across the line of sight meanwhile, at most, in m at the target.
-    pub(super) fn blur_m(self, camera: &Camera, bands: usize) -> Option<f64> {
-        let motion = Motion::of(camera, self.distance_m)?;
-        Some(motion.blur_m(self.speed_m_s, camera.sweep_s(bands)))
+    /// How long the picture moves by less than a pixel, s.
+    pub(super) fn sharp_s(self, camera: &Camera) -> Option<f64> {
+        self.pixels_per_s(camera).map(f64::recip)
+    }
+
+    /// How far the target moves across the line of sight while so many bands are exposed, at most, at any speed, m.
+    pub(super) fn smear_m(self, camera: &Camera, bands: usize) -> Option<f64> {
+        let per_s = match self.encounter {
+            Some(encounter) => encounter.metres_per_s(camera),
+            None => Motion::of(camera, self.distance_m)?.blur_m(self.fastest_m_s, 1.0),
+        };
+        Some(per_s * camera.sweep_s(bands))
+    }
+
+    /// Where the target leaves the view too early, if it does; who does not cross is taken to stay in it.
+    pub(super) fn out_of_view(self, camera: &Camera) -> Option<Shortfall> {
+        let outside = self.encounter?.widest_rad() > Encounter::half_view_rad(camera)?;
+        outside.then_some(Shortfall::OutOfView)
+    }
+
+    /// What nobody stated of where the target is in the picture.
+    pub(super) fn conditions(self, camera: &Camera) -> Option<Condition> {
+        match self.encounter {
+            None => Some(Condition::NobodyCrosses),
+            Some(encounter) => {
+                let bearing_rad = encounter.widest_rad();
+                Encounter::half_view_rad(camera).is_none().then_some(Condition::InView { bearing_rad })
+            }
+        }
     }
 }
 
@@ -60,7 +103,8 @@ pub(super) struct Approach {
 
 impl Approach {
     /// Of a camera that reads so many bands.
-    pub(super) fn of(stop: &Stop, camera: &Camera, bands: usize) -> Self {
+    pub(super) fn of(spec: &StopSpec, camera: &Camera, bands: usize) -> Self {
+        let stop = spec.stop();
         let [near, far] = stop.decisions();
         let needed_s = camera.acquisition_s(bands);
         let first_m = far.distance_m + far.closing_m_s * needed_s;
@@ -76,6 +120,11 @@ impl Approach {
                 time_s,
                 frames_within: time_s.map(|time_s| camera.frames_within(time_s, bands)),
                 footprint_m: camera.footprint_m(far.distance_m),
+                in_view_from_m_s: spec.encounter().and_then(|one| {
+                    let half_view_rad = Encounter::half_view_rad(camera)?;
+                    let seen = one.widest_rad() <= half_view_rad;
+                    if seen { None } else { Some(one.in_view_from_m_s(half_view_rad)) }
+                }),
             },
         }
     }
@@ -88,18 +137,19 @@ impl Approach {
 }
 
 /// Whether a manoeuvre says how much time there is until the decision.
-pub(super) fn is_timed(stop: Option<&Stop>) -> bool {
-    stop.and_then(Stop::hastiest).is_some_and(|one| one.time_s.is_some())
+pub(super) fn is_timed(stop: Option<&StopSpec>) -> bool {
+    stop.and_then(|spec| spec.stop().hastiest()).is_some_and(|one| one.time_s.is_some())
 }
 
 /// What a manoeuvre spoils of a camera's frames, whatever they are for: they blur, or come too late.
 pub(super) fn spoiled(
     moving: Option<Moving>,
-    stop: Option<&Stop>,
+    stop: Option<&StopSpec>,
     camera: &Camera,
     bands: usize,
 ) -> Vec<Shortfall> {
     let blur = moving.map(|moving| moving.blur_pixels(camera, bands));
+    let outside = moving.and_then(|moving| moving.out_of_view(camera));
     let blurred = match blur {
         Some(Some(blur)) if blur >= 1.0 => Some(Shortfall::MotionBlur),
         // What cannot be said is not met.
@@ -107,13 +157,19 @@ pub(super) fn spoiled(
         _ => None,
     };
     let late = stop.and_then(|stop| Approach::of(stop, camera, bands).shortfall());
-    blurred.into_iter().chain(late).collect()
+    blurred.into_iter().chain(outside).chain(late).collect()
 }
 
 impl StopResult {
     /// What a manoeuvre asks of every camera.
-    pub(super) fn of(stop: &Stop) -> Self {
+    pub(super) fn of(spec: &StopSpec) -> Self {
+        let stop = spec.stop();
         let [slowest, fastest] = stop.decisions();
-        Self { slowest, fastest, hastiest: stop.hastiest(), swiftest: stop.swiftest() }
+        let crossing = spec.encounter().map(|one| CrossingResult {
+            speed_m_s: one.crossing_m_s(),
+            offset_m: one.offset_m(),
+            bearing_rad: one.widest_rad(),
+        });
+        Self { slowest, fastest, hastiest: stop.hastiest(), swiftest: stop.swiftest(), crossing }
     }
 }

@@ -4,7 +4,7 @@ use crate::{bands, camera, camera_bands};
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
 use hadar::spectrum::Bands;
-use hadar_scenario::rule::RuleCamera;
+use hadar_scenario::rule::{Known, RuleCamera};
 use hadar_scenario::{CameraSpec, Rule, Scenario};
 use std::collections::BTreeMap;
 
@@ -16,10 +16,15 @@ pub(super) struct Named {
     pub(super) spec: CameraSpec,
     /// Where it stands among the cameras of the rule.
     pub(super) index: usize,
-    pub(super) uncertainty: BTreeMap<&'static str, f64>,
+    pub(super) uncertainty: BTreeMap<&'static str, Known>,
 }
 
 impl Named {
+    /// Whether it may be better than its figures, which are limits.
+    pub(super) fn may_be_better(&self) -> bool {
+        self.uncertainty.values().any(|known| matches!(known, Known::AtMost | Known::AtLeast))
+    }
+
     /// How many bands of a scenario it reads.
     pub(super) fn bands(&self, scenario: &Scenario) -> Result<usize> {
         Ok(self.read(scenario)?.len())

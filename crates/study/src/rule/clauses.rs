@@ -220,6 +220,9 @@ pub struct MeasuredVerdict {
 pub struct MeasuredScene {
     /// Distance, m.
     pub distance_m: Option<f64>,
+    /// How far the target moves across the line of sight while a frame is exposed, m, where that is what limits the pixels on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smear_m: Option<f64>,
     /// What is looked at.
     pub target: Option<String>,
     /// Its temperature, K.
@@ -338,6 +341,9 @@ impl Serialize for RuleAnswer {
         }
         map.serialize_entry("accepted", &self.accepted)?;
         map.serialize_entry("sentence", &self.sentence)?;
+        let (outcome, reasons) = self.outcome();
+        map.serialize_entry("result", &outcome)?;
+        map.serialize_entry("reasons", &reasons)?;
         match (self.only(), self.clauses.first()) {
             (Some(only), Some(clause)) => {
                 map.serialize_entry("stop", &clause.stop)?;

@@ -21,7 +21,7 @@ use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::parallel;
 use hadar_scenario::range::{Demand, RangeScenario, Subject};
-use hadar_scenario::rule::{Clause, DepthDemand, DepthObject, StopSpec, Verdict};
+use hadar_scenario::rule::{Clause, DepthDemand, DepthObject, Verdict};
 use hadar_scenario::{BandsSpec, Rule, Setting};
 use hadar_simulate::render::StreetSpec;
 
@@ -48,7 +48,7 @@ struct Before {
     air: bool,
     bands: usize,
     /// At which speed, m s⁻¹, and whether the time of the decision is judged.
-    asked: (Option<f64>, bool),
+    asked: (Option<f64>, Option<Condition>, bool),
 }
 
 /// What is found from one distance.
@@ -74,7 +74,7 @@ impl DepthClause {
         let before = |(index, named): (usize, &Named)| {
             let mut scenario = rule.with_camera(clause, index);
             let bands = named.bands(&scenario)?;
-            let stop = clause.stop.as_ref().map(StopSpec::stop);
+            let stop = clause.stop.as_ref();
             let approach = stop.map(|stop| Approach::of(stop, &named.camera, bands));
             let distances_m = distances(clause, demand, approach.as_ref());
             let moving = Moving::of(clause).map(|moving| match stop {
@@ -82,7 +82,8 @@ impl DepthClause {
                 None => Moving { distance_m: distances_m.first().copied(), ..moving },
             });
             let spoiled = spoiled(moving, stop, &named.camera, bands);
-            let (count, asked) = (bands, (moving.map(|moving| moving.speed_m_s), is_timed(stop)));
+            let path = moving.and_then(|moving| moving.conditions(&named.camera));
+            let (count, asked) = (bands, (moving.map(|moving| moving.speed_m_s), path, is_timed(stop)));
             let air = scenario.atmosphere.is_some();
             let bands = BandsSpec { source: scenario.bands.source.clone(), ..BandsSpec::default() };
             let mut range = RangeScenario {
@@ -205,7 +206,7 @@ impl DepthClause {
         figures.extend((!before.air).then_some(Condition::NoAir));
         figures.push(Condition::OneScene);
         figures.extend(camera.pattern.is_shared().then_some(Condition::PatternOfEachPixel));
-        let conditions = of_measured(figures, (camera, bands), before.asked, &self.set, passes);
+        let conditions = of_measured(figures, (camera, bands), before.asked.clone(), &self.set, passes);
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),
             verdict,
@@ -271,7 +272,7 @@ mod tests {
                 spoiled: Vec::new(),
                 air: false,
                 bands: 1,
-                asked: (None, false),
+                asked: (None, None, false),
             },
         )
     }

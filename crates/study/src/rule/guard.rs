@@ -4,7 +4,7 @@ use super::apart::{Candidate, TellApart};
 use super::approach::Approach;
 use super::envelope::{Estimate, SCENES, Sighted};
 use super::pairs::Searched;
-use super::uncertainty::{Errors, MarginUncertainty, Uncertain};
+use super::uncertainty::{Anew, Errors, MarginUncertainty, SMALLER, Uncertain};
 use crate::Study;
 use crate::size::sensitivity::{linear, ripple::Ripple, scatter::Scatter};
 use hadar::error::{Place, Result};
@@ -14,6 +14,7 @@ use hadar::scene::State;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use std::borrow::Cow;
+use std::sync::{PoisonError, RwLock};
 
 const SEED: u64 = 1;
 
@@ -62,11 +63,7 @@ impl TellApart {
         at: &Study,
     ) -> Result<MarginUncertainty> {
         let distance = worst.pair.distance;
-        let mut scenes = self.scenes(candidate, worst, near);
-        for camera in uncertain.ends()? {
-            let found = self.worst_of(candidate, &[], [Some(SCENES); 2], &camera)?.map(|(scene, _)| scene);
-            scenes.extend(found.filter(|found| !scenes.iter().any(|known| known.is_like(found))));
-        }
+        let scenes = self.scenes(candidate, worst, near);
         let ripple = self
             .scenario
             .sensitivity
@@ -81,10 +78,11 @@ impl TellApart {
             }
             _ => None,
         };
-        let of = |camera: &Camera, errors: Errors| {
-            self.least_margin((candidate, &scenes), ripple.as_ref(), camera, errors)
-        };
-        uncertain.of_margin(distance / self.required, emissivities, true, &of)
+        let anew = Scenes { clause: self, candidate, ripple, known: RwLock::new(scenes) };
+        for camera in uncertain.ends()? {
+            anew.search(&camera)?;
+        }
+        uncertain.of_margin(distance / self.required, emissivities, &anew)
     }
 
     /// What is uncertain of a camera, if anything is.
@@ -140,28 +138,47 @@ impl TellApart {
     fn seen_from_m(&self, candidate: &Candidate, sighted: &Sighted, camera: &Camera) -> Option<f64> {
         let own = sighted.study.scenario.target.distance_m;
         let farthest = candidate.distance_m.map(|[_, most]| most);
-        match &self.stop {
+        match self.stop.as_ref() {
             Some(spec) if own == farthest => {
-                Some(Approach::of(spec.stop(), camera, sighted.study.bands.len()).distance_m[1])
+                Some(Approach::of(spec, camera, sighted.study.bands.len()).distance_m[1])
             }
             _ => own,
         }
     }
 
-    /// The least margin of a camera in some scenes.
-    fn least_margin(
-        &self,
-        (candidate, scenes): (&Candidate, &[Scene]),
-        ripple: Option<&Scatter<'_>>,
-        camera: &Camera,
-        errors: Errors,
-    ) -> Result<f64> {
+    /// The worst of all scenes before a camera, searched as that of the camera as it is stated is.
+    fn worst_before(&self, candidate: &Candidate, camera: &Camera) -> Result<Option<(Scene, f64)>> {
+        let mut moved = candidate.clone();
+        for sighted in moved.sighted.iter_mut().chain(&mut moved.between) {
+            *sighted = sighted.before(camera, self.seen_from_m(candidate, sighted, camera), &self.envelope)?;
+        }
+        let Some((worst, _)) = self.worst(&moved, false, &|_, _| true, &|_| ())? else { return Ok(None) };
+        let Searched { pair, between, .. } = worst;
+        let distance = pair.distance;
+        let own = candidate.sighted.get(pair.sighted).cloned();
+        let sighted = between.map(|between| *between).or(own);
+        Ok(sighted.map(|sighted| (Scene { sighted, alternative: pair.alternative, state: pair.state }, distance)))
+    }
+}
+
+/// The scenes before one camera in which its margin is taken anew.
+struct Scenes<'a> {
+    clause: &'a TellApart,
+    candidate: &'a Candidate,
+    ripple: Option<Scatter<'a>>,
+    known: RwLock<Vec<Scene>>,
+}
+
+impl Anew for Scenes<'_> {
+    fn margin(&self, camera: &Camera, errors: Errors) -> Result<f64> {
+        let (clause, candidate) = (self.clause, self.candidate);
         let mut least = f64::INFINITY;
-        for Scene { sighted, alternative, state } in scenes {
-            let distance_m = self.seen_from_m(candidate, sighted, camera);
-            let sighted = sighted.before(camera, distance_m, &self.envelope)?;
+        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        for Scene { sighted, alternative, state } in known.iter() {
+            let distance_m = clause.seen_from_m(candidate, sighted, camera);
+            let sighted = sighted.before(camera, distance_m, &clause.envelope)?;
             let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
-            let pair: [Vec<f64>; 2] = match (errors, ripple) {
+            let pair: [Vec<f64>; 2] = match (errors, &self.ripple) {
                 (Errors::Stream(stream), Some(ripple)) => {
                     let mut random = ChaCha8Rng::seed_from_u64(SEED);
                     random.set_stream(stream);
@@ -172,6 +189,29 @@ impl TellApart {
             let found = sighted.solver().with_counting(&pair[0], &pair[1], state, &sighted.counting)?;
             least = least.min(found.distance);
         }
-        Ok(least / self.required)
+        Ok(least / clause.required)
+    }
+
+    fn search(&self, camera: &Camera) -> Result<bool> {
+        let found = self.clause.worst_of(self.candidate, &[], [Some(SCENES); 2], camera)?;
+        self.learn(found, camera)
+    }
+
+    fn search_thoroughly(&self, camera: &Camera) -> Result<bool> {
+        self.learn(self.clause.worst_before(self.candidate, camera)?, camera)
+    }
+}
+
+impl Scenes<'_> {
+    /// Keeps a scene before a camera if it is a worse one; whether it is.
+    fn learn(&self, found: Option<(Scene, f64)>, camera: &Camera) -> Result<bool> {
+        let before = self.margin(camera, Errors::None)? * self.clause.required;
+        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
+        let found = found.filter(|(scene, distance)| {
+            *distance < before * (1.0 - SMALLER) && !known.iter().any(|other| other.is_like(scene))
+        });
+        let is_new = found.is_some();
+        known.extend(found.map(|(scene, _)| scene));
+        Ok(is_new)
     }
 }

@@ -26,7 +26,6 @@ use hadar::instrument::{Camera, FASTEST_F_NUMBER};
 use hadar::lattice_points::GoldenLattice;
 use hadar::parallel;
 use hadar::planck;
-use hadar::policy::Motion;
 use hadar::policy::envelope::Ranges;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
@@ -131,12 +130,9 @@ impl TellApart {
     fn longest(&self, cameras: &[&Camera]) -> (f64, LightTime) {
         let frames = cameras.iter().map(|camera| camera.frames).max().unwrap_or(1);
         let moving = self.moving;
-        let sharp = cameras.iter().filter_map(|camera| {
-            let Moving { speed_m_s, distance_m } = moving?;
-            Some(Motion::of(camera, distance_m)?.longest_s(speed_m_s))
-        });
+        let sharp = cameras.iter().filter_map(|camera| moving?.sharp_s(camera));
         match (sharp.reduce(f64::max), moving) {
-            (Some(exposure), Some(Moving { speed_m_s, distance_m: Some(distance_m) })) => (
+            (Some(exposure), Some(Moving { speed_m_s, distance_m: Some(distance_m), .. })) => (
                 exposure * f64::from(frames),
                 LightTime::Sharp { frames, speed_m_s, distance_m, units: self.scenario.units() },
             ),

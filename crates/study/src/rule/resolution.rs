@@ -8,7 +8,7 @@
 use super::approach::{Approach, Moving, is_timed};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
-use super::uncertainty::{Judged, Uncertain};
+use super::uncertainty::{Geometry, Judged, Uncertain};
 use crate::Shortfall;
 use crate::grade::Grade;
 use crate::rests_on::{diffraction, of_measured};
@@ -30,6 +30,15 @@ pub(super) struct Resolution {
     rule: Rule,
     /// With its bands.
     cameras: Vec<(Named, Bands)>,
+}
+
+/// What a camera has of the target.
+struct Reached {
+    /// From where, m.
+    distance_m: f64,
+    pixels: f64,
+    /// How far the target moves while a frame is exposed, m, where that limits it.
+    smear_m: Option<f64>,
 }
 
 impl Resolution {
@@ -60,57 +69,53 @@ impl Resolution {
     }
 
     fn approach(&self, camera: &Camera, bands: usize) -> Option<Approach> {
-        self.stop.map(|spec| Approach::of(spec.stop(), camera, bands))
+        self.stop.map(|spec| Approach::of(&spec, camera, bands))
     }
 
     /// The greatest distance from which a frame is taken, m, and the pixels across the target: from there, or as many as do not run into
     /// each other while a frame is exposed, where that is fewer: the target over its way meanwhile, the same from everywhere, and least at
     /// the highest speed.
-    fn reached(&self, camera: &Camera, bands: usize) -> (f64, f64) {
+    fn reached(&self, camera: &Camera, bands: usize) -> Reached {
         let approach = self.approach(camera, bands);
         let distance_m = approach.map_or(self.farthest_m, |approach| approach.distance_m[1]);
         let [_, coarser] = camera.pixel_angles_rad();
         let sharp = self.size_m / (distance_m * coarser);
-        let smeared = self.moving.and_then(|moving| {
-            let fastest = self.stop.map_or(moving.speed_m_s, |spec| {
-                let one = spec.stop().decisions()[1];
-                one.speed_m_s.max(one.closing_m_s)
-            });
-            Some(self.size_m / (moving.blur_m(camera, 1)? * fastest / moving.speed_m_s))
-        });
-        let value = smeared.map_or(sharp, |smeared| sharp.min(smeared));
-        (distance_m, value)
+        let smear_m = self.moving.and_then(|moving| moving.smear_m(camera, 1));
+        let limits = smear_m.filter(|smear_m| self.size_m / smear_m < sharp);
+        Reached { distance_m, pixels: limits.map_or(sharp, |smear_m| self.size_m / smear_m), smear_m: limits }
     }
 
     /// Frames that come too late, or of which it cannot be said how they blur.
     fn spoiled(&self, camera: &Camera, bands: usize) -> Vec<Shortfall> {
         let unknown = self.moving.is_some_and(|moving| moving.blur_pixels(camera, 1).is_none());
         let late = self.approach(camera, bands).and_then(|approach| approach.shortfall());
-        unknown.then_some(Shortfall::MotionUnknown).into_iter().chain(late).collect()
+        let outside = self.moving.and_then(|moving| moving.out_of_view(camera));
+        unknown.then_some(Shortfall::MotionUnknown).into_iter().chain(outside).chain(late).collect()
     }
 
     fn judged(&self, named: &Named, read: &Bands) -> Result<MeasuredVerdict> {
         let bands = read.len();
-        let (distance_m, value) = self.reached(&named.camera, bands);
+        let Reached { distance_m, pixels: value, smear_m } = self.reached(&named.camera, bands);
         let place = |key: &str| self.rule.camera_place(named.index, key);
         let uncertain = Uncertain::of(named, (self.rule.coverage_factor, false), &place)?;
         let (judged, uncertainty) = Uncertain::verdict(
             uncertain,
             value / self.pixels,
-            (Shortfall::Pixels, true),
-            &named.camera,
+            Shortfall::Pixels,
+            named,
             &|camera| self.spoiled(camera, bands),
-            &|camera| Ok(self.reached(camera, bands).1 / self.pixels),
+            &Geometry(|camera: &Camera| self.reached(camera, bands).pixels / self.pixels),
         )?;
         let Judged { verdict, fails_by, undecided_by } = judged;
         let passes = verdict == Verdict::Meets;
         let evidence = Grade::Proved.guarded(verdict, uncertainty.as_ref());
         let speed_m_s = self.moving.map(|moving| moving.speed_m_s);
+        let path = self.moving.and_then(|moving| moving.conditions(&named.camera));
         let set = &self.rule.scenario.source.settings;
         let conditions = of_measured(
             diffraction(&named.camera, read).into_iter().collect(),
             (&named.camera, bands),
-            (speed_m_s, is_timed(self.stop.as_ref().map(StopSpec::stop))),
+            (speed_m_s, path, is_timed(self.stop.as_ref())),
             set,
             passes,
         );
@@ -125,7 +130,7 @@ impl Resolution {
             uncertainty,
             value: Some(value),
             margin: value / self.pixels,
-            limiting: MeasuredScene { distance_m: Some(distance_m), ..MeasuredScene::default() },
+            limiting: MeasuredScene { distance_m: Some(distance_m), smear_m, ..MeasuredScene::default() },
             conditions,
             approach: self.approach(&named.camera, bands).map(|approach| approach.result),
             warnings: contradiction(&named.camera).into_iter().collect(),

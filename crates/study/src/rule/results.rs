@@ -345,6 +345,9 @@ pub struct StopResult {
     pub hastiest: Option<Decision>,
     /// At the speed at which the picture moves fastest.
     pub swiftest: Decision,
+    /// How the target crosses, where that is said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossing: Option<CrossingResult>,
 }
 
 /// A camera while its vehicle comes nearer.
@@ -363,6 +366,22 @@ pub struct ApproachResult {
     pub frames_within: Option<u32>,
     /// Side of what a pixel sees at the greatest distance of a decision, m.
     pub footprint_m: f64,
+    /// Of a target that crosses and leaves its view before the decision: the speed from which on it does not, m s⁻¹; an inner `None` where there
+    /// is none. `None` where it stays in view, or nobody says how it crosses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub in_view_from_m_s: Option<Option<f64>>,
+}
+
+/// A target that crosses.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct CrossingResult {
+    /// How fast, m s⁻¹.
+    pub speed_m_s: f64,
+    /// How far beside the camera's axis it would be met, at most, m.
+    pub offset_m: f64,
+    /// How far beside that axis it is until the decision, at most, rad.
+    pub bearing_rad: f64,
 }
 
 impl Grade {

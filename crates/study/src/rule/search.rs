@@ -27,7 +27,7 @@ use hadar::order;
 use hadar::policy::envelope::Certificate;
 use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
-use hadar_scenario::rule::{StopSpec, Verdict};
+use hadar_scenario::rule::Verdict;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -101,8 +101,8 @@ impl TellApart {
         }
         let guarded = |uncertain: &Uncertain<'_>| self.guarded(uncertain, candidate, &worst, near, &at);
         let uncertainty = uncertain.as_ref().map(guarded).transpose()?;
-        let judged =
-            uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
+        let by = (Shortfall::Distance, candidate.named.may_be_better() && distance > 0.0);
+        let judged = uncertainty::judged(distance / self.required, uncertainty.as_ref(), by, &others);
         let Judged { verdict, fails_by, undecided_by } =
             self.as_proved(candidate, judged, &worst, (&at, surface))?;
         let passes = verdict == Verdict::Meets;
@@ -226,9 +226,10 @@ impl TellApart {
         let asked = Circumstances {
             unlit: near.ranges(&self.envelope).map_or(1.0, |ranges| unlit(&ranges)),
             speed_m_s: self.pace_m_s(),
+            path: self.moving.and_then(|moving| moving.conditions(camera)),
             distance_m: farthest_m,
             of_rule: true,
-            is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
+            is_timed: is_timed(self.stop.as_ref()),
         };
         let Limit { at, surface, lower_bound } = limit;
         let constants = at.target.placeholders(surface);
@@ -330,7 +331,7 @@ impl TellApart {
             image.blur.map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
         let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
         image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
-        image.spoiled = spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands);
+        image.spoiled = spoiled(self.moving, self.stop.as_ref(), camera, bands);
         if camera.full_well.is_some_and(|full| image.reading > full) {
             image.spoiled.push(Shortfall::FullWell);
         }
@@ -372,7 +373,7 @@ impl TellApart {
     }
 
     /// The worst of all pairs, and what each has come to, or a scene that is below the requirement where no more is asked for.
-    fn worst(
+    pub(super) fn worst(
         &self,
         candidate: &Candidate,
         alone: bool,

@@ -9,7 +9,7 @@ use super::approach::{Approach, Moving, is_timed, spoiled};
 use super::cameras::Named;
 use super::clauses::{Definition, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, brightest, scattered_places, scene_at, unlit};
-use super::uncertainty::{Judged, Uncertain};
+use super::uncertainty::{Anew, Errors, Judged, SMALLER, Uncertain};
 use super::{apart, cameras};
 use crate::condition::Condition;
 use crate::grade::Grade;
@@ -24,6 +24,7 @@ use hadar::material::Library;
 use hadar::scene::{Parameter, State};
 use hadar_scenario::rule::{Clause, StopSpec, Verdict};
 use hadar_scenario::{Envelope, Rule};
+use std::sync::{PoisonError, RwLock};
 
 /// Of a range, the first step uphill and the last.
 const FIRST_STEP: f64 = 0.25;
@@ -124,7 +125,7 @@ impl TemperatureClause {
         let uncertain = Uncertain::of(named, (rule.coverage_factor, false), &place)?;
         let bands = before.sighted.first().map_or(1, |sighted| sighted.study.bands.len());
         let spoils = |camera: &Camera| {
-            let mut found = spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands);
+            let mut found = spoiled(self.moving, self.stop.as_ref(), camera, bands);
             let full = before.sighted.iter().any(|sighted| {
                 let own = sighted.study.scenario.target.distance_m;
                 let Ok(seen) = sighted.before(camera, own, &self.envelope) else { return true };
@@ -140,34 +141,19 @@ impl TemperatureClause {
         let seen_by = |sighted: &Sighted, camera: &Camera| {
             let own = sighted.study.scenario.target.distance_m;
             let farthest = before.approach.as_ref().map(|approach| approach.distance_m[1]);
-            let distance_m = match self.stop {
-                Some(spec) if own == farthest => Some(Approach::of(spec.stop(), camera, bands).distance_m[1]),
+            let distance_m = match self.stop.as_ref() {
+                Some(spec) if own == farthest => Some(Approach::of(spec, camera, bands).distance_m[1]),
                 _ => own,
             };
             sighted.before(camera, distance_m, &self.envelope)
         };
-        let mut scenes: Vec<(State, &Sighted)> =
-            worst.iter().map(|(found, sighted)| (found.state.clone(), *sighted)).collect();
+        let known = worst.iter().map(|(found, sighted)| (found.state.clone(), *sighted)).collect();
+        let anew = Scenes { clause: self, before, seen_by: &seen_by, known: RwLock::new(known) };
         for camera in uncertain.as_ref().map_or_else(|| Ok(Vec::new()), Uncertain::ends)? {
-            if let Some((Found { state, .. }, sighted)) =
-                before.worst(|sighted| largest(&seen_by(sighted, &camera)?))?
-                && !scenes.iter().any(|(known, from)| *known == state && std::ptr::eq(*from, sighted))
-            {
-                scenes.push((state, sighted));
-            }
+            anew.search(&camera)?;
         }
-        let of = |camera: &Camera| {
-            let mut sigma_k = 0.0f64;
-            for (state, sighted) in &scenes {
-                let seen = seen_by(sighted, camera)?;
-                let own = &seen.study.target.emissivity;
-                let bound = solver(&seen).bound(own, state, &seen.counting, Parameter::Temperature)?;
-                sigma_k = sigma_k.max(bound.sigma);
-            }
-            Ok(self.error_k / (self.coverage_factor * sigma_k))
-        };
-        let by = (Shortfall::TemperatureError, true);
-        let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, &named.camera, &spoils, &of)?;
+        let by = Shortfall::TemperatureError;
+        let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, named, &spoils, &anew)?;
         let Judged { mut verdict, fails_by, mut undecided_by } = judged;
         // What errors of the emissivity make of the temperature is not in the bound.
         if verdict == Verdict::Meets && self.sensitivity {
@@ -185,6 +171,7 @@ impl TemperatureClause {
             temperature_k: Some(found.state.temperature_k),
             lighting: found.state.lighting,
             surroundings_k: found.state.environment_k,
+            smear_m: None,
         });
         let mut warnings =
             before.sighted.first().map(|sighted| sighted.study.camera_warnings()).unwrap_or_default();
@@ -221,13 +208,57 @@ impl TemperatureClause {
         let seen = study.camera_result(study.photon_radiance());
         let asked = Circumstances {
             speed_m_s: self.moving.map(|moving| moving.speed_m_s),
+            path: self.moving.and_then(|moving| moving.conditions(camera)),
             distance_m: before.farthest_m(&self.envelope),
             of_rule: true,
-            is_timed: is_timed(self.stop.as_ref().map(StopSpec::stop)),
+            is_timed: is_timed(self.stop.as_ref()),
             unlit: unlit(&sighted.ranges),
         };
         let brightest = seen.map_or(0.0, |seen| seen.brightest_reading);
         study.conditions_of_clause((camera, brightest), asked, vec![Condition::EmissivityKnown], met)
+    }
+}
+
+/// A material of the target from a distance, seen by another camera.
+type SeenBy<'a> = &'a (dyn Fn(&Sighted, &Camera) -> Result<Sighted> + Sync);
+
+/// The scenes before one camera in which its margin is taken anew.
+struct Scenes<'a> {
+    clause: &'a TemperatureClause,
+    before: &'a Before,
+    seen_by: SeenBy<'a>,
+    known: RwLock<Vec<(State, &'a Sighted)>>,
+}
+
+impl Scenes<'_> {
+    fn margin_of(&self, sigma_k: f64) -> f64 {
+        self.clause.error_k / (self.clause.coverage_factor * sigma_k)
+    }
+}
+
+impl Anew for Scenes<'_> {
+    fn margin(&self, camera: &Camera, _: Errors) -> Result<f64> {
+        let mut sigma_k = 0.0f64;
+        for (state, sighted) in self.known.read().unwrap_or_else(PoisonError::into_inner).iter() {
+            let seen = (self.seen_by)(sighted, camera)?;
+            let own = &seen.study.target.emissivity;
+            let bound = solver(&seen).bound(own, state, &seen.counting, Parameter::Temperature)?;
+            sigma_k = sigma_k.max(bound.sigma);
+        }
+        Ok(self.margin_of(sigma_k))
+    }
+
+    fn search(&self, camera: &Camera) -> Result<bool> {
+        let before = self.margin(camera, Errors::None)?;
+        let found = self.before.worst(|sighted| largest(&(self.seen_by)(sighted, camera)?))?;
+        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
+        let found = found.filter(|(found, sighted)| {
+            let is_known = known.iter().any(|(state, from)| *state == found.state && std::ptr::eq(*from, *sighted));
+            self.margin_of(found.sigma_k) < before * (1.0 - SMALLER) && !is_known
+        });
+        let is_new = found.is_some();
+        known.extend(found.map(|(found, sighted)| (found.state, sighted)));
+        Ok(is_new)
     }
 }
 
@@ -242,7 +273,7 @@ fn before(
     let mut scenario = rule.with_camera(clause, index);
     let approach = match &clause.stop {
         Some(spec) => {
-            Some(Approach::of(StopSpec::stop(spec), &named.camera, cameras::Named::bands(named, &scenario)?))
+            Some(Approach::of(spec, &named.camera, cameras::Named::bands(named, &scenario)?))
         }
         None => None,
     };

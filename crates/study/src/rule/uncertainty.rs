@@ -11,8 +11,13 @@
 //!   ±k deviations of a Gaussian do.
 //!
 //! m is taken anew in the worst scenes of all pairs of materials that come near the worst of all, and in those of the camera with its
-//! figures at their ends: another camera may have another worst scene. The interval is the wider one of the two. A camera meets a
+//! figures at their ends: another camera may have another worst scene. For draws about the lower end of the interval all scenes are searched
+//! again, until that finds no worse one. The lower end is that of which 95 % of as many draws are surer: the order statistic n p − 1.96 √(n p (1 − p)).
+//! The interval is the wider one of the two. A camera meets a
 //! demand if the interval is above 1, fails if it is below, and is undecided between: the limits are guarded by k u on both sides.
+//!
+//! Figures may share an error (`same`), of which each has so many of its own deviations; a rectangular one goes to √3 u. A figure that is a limit
+//! (`at_most`, `at_least`) is taken at it: whoever meets a demand there meets it, and whoever fails may be better.
 //!
 //! Source: JCGM 100:2008 (GUM) 5.1 (first order), JCGM 101:2008 (draws), JCGM 106:2012 8.3 (guard bands).
 
@@ -26,7 +31,7 @@ use hadar::lattice_points::GoldenLattice;
 use hadar::order;
 use hadar::parallel;
 use hadar_scenario::CameraSpec;
-use hadar_scenario::rule::Verdict;
+use hadar_scenario::rule::{Known, Uncertainty, Verdict};
 use std::sync::Arc;
 
 /// Draws of figures alone, which a lattice spreads evenly, and with errors of emissivities, which are random.
@@ -36,6 +41,8 @@ const RANDOM_DRAWS: usize = 2048;
 const MOST_FIGURES: usize = 8;
 /// Uncertain figures of which all ends together are looked at, at most.
 const FEW_FIGURES: usize = 3;
+/// Deviations that hold 95 % of a Gaussian.
+const SURE: f64 = 1.96;
 /// Draws go as many deviations far at most.
 const FARTHEST: f64 = 4.0;
 
@@ -69,7 +76,41 @@ pub struct Drawn {
     pub deviation: f64,
     /// The interval that holds as much as ±k deviations of a Gaussian.
     pub interval: [f64; 2],
+    /// Its lower end by so many draws: 95 of 100 such sets have it above.
+    pub surely_above: f64,
 }
+
+/// A margin taken anew, in scenes of which more are found as they are needed.
+pub(super) trait Anew: Sync {
+    /// The margin of a camera in the scenes that are known.
+    fn margin(&self, camera: &Camera, errors: Errors) -> Result<f64>;
+
+    /// Searches all scenes before a camera; whether one is found in which its margin is smaller, which is known from then on.
+    fn search(&self, camera: &Camera) -> Result<bool>;
+
+    /// The same, as thoroughly as for the camera as it is stated.
+    fn search_thoroughly(&self, camera: &Camera) -> Result<bool> {
+        self.search(camera)
+    }
+}
+
+/// A margin that depends on no scene.
+pub(super) struct Geometry<F>(pub(super) F);
+
+impl<F: Fn(&Camera) -> f64 + Sync> Anew for Geometry<F> {
+    fn margin(&self, camera: &Camera, _: Errors) -> Result<f64> {
+        Ok(self.0(camera))
+    }
+
+    fn search(&self, _: &Camera) -> Result<bool> {
+        Ok(false)
+    }
+}
+
+/// Share by which a margin must be smaller for its scene to be a new one.
+pub(super) const SMALLER: f64 = 1e-3;
+/// Rounds in which scenes are searched again for draws about the lower end.
+const ROUNDS: usize = 6;
 
 /// What one figure puts on the margin.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -93,9 +134,33 @@ pub struct BudgetLine {
 pub(super) struct Uncertain<'a> {
     /// What the rule says of it.
     spec: CameraSpec,
-    figures: Vec<(&'static figures::Row, f64, f64)>,
+    figures: Vec<Figure>,
+    /// How many errors there are: figures may share one.
+    errors: usize,
     coverage_factor: f64,
     place: &'a (dyn Fn(&str) -> Place + Sync),
+}
+
+/// A figure with its error.
+struct Figure {
+    row: &'static figures::Row,
+    value: f64,
+    sigma: f64,
+    rectangular: bool,
+    /// Which of the errors it has.
+    error: usize,
+}
+
+impl Figure {
+    /// How many of its deviations its error goes, at most.
+    fn reach(&self, coverage_factor: f64) -> f64 {
+        if self.rectangular { 3f64.sqrt() } else { coverage_factor }
+    }
+
+    /// Its deviations where the share `p` of errors is smaller.
+    fn deviations(&self, p: f64) -> f64 {
+        if self.rectangular { 3f64.sqrt() * (2.0 * p - 1.0) } else { quantile(p) }
+    }
 }
 
 /// Which errors of emissivities a margin is taken with.
@@ -121,26 +186,34 @@ impl<'a> Uncertain<'a> {
         let spec = CameraSpec { filed: Some(filed), ..named.spec.clone() };
         let preset = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
         let stated = |row: &figures::Row| row.number(&spec).or_else(|| row.number(&preset.as_ref()?.figures));
-        let mut known = Vec::with_capacity(named.uncertainty.len());
-        for (key, u) in &named.uncertainty {
+        let mut known: Vec<Figure> = Vec::with_capacity(named.uncertainty.len());
+        let mut shared: Vec<Option<&str>> = Vec::new();
+        for (key, known_of) in &named.uncertainty {
+            let Known::Within(Uncertainty { sigma, rectangular, same }) = known_of else { continue };
             let Some((row, value)) = figures::row(key).and_then(|row| Some((row, stated(row)?))) else {
                 let found = format!("the uncertainty of a {key} that is not stated");
                 let instead = format!("write its value beside it, as in {key} = {{ value = ..., u = ... }}");
                 return Err(Error::malformed(found, instead).at(place(key)));
             };
-            known.push((row, value, *u));
+            let same = same.as_deref();
+            let of_another = same.and_then(|same| shared.iter().position(|one| *one == Some(same)));
+            let error = of_another.unwrap_or_else(|| {
+                shared.push(same);
+                shared.len() - 1
+            });
+            known.push(Figure { row, value, sigma: *sigma, rectangular: *rectangular, error });
         }
         if known.len() > MOST_FIGURES {
             let found = format!("{} uncertain figures", known.len());
             let instead = format!("state the uncertainty of the {MOST_FIGURES} that matter most");
             return Err(
-                Error::malformed(found, instead).at(place(known.last().map_or("", |(row, ..)| row.key)))
+                Error::malformed(found, instead).at(place(known.last().map_or("", |figure| figure.row.key)))
             );
         }
-        let own = Self { spec, figures: known, coverage_factor, place };
-        for index in 0..own.figures.len() {
-            for side in [-coverage_factor, coverage_factor] {
-                own.moved(index, side)?;
+        let own = Self { spec, figures: known, errors: shared.len(), coverage_factor, place };
+        for (index, figure) in own.figures.iter().enumerate() {
+            for side in [-1.0, 1.0] {
+                own.moved(index, side * figure.reach(coverage_factor))?;
             }
         }
         Ok(Some(own).filter(|own| emissivities || !own.figures.is_empty()))
@@ -152,11 +225,17 @@ impl<'a> Uncertain<'a> {
         self.camera(&(0..self.figures.len()).map(at).collect::<Vec<_>>())
     }
 
+    /// The camera with every error on its side, or in the middle: as far away as the interval goes.
+    fn at_ends(&self, side: impl Fn(usize) -> f64) -> Result<Camera> {
+        let of = |figure: &Figure| side(figure.error) * figure.reach(self.coverage_factor);
+        self.camera(&self.figures.iter().map(of).collect::<Vec<_>>())
+    }
+
     /// The camera with every figure so many of its deviations away.
     fn camera(&self, deviations: &[f64]) -> Result<Camera> {
         let mut spec = self.spec.clone();
-        for ((row, value, u), deviations) in self.figures.iter().zip(deviations) {
-            let moved = value + deviations * u;
+        for (Figure { row, value, sigma, .. }, deviations) in self.figures.iter().zip(deviations) {
+            let moved = value + deviations * sigma;
             let allowed = match row.kind {
                 Kind::Quantity(_, allowed, _) | Kind::Number(allowed, _) | Kind::Efficiency(allowed, _) => {
                     allowed.allows(moved)
@@ -177,101 +256,127 @@ impl<'a> Uncertain<'a> {
         camera::resolved_at(&spec, self.place)
     }
 
-    /// All figures at once, each on one side or the other, as far away as the interval goes: what is as it should be in all of these is
+    /// All errors at once, each on one side or the other, as far away as the interval goes: what is as it should be in all of these is
     /// surely so.
     pub(super) fn sides(&self) -> impl Iterator<Item = Result<Camera>> + '_ {
-        let count = self.figures.len();
-        (0..1usize << count).map(move |number| {
-            let side = |bit: usize| {
-                if number >> bit & 1 == 1 { self.coverage_factor } else { -self.coverage_factor }
-            };
-            self.camera(&(0..count).map(side).collect::<Vec<_>>())
-        })
+        let side = |number: usize, error: usize| if number >> error & 1 == 1 { 1.0 } else { -1.0 };
+        (0..1usize << self.errors).map(move |number| self.at_ends(|error| side(number, error)))
     }
 
-    /// All figures on either side, or, where these are many, each of them alone: the worst scene of such a camera may be another one.
+    /// All errors on either side, or, where these are many, each of them alone: the worst scene of such a camera may be another one.
     pub(super) fn ends(&self) -> Result<Vec<Camera>> {
-        if self.figures.len() <= FEW_FIGURES {
+        if self.errors <= FEW_FIGURES {
             return self.sides().collect();
         }
-        let sides = [-self.coverage_factor, self.coverage_factor];
-        (0..self.figures.len()).flat_map(|index| sides.map(|side| self.moved(index, side))).collect()
+        let alone = |one: usize, side: f64| self.at_ends(|error| if error == one { side } else { 0.0 });
+        (0..self.errors).flat_map(|one| [-1.0, 1.0].map(|side| alone(one, side))).collect()
     }
 
-    /// The verdict on a margin, taken anew by `of`, that fails `by` itself; `other` says what else is wrong with a camera.
+    /// The verdict on a margin that fails `by` itself; `other` says what else is wrong with a camera.
     pub(super) fn verdict(
         uncertain: Option<Self>,
         margin: f64,
-        (by, draw): (Shortfall, bool),
-        own: &Camera,
+        by: Shortfall,
+        own: &Named,
         other: &dyn Fn(&Camera) -> Vec<Shortfall>,
-        of: &(dyn Fn(&Camera) -> Result<f64> + Sync),
+        anew: &dyn Anew,
     ) -> Result<(Judged, Option<MarginUncertainty>)> {
-        let mut others = vec![other(own)];
+        let mut others = vec![other(&own.camera)];
         let mut found = None;
         if let Some(uncertain) = uncertain.filter(|_| margin > 0.0) {
             for camera in uncertain.sides() {
                 others.push(other(&camera?));
             }
-            found = Some(uncertain.of_margin(margin, None, draw, &|camera, _| of(camera))?);
+            found = Some(uncertain.of_margin(margin, None, anew)?);
         }
-        Ok((judged(margin, found.as_ref(), by, &others), found))
+        Ok((judged(margin, found.as_ref(), (by, own.may_be_better()), &others), found))
     }
 
-    /// The uncertainty of a `margin`, taken anew by `of`; `emissivities` is what their errors put on it to first order.
+    /// The uncertainty of a `margin`; `emissivities` is what their errors put on it to first order.
     pub(super) fn of_margin(
         &self,
         margin: f64,
         emissivities: Option<(f64, f64)>,
-        draw: bool,
-        of: &(dyn Fn(&Camera, Errors) -> Result<f64> + Sync),
+        anew: &dyn Anew,
     ) -> Result<MarginUncertainty> {
+        // First, since it finds scenes for all.
+        let drawn = self.drawn(emissivities.is_some(), anew)?;
         let mut budget = Vec::with_capacity(self.figures.len() + 1);
-        for (index, (row, value, u)) in self.figures.iter().enumerate() {
-            let side = |deviations| of(&self.moved(index, deviations)?, Errors::None);
+        for (index, Figure { row, value, sigma, .. }) in self.figures.iter().enumerate() {
+            let side = |deviations| anew.margin(&self.moved(index, deviations)?, Errors::None);
             let unit = unit(row);
             let contribution = 0.5 * (side(1.0)? - side(-1.0)?);
-            let (figure, value, uncertainty) = (row.key.to_owned(), Some(*value), *u);
+            let (figure, value, uncertainty) = (row.key.to_owned(), Some(*value), *sigma);
             budget.push(BudgetLine { figure, value, uncertainty, unit, contribution, share: 0.0 });
         }
+        // Figures with the same error move the margin together.
+        let mut together = vec![0.0; self.errors];
+        budget.iter().zip(&self.figures).for_each(|(line, figure)| together[figure.error] += line.contribution);
         if let Some((uncertainty, contribution)) = emissivities {
             let (figure, value) = ("emissivities".to_owned(), None);
             budget.push(BudgetLine { figure, value, uncertainty, unit: "", contribution, share: 0.0 });
         }
-        let var: f64 = budget.iter().map(|line| line.contribution * line.contribution).sum();
-        for line in budget.iter_mut().filter(|_| var > 0.0) {
-            line.share = line.contribution * line.contribution / var;
+        let errors = together.iter().copied().chain(emissivities.map(|(_, contribution)| contribution));
+        let var: f64 = errors.map(|all| all * all).sum();
+        for (index, line) in budget.iter_mut().enumerate().filter(|_| var > 0.0) {
+            let all = self.figures.get(index).map_or(line.contribution, |figure| together[figure.error]);
+            line.share = line.contribution * all / var;
         }
         order::descending(&mut budget, |b| b.share);
         let (k, first_order) = (self.coverage_factor, var.sqrt());
-        let draws = if draw { Some(self.drawn(emissivities.is_some(), of)?) } else { None };
-        let [mut low, mut high] = [margin - k * first_order, margin + k * first_order];
-        if let Some(Drawn { interval, .. }) = draws {
-            (low, high) = (low.min(interval[0]), high.max(interval[1]));
-        }
-        Ok(MarginUncertainty { coverage_factor: k, low, high, first_order, draws, budget })
+        let (low, high) = (margin - k * first_order, margin + k * first_order);
+        let (low, high) = (low.min(drawn.surely_above), high.max(drawn.interval[1]));
+        Ok(MarginUncertainty { coverage_factor: k, low, high, first_order, draws: Some(drawn), budget })
     }
 
-    fn drawn(&self, random: bool, of: &(dyn Fn(&Camera, Errors) -> Result<f64> + Sync)) -> Result<Drawn> {
+    /// All figures at once, again and again until the scenes before draws about the lower end are known.
+    fn drawn(&self, random: bool, anew: &dyn Anew) -> Result<Drawn> {
         let count = if random { RANDOM_DRAWS } else { DRAWS };
-        let lattice = GoldenLattice::new(vec![0.5; self.figures.len()]);
-        let draw = |index: usize| {
-            let deviations: Vec<f64> = lattice.point(index).into_iter().map(quantile).collect();
-            // What no camera can be is not drawn; the interval does not reach there.
-            let Ok(camera) = self.camera(&deviations) else { return Ok(None) };
-            let errors = if random { Errors::Stream(index as u64) } else { Errors::None };
-            of(&camera, errors).map(Some)
+        let lattice = GoldenLattice::new(vec![0.5; self.errors]);
+        // What no camera can be is not drawn; the interval does not reach there.
+        let camera = |index: usize| {
+            let point = lattice.point(index);
+            let of = |figure: &Figure| figure.deviations(point[figure.error]);
+            self.camera(&self.figures.iter().map(of).collect::<Vec<_>>()).ok()
         };
-        let drawn: Vec<Option<f64>> = parallel::try_map(count, draw)?;
-        let mut margins: Vec<f64> = drawn.into_iter().flatten().collect();
-        margins.sort_by(f64::total_cmp);
-        let count = margins.len();
-        let mean = margins.iter().sum::<f64>() / count.max(1) as f64;
-        let squares: f64 = margins.iter().map(|margin| (margin - mean) * (margin - mean)).sum();
-        let deviation = (squares / count.saturating_sub(1).max(1) as f64).sqrt();
         let outside = detection::miss_probability(self.coverage_factor);
+        let mut margins: Vec<(f64, usize)> = Vec::new();
+        for _ in 0..ROUNDS {
+            let draw = |index: usize| {
+                let Some(camera) = camera(index) else { return Ok(None) };
+                let errors = if random { Errors::Stream(index as u64) } else { Errors::None };
+                anew.margin(&camera, errors).map(|margin| Some((margin, index)))
+            };
+            margins = parallel::try_map(count, draw)?.into_iter().flatten().collect();
+            order::ascending(&mut margins, |(margin, _)| *margin);
+            let mean = margins.len() as f64 * outside;
+            // About the lower end, and the lowest of all.
+            let ranks = [0.0, mean - 2.0 * mean.sqrt(), mean, mean + 2.0 * mean.sqrt()];
+            let mut ranks = ranks.map(|rank| rank.max(0.0) as usize).to_vec();
+            ranks.dedup();
+            let mut found = false;
+            let near = |rank: usize| margins.get(rank).and_then(|(_, index)| camera(*index));
+            for camera in ranks.iter().filter_map(|rank| near(*rank)) {
+                found |= anew.search(&camera)?;
+            }
+            if let (false, Some(camera)) = (found, near(mean as usize)) {
+                found = anew.search_thoroughly(&camera)?;
+            }
+            if !found {
+                break;
+            }
+        }
+        let margins: Vec<f64> = margins.into_iter().map(|(margin, _)| margin).collect();
+        let count = margins.len();
+        let n = count as f64;
+        let mean = margins.iter().sum::<f64>() / n.max(1.0);
+        let squares: f64 = margins.iter().map(|margin| (margin - mean) * (margin - mean)).sum();
+        let deviation = (squares / (n - 1.0).max(1.0)).sqrt();
         let at = |share: f64| crate::identify::quantile(&margins, share);
-        Ok(Drawn { count, mean, deviation, interval: [at(outside), at(1.0 - outside)] })
+        let surer = n * outside - SURE * (n * outside * (1.0 - outside)).sqrt();
+        let surely_above = margins.get(surer.max(0.0) as usize).copied().unwrap_or(f64::NAN);
+        let interval = [at(outside), at(1.0 - outside)];
+        Ok(Drawn { count, mean, deviation, interval, surely_above: surely_above.min(interval[0]) })
     }
 }
 
@@ -291,17 +396,18 @@ pub(super) struct Judged {
     pub(super) undecided_by: Vec<Shortfall>,
 }
 
-/// The verdict on a margin, which fails `by` itself, with what else is wrong: as it is, and with every figure on either side.
+/// The verdict on a margin, which fails `by` itself, with what else is wrong: as it is, and with every figure on either side. A camera whose figures
+/// are limits, which `may_be_better`, does not fail by its margin.
 pub(super) fn judged(
     margin: f64,
     uncertainty: Option<&MarginUncertainty>,
-    by: Shortfall,
+    (by, may_be_better): (Shortfall, bool),
     others: &[Vec<Shortfall>],
 ) -> Judged {
     let [low, high] = uncertainty.map_or([margin; 2], |interval| [interval.low, interval.high]);
     let (mut fails_by, mut undecided_by) = (Vec::new(), Vec::new());
     // What is no number is not met.
-    if high < 1.0 || high.is_nan() {
+    if (high < 1.0 && !may_be_better) || high.is_nan() {
         fails_by.push(by);
     } else if low < 1.0 || low.is_nan() {
         undecided_by.push(by);

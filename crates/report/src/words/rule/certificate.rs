@@ -1,50 +1,236 @@
-//! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
+//! The certificate: a page for whoever must decide by it, then what was checked, what came out, and what it rests on, in Markdown.
 
-use super::sources::dates;
-use super::stop::decisions;
-use super::{measured, text};
+use super::stop::{decisions, metres};
+use super::{in_words_of_kind, measured, text};
+use crate::document::Document;
 use crate::manifest::{Input, Provenance, VERSION};
-use crate::table::markdown;
 use crate::text::footing::{RESTS_ON, gaussian, of_scene};
 use crate::text::significant;
 use crate::words::Say;
 use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use crate::words::safety;
-use hadar_scenario::Units;
+use crate::words::shortfall::no;
+use hadar_scenario::rule::{Ground, Verdict};
+use hadar_scenario::{Rule, Units};
 use hadar_study::{
-    ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, MeasuredVerdict, RuleAnswer, RuleStudy,
+    ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade, MeasuredAnswer,
+    MeasuredVerdict, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
 };
-use std::fmt::Write as _;
 
 /// The page.
 pub(crate) fn page(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
+    first_page(answer, provenance).followed_by(details(study, answer, provenance)).to_markdown()
+}
+
+/// What somebody who is no physicist must know: who asked what, what came out and why, the worst scenes, where the numbers are from.
+pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Document {
     let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
-    let mut out = format!("# {}\n\n", title(answer));
-    for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
-        if let Some(value) = value {
-            let _ = writeln!(out, "{label}: {value}  ");
+    let mut out = Document::default();
+    out.heading(1, &title(answer));
+    let stated = [("Authority", &about.authority), ("Version", &about.version), ("Status", &about.status)];
+    let mut fields: Vec<(&'static str, String)> =
+        stated.into_iter().filter_map(|(label, value)| Some((label, value.clone()?))).collect();
+    fields.extend(in_force(&answer.rule).map(|dates| ("In force", dates)));
+    let day = answer.on.map_or_else(|| "none was stated".to_owned(), |day| day.to_string());
+    fields.push(("Day that is asked about", day));
+    fields.push(("Checked with", format!("hadar {VERSION}, commit {}", provenance.commit)));
+    fields.push(("Command", format!("{}, seed {}", provenance.command_line(), provenance.seed)));
+    out.fields(fields);
+    about.text.iter().for_each(|text| out.quote(text));
+    out.strong(&answer.sentence.say());
+    let (outcome, reasons) = answer.outcome();
+    out.paragraph(&passed(outcome, &reasons));
+    out.items(said(&reasons).into_iter().map(|text| (None, text)));
+
+    out.heading(2, "Clause by clause");
+    let names = answer.cameras.iter().map(|camera| camera.name.as_str());
+    let head: Vec<&str> = std::iter::once("clause").chain(names).collect();
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    for clause in &answer.clauses {
+        let lines = clause.lines();
+        let cell = |camera: &CameraAnswer| {
+            let line = lines.iter().find(|line| line.camera == camera.name);
+            line.map_or_else(String::new, |line| in_a_word(line.verdict, line.grade, line.conditions, line.fails_by))
+        };
+        let name = clause.name.clone().unwrap_or_else(|| in_words_of_kind(clause.kind).to_owned());
+        rows.push(std::iter::once(name).chain(answer.cameras.iter().map(cell)).collect());
+    }
+    if answer.clauses.len() > 1 {
+        let all = answer.cameras.iter().map(|one| in_a_word(one.verdict, one.grade, &one.conditions, &[]));
+        rows.push(std::iter::once("the whole rule".to_owned()).chain(all).collect());
+    }
+    out.table(&head, None, rows);
+
+    out.heading(2, "The hardest scenes");
+    out.items(answer.clauses.iter().flat_map(|clause| hardest(clause, units)).map(|text| (None, text)));
+    if !answer.rule.sources.is_empty() {
+        out.heading(2, "Where the numbers of the rule are from");
+        out.table(&["number", "value", "from"], Some(0), from_where(&answer.rule));
+    }
+    out.heading(2, "What the words mean");
+    out.items(WORDS.map(|[word, meaning]| (Some(word.to_owned()), meaning.to_owned())));
+    out
+}
+
+/// Words of the page, each with its meaning.
+const WORDS: [[&str; 2]; 9] = [
+    ["yes", "in every scene of the rule a camera like this has information enough; whether its software uses it is not said"],
+    ["yes, if", "the same, provided that something holds which nobody stated or checked; it is listed below, camera by camera"],
+    ["undecided", "neither is shown: figures are uncertain, or the proof ends between the two"],
+    ["no", "there is a scene of the rule in which no software can do it with this camera, or its image is spoiled"],
+    ["margin", "what is there over what is demanded: above 1 is enough, below 1 is not"],
+    ["d", "statistical distance: how far two materials are apart in what a camera counts; a decision is right with the probability written beside it"],
+    ["proved", "holds in every scene of the rule by a mathematical bound; simulated: by drawing scenes or errors; searched: none worse was found; assumed: \
+      under conditions"],
+    ["emissivity", "how much of its own heat a surface sends out; the rest of what is seen of it is mirrored surroundings"],
+    ["V", "lighting factor: the share of what a surface mirrors that comes from the surroundings that are named"],
+];
+
+/// Whether the rule is passed, in a sentence.
+fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
+    match outcome {
+        Outcome::Passed => "Result: PASSED. Every camera meets every clause, proved, without a condition, on a day on which the rule holds.".into(),
+        _ => format!("Result: {}. {}", outcome.word(), if reasons.len() == 1 { "The reason:" } else { "The reasons:" }),
+    }
+}
+
+/// Reasons in words, those of a kind together.
+fn said(reasons: &[NotPassed]) -> Vec<String> {
+    let of = |place: &CameraBeforeClause| match &place.clause {
+        Some(clause) => format!("{} ({clause})", place.camera),
+        None => place.camera.clone(),
+    };
+    let all = |wanted: &dyn Fn(&NotPassed) -> Option<String>| -> Vec<String> { reasons.iter().filter_map(wanted).collect() };
+    let mut out = Vec::new();
+    let mut one = |names: Vec<String>, what: &str| {
+        if !names.is_empty() {
+            out.push(format!("{what}: {}", names.join(", ")));
+        }
+    };
+    one(all(&|one| if let NotPassed::Fails(place) = one { Some(of(place)) } else { None }), "does not meet it");
+    one(all(&|one| if let NotPassed::Undecided(place) = one { Some(of(place)) } else { None }), "undecided");
+    let unproved = |one: &NotPassed| match one {
+        NotPassed::NotProved(place, grade) => Some(format!("{} ({})", of(place), grade.name())),
+        _ => None,
+    };
+    one(all(&unproved), "met, and not proved");
+    let rests = |one: &NotPassed| match one {
+        NotPassed::RestsOn(place, codes) => Some(format!("{} [{}]", of(place), codes.join(" "))),
+        _ => None,
+    };
+    one(all(&rests), "rests on conditions that nobody accepted (--accept)");
+    let changed = |one: &NotPassed| match one {
+        NotPassed::Changed { key, value } => Some(format!("{key} = {value}")),
+        _ => None,
+    };
+    one(all(&changed), "values stand in the place of the rule's own, so that this is another rule");
+    for reason in reasons {
+        match reason {
+            NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),
+            NotPassed::NotInForce(idle) => out.push(idle.say()),
+            _ => {}
         }
     }
-    dates(&answer.rule).iter().for_each(|line| {
-        let _ = writeln!(out, "{line}  ");
-    });
-    let _ = writeln!(out, "Checked with hadar {VERSION}, commit {}  ", provenance.commit);
-    let _ = writeln!(out, "Command: `{}`, seed {}\n", provenance.command_line(), provenance.seed);
-    if let Some(text) = &about.text {
-        let _ = writeln!(out, "{text}\n");
+    out
+}
+
+/// A verdict in a cell.
+fn in_a_word(verdict: Verdict, grade: Grade, conditions: &[Condition], fails_by: &[Shortfall]) -> String {
+    match verdict {
+        Verdict::Meets => match Condition::open(conditions).count() {
+            0 => format!("yes ({})", grade.name()),
+            1 => "yes, if (1 condition)".into(),
+            count => format!("yes, if ({count} conditions)"),
+        },
+        Verdict::Undecided => "undecided".into(),
+        Verdict::Fails if fails_by.is_empty() => "no".into(),
+        Verdict::Fails => no(fails_by),
     }
-    let _ = writeln!(out, "**{}**\n", answer.sentence.say());
-    for clause in &answer.clauses {
-        if let Some(name) = &clause.name {
-            let _ = writeln!(out, "## {name}\n");
-            if let Some(text) = &clause.text {
-                let _ = writeln!(out, "{text}\n");
+}
+
+/// The scene in which each camera is nearest to failing, or fails most.
+fn hardest(clause: &ClauseAnswer, units: Units) -> Vec<String> {
+    let of_clause = clause.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
+    match &clause.found {
+        Found::Apart(apart) => {
+            let of = |camera: &CameraVerdict| {
+                format!("{}{of_clause}: {}; margin {}", camera.name, scene_in_words(camera, clause, units), significant(camera.margin, 3))
+            };
+            apart.cameras.iter().map(of).collect()
+        }
+        Found::Measured(measured) => {
+            let of = |camera: &MeasuredVerdict| {
+                let scene = measured::measured_scene(&camera.limiting, units);
+                format!("{}{of_clause}: {scene}; margin {}", camera.name, significant(camera.margin, 3))
+            };
+            measured.cameras.iter().map(of).collect()
+        }
+    }
+}
+
+/// 'skin of 30 degC, 9 m away, lit by surroundings of 15 degC (V 0.8), against polycarbonate'.
+fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -> String {
+    let scene = &camera.limiting;
+    let mut out = format!("{} of {}", scene.target, units.temperature(scene.temperature_k));
+    match scene.distance_m {
+        Some(distance) if scene.distance_matters => out += &format!(", {} away", metres(distance, units)),
+        Some(_) => out += ", at any distance",
+        None => {}
+    }
+    let lit = scene.surroundings_k.iter().zip(&scene.lighting);
+    let lit: Vec<String> =
+        lit.map(|(kelvin, factor)| format!("{} (V {})", units.temperature(*kelvin), significant(*factor, 3))).collect();
+    if !lit.is_empty() {
+        out += &format!(", lit by surroundings of {}", lit.join(" and "));
+    }
+    out += &format!(", to be told from {}", scene.alternative);
+    if let Some(stop) = &clause.stop {
+        out += &format!(", from a vehicle at up to {}", units.speed(stop.fastest.speed_m_s));
+    }
+    out
+}
+
+/// Every number of the rule with what stands behind it.
+fn from_where(rule: &Rule) -> Vec<[String; 3]> {
+    let behind = |key: &str| {
+        let all = rule.sources.iter().filter(|citation| citation.covers(key));
+        let said = all.map(|citation| match &citation.ground {
+            Ground::Document { document, clause, quote, date, mark } => {
+                format!("\u{201c}{quote}\u{201d}, {document}, {clause} ({date}, {})", mark.name())
             }
-            let _ = writeln!(out, "{}\n", clause.sentence.say());
+            Ground::Choice(reason) => format!("a choice: {reason}"),
+        });
+        said.collect::<Vec<_>>().join("; ")
+    };
+    let named = |key: &str| match behind(key) {
+        said if said.is_empty() => "nobody says from where".to_owned(),
+        said => said,
+    };
+    rule.figures().into_iter().map(|figure| [figure.key.clone(), figure.value, named(&figure.key)]).collect()
+}
+
+/// When a rule holds.
+fn in_force(rule: &Rule) -> Option<String> {
+    match (rule.about.from, rule.about.until) {
+        (Some(from), Some(until)) => Some(format!("from {from} until {until}")),
+        (Some(from), None) => Some(format!("from {from}")),
+        (None, Some(until)) => Some(format!("until {until}")),
+        (None, None) => None,
+    }
+}
+
+fn details(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> Document {
+    let units = answer.rule.scenario.units();
+    let mut out = Document::default();
+    for clause in &answer.clauses {
+        out.heading(2, clause.name.as_deref().unwrap_or("Details"));
+        if clause.name.is_some() {
+            clause.text.iter().for_each(|text| out.quote(text));
+            out.paragraph(&clause.sentence.say());
         }
         if let Some(stop) = &clause.stop {
-            let _ = writeln!(out, "Stop: {}.\n", decisions(stop, units));
+            out.paragraph(&format!("Stop: {}.", decisions(stop, units)));
         }
         match &clause.found {
             Found::Apart(apart) => of_apart(apart, units, &mut out),
@@ -52,45 +238,42 @@ pub(crate) fn page(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenan
         }
         budgets(clause, &mut out);
     }
-    out.push_str(&format!("## {RESTS_ON}\n\n"));
-    if let Some(study) = study.study() {
-        let footing = of_scene(study, gaussian(study));
-        footing.lines().skip(1).for_each(|line| {
-            let _ = writeln!(out, "- {}", line.trim());
-        });
-    }
-    out.push_str(
-        "- the margin is the least statistical distance over the envelope, over that demanded; no test is right more often than \
-         the probability in the table, averaged over the limiting scene and its nearest look-alike\n\
-         - it is a limit of physics: a camera that falls short of the distance cannot do the task with any software; one that \
-         reaches it may, if its software comes near the limit\n\
-         - figures of cameras are those of the documents named with them; nothing was measured here\n\n",
-    );
+    out.heading(2, RESTS_ON);
+    let footing = study.study().map(|study| of_scene(study, gaussian(study))).unwrap_or_default();
+    let footing = footing.lines().skip(1).map(|line| line.trim().to_owned());
+    out.items(footing.chain(ALWAYS.map(str::to_owned)).map(|line| (None, line)));
     for camera in answer.cameras.iter().filter(|camera| !camera.conditions.is_empty()) {
-        let _ = writeln!(out, "## What the verdict on {} rests on\n", camera.name);
-        for one in &camera.conditions {
+        out.heading(2, &format!("What the verdict on {} rests on", camera.name));
+        out.items(camera.conditions.iter().map(|one| {
             let kind = if one.favourable() { "only if " } else { "" };
             let accepted = if answer.accepted.contains(&one.code()) { " (accepted)" } else { "" };
-            let _ = writeln!(out, "- [{}] {kind}{}{accepted}", one.code(), one.say());
-        }
-        out.push('\n');
+            (Some(one.code()), format!("{kind}{}{accepted}", one.say()))
+        }));
     }
     let warned = text::together(answer);
     if !warned.is_empty() {
-        out.push_str("## Warnings\n\n");
-        warned.iter().for_each(|warning| {
-            let _ = writeln!(out, "- [{}] {}", warning.code().name(), warning.say());
-        });
-        out.push('\n');
+        out.heading(2, "Warnings");
+        out.items(warned.iter().map(|warning| (Some(warning.code().name().to_owned()), warning.say())));
     }
-    let hash = |input: &Input| input.sha256.as_deref().map_or(READ_ONCE.into(), |hash| format!("`{hash}`"));
-    let inputs = provenance.inputs.iter().map(|input| [input.path.clone(), hash(input)]);
-    out.push_str(
-        "## Inputs\n\nThe answer rests on these, by their content, and on the program above; made again with them it is the same, byte by byte. \
-         `sha256sum` gives the hash of a file; of what is built in the program gives it.\n\n",
+    let hash = |input: &Input| input.sha256.as_deref().unwrap_or(READ_ONCE).to_owned();
+    out.heading(2, "Inputs");
+    out.paragraph(
+        "The answer rests on these, by their content, and on the program above; made again with them it is the same, byte by byte. \
+         sha256sum gives the hash of a file; of what is built in the program gives it.",
     );
-    out + &markdown(&["input", "SHA-256"], inputs)
+    let inputs = provenance.inputs.iter().map(|input| [input.path.clone(), hash(input)]);
+    out.table(&["input", "SHA-256"], Some(1), inputs);
+    out
 }
+
+/// What is true of every rule.
+const ALWAYS: [&str; 3] = [
+    "the margin is the least statistical distance over the envelope, over that demanded; no test is right more often than the probability in \
+     the table, averaged over the limiting scene and its nearest look-alike",
+    "it is a limit of physics: a camera that falls short of the distance cannot do the task with any software; one that reaches it may, if its \
+     software comes near the limit",
+    "figures of cameras are those of the documents named with them; nothing was measured here",
+];
 
 /// What it is called.
 pub(crate) fn title(answer: &RuleAnswer) -> String {
@@ -100,20 +283,17 @@ pub(crate) fn title(answer: &RuleAnswer) -> String {
 }
 
 /// Budgets of all margins whose figures are uncertain.
-fn budgets(clause: &ClauseAnswer, out: &mut String) {
+fn budgets(clause: &ClauseAnswer, out: &mut Document) {
     for line in clause.lines() {
         let Some(found) = line.uncertainty else { continue };
-        let _ = writeln!(out, "Margin of {}:\n", line.camera);
-        measured::uncertainty(line.margin, found).iter().for_each(|line| {
-            let _ = writeln!(out, "- {line}");
-        });
-        out.push('\n');
+        out.paragraph(&format!("Margin of {}:", line.camera));
+        out.items(measured::uncertainty(line.margin, found).into_iter().map(|line| (None, line)));
     }
 }
 
 /// A clause that tells materials apart.
-fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
-    let _ = writeln!(out, "> {}\n", apart.requirement.quotable.say());
+fn of_apart(apart: &ApartAnswer, units: Units, out: &mut Document) {
+    out.quote(&apart.requirement.quotable.say());
     let head = [
         "camera",
         "meets",
@@ -125,22 +305,16 @@ fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
         "limiting scene",
         "would do",
     ];
-    out.push_str(&markdown(&head, apart.cameras.iter().map(|camera| row(camera, units))));
-    out.push('\n');
-    for sentence in safety::of_rule(&apart.safety) {
-        let _ = writeln!(out, "- {sentence}");
-    }
-    if !apart.safety.is_empty() {
-        out.push('\n');
-    }
+    out.table(&head, None, apart.cameras.iter().map(|camera| row(camera, units)));
+    out.items(safety::of_rule(&apart.safety).into_iter().map(|sentence| (None, sentence)));
     if let Some(part) = &apart.not_identifiable {
-        let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
+        out.paragraph(&format!("{}.", text::no_camera(part).join("; ")));
     }
 }
 
 /// A clause that demands a quantity.
-fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
-    let _ = writeln!(out, "> Demanded: {}.\n", measured.definition.say());
+fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut Document) {
+    out.quote(&format!("Demanded: {}.", measured.definition.say()));
     let head =
         ["camera", "meets", "margin", measured::measure(measured.quantity), "evidence", "limiting scene"];
     let cells = |camera: &MeasuredVerdict| {
@@ -153,8 +327,7 @@ fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
             measured::measured_scene(&camera.limiting, units),
         ]
     };
-    out.push_str(&markdown(&head, measured.cameras.iter().map(cells)));
-    out.push('\n');
+    out.table(&head, None, measured.cameras.iter().map(cells));
 }
 
 fn row(camera: &CameraVerdict, units: Units) -> [String; 9] {

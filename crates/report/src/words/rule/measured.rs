@@ -78,6 +78,7 @@ pub(super) fn measured_scene(scene: &MeasuredScene, units: Units) -> String {
             scene.surroundings_k.iter().map(|kelvin| units.temperature(*kelvin)).collect();
         parts.push(format!("{}, surroundings {}", numbers("V ", &scene.lighting, 3), kelvin.join(" ")));
     }
+    parts.extend(scene.smear_m.map(|smear| format!("smear of {} in an exposure", units.length(smear))));
     parts.extend(scene.distance_m.map(|z| format!("{} away", metres(z, units))));
     parts.join(", ")
 }

@@ -36,6 +36,14 @@ pub(super) fn decisions(stop: &StopResult, units: Units) -> String {
             said += &format!(" (at {}, which leaves least)", units.speed(one.speed_m_s));
         }
     }
+    if let Some(crossing) = &stop.crossing {
+        let way = match crossing.speed_m_s {
+            0.0 => "who stands there is".to_owned(),
+            speed => format!("who crosses at {} is", units.speed(speed)),
+        };
+        let bearing = significant(crossing.bearing_rad.to_degrees(), 3);
+        said += &format!("; {way} up to {bearing} deg beside the axis until then");
+    }
     said
 }
 
@@ -50,8 +58,13 @@ pub(super) fn approach(approach: &ApproachResult, units: Units) -> String {
         (Some(within), Some(time_s)) => format!("; {within} fit into {} s", significant(time_s, 3)),
         _ => String::new(),
     };
+    let outside = match approach.in_view_from_m_s {
+        Some(Some(speed)) => format!("; who crosses is in its view until then from {} on", units.speed(speed)),
+        Some(None) => "; who crosses leaves its view before, at every speed".to_owned(),
+        None => String::new(),
+    };
     format!(
-        "{needed}{fit}; the first is seen from {}; a pixel sees {} where the decision stands",
+        "{needed}{fit}; the first is seen from {}; a pixel sees {} where the decision stands{outside}",
         metres(approach.seen_from_m, units),
         units.length(approach.footprint_m)
     )

@@ -1,0 +1,142 @@
+//! What is demanded of a statement beside that it is the one its command makes: that the rule is passed, which rule, on which day, and that an
+//! envelope which somebody signed holds it.
+//!
+//! An envelope (DSSE) has a payload in base64 and signatures over it; whose they are is for the tool to say that made them.
+//!
+//! Source: DSSE v1.0.2 (github.com/secure-systems-lab/dsse); in-toto attestation framework, Statement v1.
+
+use super::verified::Difference;
+use crate::folder::inside::Inside;
+use crate::rule::STATEMENT;
+use base64::Engine as _;
+use base64::engine::general_purpose::{STANDARD, URL_SAFE};
+use hadar::error::{Error, Result};
+use serde::Deserialize;
+use serde_json::Value;
+use std::io::Read as _;
+use std::path::Path;
+
+/// The type of the payload of an envelope that holds a statement.
+const PAYLOAD: &str = "application/vnd.in-toto+json";
+/// The longest statement, bytes.
+const LONGEST: u64 = 1 << 26;
+
+/// What is demanded.
+#[derive(Debug, Clone, Default)]
+pub struct Demands {
+    /// That the rule is passed.
+    pub passed: bool,
+    /// SHA-256 of the rule, which must be the whole policy: nothing set over it, nothing accepted.
+    pub rule: Option<String>,
+    /// The day that must have been asked about, as it is written.
+    pub on: Option<String>,
+    /// An envelope that must hold the statement.
+    pub envelope: Option<Vec<u8>>,
+}
+
+#[derive(Deserialize)]
+struct Envelope {
+    payload: String,
+    #[serde(rename = "payloadType")]
+    payload_type: String,
+    signatures: Vec<Signature>,
+}
+
+#[derive(Deserialize)]
+struct Signature {
+    #[serde(default)]
+    keyid: Option<String>,
+    sig: String,
+}
+
+impl Demands {
+    /// Whether anything is demanded.
+    #[must_use]
+    pub const fn is_none(&self) -> bool {
+        !self.passed && self.rule.is_none() && self.on.is_none() && self.envelope.is_none()
+    }
+
+    /// Holds them against the statement in a folder: what is not met, and the keys by which an envelope says that it is signed.
+    pub(super) fn unmet(&self, folder: &Path) -> Result<(Vec<Difference>, Vec<String>)> {
+        let mut text = Vec::new();
+        let read = Inside::open(folder).and_then(|inside| inside.file(STATEMENT));
+        let read = read.and_then(|file| file.take(LONGEST).read_to_end(&mut text));
+        if read.is_err() {
+            let instead = "name the report of a rule: hadar rule RULE --out FOLDER";
+            return Err(Error::malformed("there is no statement in this folder", instead).in_file(folder));
+        }
+        let statement: Value = serde_json::from_slice(&text).unwrap_or_default();
+        let predicate = &statement["predicate"];
+        let mut unmet = Vec::new();
+        let mut demand = |demanded: &str, found: &Value| {
+            if found.as_str() != Some(demanded) {
+                let found = found.as_str().unwrap_or("nothing").to_owned();
+                unmet.push(Difference::Demand { demanded: demanded.to_owned(), found });
+            }
+        };
+        if self.passed {
+            demand("PASSED", &predicate["result"]);
+        }
+        if let Some(rule) = &self.rule {
+            demand(rule, &predicate["policy"]["digest"]["sha256"]);
+        }
+        if let Some(day) = &self.on {
+            demand(day, &predicate["on"]);
+        }
+        let mut keys = Vec::new();
+        if let Some(envelope) = &self.envelope {
+            match signed(envelope, &text) {
+                Ok(found) => keys = found,
+                Err(found) => unmet.push(Difference::Envelope { found }),
+            }
+        }
+        Ok((unmet, keys))
+    }
+}
+
+/// The keys by which an envelope says that a statement is signed, or what is wrong with it.
+fn signed(envelope: &[u8], statement: &[u8]) -> std::result::Result<Vec<String>, String> {
+    let envelope: Envelope = serde_json::from_slice(envelope).map_err(|error| format!("no DSSE envelope: {error}"))?;
+    if envelope.payload_type != PAYLOAD {
+        return Err(format!("its payload is of type {:?}, not {PAYLOAD}", envelope.payload_type));
+    }
+    let payload = STANDARD.decode(&envelope.payload).or_else(|_| URL_SAFE.decode(&envelope.payload));
+    let payload = payload.map_err(|error| format!("its payload is no base64: {error}"))?;
+    if payload != statement {
+        return Err(format!("it holds another statement than {STATEMENT}, byte by byte"));
+    }
+    let signs = |one: &Signature| !one.sig.is_empty();
+    if envelope.signatures.is_empty() || !envelope.signatures.iter().all(signs) {
+        return Err("nobody signed it".to_owned());
+    }
+    let named = |one: Signature| one.keyid.filter(|id| !id.is_empty()).unwrap_or_else(|| "a key without a name".into());
+    Ok(envelope.signatures.into_iter().map(named).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn an_envelope_holds_the_very_bytes() {
+        let statement = b"{\n  \"_type\": \"x\"\n}\n";
+        let of = |payload: &[u8], kind: &str, sig: &str| {
+            let signature = json!({ "keyid": "k1", "sig": sig });
+            json!({ "payload": STANDARD.encode(payload), "payloadType": kind, "signatures": [signature] }).to_string()
+        };
+        assert_eq!(signed(of(statement, PAYLOAD, "c2ln").as_bytes(), statement), Ok(vec!["k1".to_owned()]));
+        let wrong = |text: &str, told: &str| {
+            let found = signed(text.as_bytes(), statement).unwrap_err();
+            assert!(found.contains(told), "{found}");
+        };
+        let mut changed = statement.to_vec();
+        changed[5] ^= 1;
+        wrong(&of(&changed, PAYLOAD, "c2ln"), "another statement");
+        wrong(&of(statement, "text/plain", "c2ln"), "text/plain");
+        wrong(&of(statement, PAYLOAD, ""), "nobody signed");
+        wrong(&json!({ "payload": "", "payloadType": PAYLOAD, "signatures": [] }).to_string(), "another statement");
+        wrong(&json!({ "payload": "!", "payloadType": PAYLOAD, "signatures": [] }).to_string(), "no base64");
+        wrong("{}", "no DSSE envelope");
+    }
+}

@@ -1,0 +1,232 @@
+//! Where in the picture a target is that crosses the way of a vehicle, and how fast it moves there.
+//!
+//! A target crosses at c, and vehicle and target meet (with nobody braking) within b of the camera's axis. At the distance z, closing in at
+//! w, it has z/w to go: it is at most c z/w + b beside the axis, at the bearing
+//!
+//! tan θ = c/w + b/z,
+//!
+//! largest where the decision must stand, and at the lowest speed. On its way, walking or standing, at any bearing up to θ_e = min(θ, half the
+//! view), it moves across the line of sight by no more than
+//!
+//! v_⊥ = v sin θ_e + c,   Δ = v_⊥ t/(z α) pixels in the time t
+//!
+//! (v the vehicle's speed or w, whichever is larger; α the angle of a pixel, rad). A target that keeps its pace and will be hit stands still in the
+//! picture but for b; people do not keep their pace.
+//!
+//! Over a range of speeds Δ and v_⊥ are the largest of 257 speeds, equal steps of 1/v apart, and of the swiftest of a target straight ahead.
+//!
+//! Assumptions: a straight way, the camera looks along it. Units: m, s, m s⁻¹, rad.
+//!
+//! Source: plane geometry; motion as in [`super::motion`]. Tests of crossings: 49 CFR 571.127, Table 2 (5 km/h, 50 % overlap).
+
+use super::motion::Motion;
+use super::stop::{Decision, Stop};
+use crate::error::{Result, check};
+use crate::instrument::Camera;
+
+/// Speeds of a range that are looked at.
+const SPEEDS: usize = 256;
+
+/// A manoeuvre before a target that crosses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Encounter {
+    stop: Stop,
+    crossing_m_s: f64,
+    offset_m: f64,
+}
+
+impl Encounter {
+    /// Of a target that crosses at `crossing_m_s`; both meet within `offset_m` of the camera's axis.
+    ///
+    /// # Errors
+    /// A figure below 0 or no number.
+    ///
+    /// ```
+    /// use hadar::policy::encounter::Encounter;
+    /// use hadar::policy::stop::{Stop, StopFigures};
+    /// let figures = StopFigures {
+    ///     speeds_m_s: [10.0; 2],
+    ///     target_m_s: 0.0,
+    ///     latency_s: 0.5,
+    ///     deceleration_m_s2: 5.0,
+    ///     margin_m: 0.0,
+    ///     start: None,
+    /// };
+    /// // Decided at 15 m; by then at most 1.5 s of 2 m/s, and 1 m, beside the axis: 4 m of 15.
+    /// let meets = Encounter::new(Stop::new(figures)?, 2.0, 1.0)?;
+    /// assert!((meets.widest_rad() - (4.0f64 / 15.0).atan()).abs() < 1e-12);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn new(stop: Stop, crossing_m_s: f64, offset_m: f64) -> Result<Self> {
+        check::non_negative("speed of a target that crosses", crossing_m_s, "m/s")?;
+        check::non_negative("offset of a target that crosses", offset_m, "m")?;
+        Ok(Self { stop, crossing_m_s, offset_m })
+    }
+
+    /// How fast the target crosses, m s⁻¹.
+    #[must_use]
+    pub fn crossing_m_s(&self) -> f64 {
+        self.crossing_m_s
+    }
+
+    /// Within which distance of the camera's axis both meet, m.
+    #[must_use]
+    pub fn offset_m(&self) -> f64 {
+        self.offset_m
+    }
+
+    /// How far beside the axis the target is at most until a decision, rad.
+    #[must_use]
+    pub fn bearing_rad(&self, decision: &Decision) -> f64 {
+        (self.crossing_m_s / decision.closing_m_s + self.offset_m / decision.distance_m).atan()
+    }
+
+    /// The same at every speed.
+    #[must_use]
+    pub fn widest_rad(&self) -> f64 {
+        self.bearing_rad(&self.stop.decisions()[0])
+    }
+
+    /// Half the view that a camera surely has, rad: of figures that contradict each other the narrower; `None` where it is not known.
+    #[must_use]
+    pub fn half_view_rad(camera: &Camera) -> Option<f64> {
+        let by_view = camera.field_of_view_rad.map(|view| 0.5 * view);
+        let by_lens =
+            camera.pixels.map(|pixels| (0.5 * f64::from(pixels) * camera.pixel_m / camera.focal_length_m).atan());
+        by_view.into_iter().chain(by_lens).reduce(f64::min)
+    }
+
+    /// The lowest speed from which on a target is within half a view until the decision, m s⁻¹; `None` where at none.
+    #[must_use]
+    pub fn in_view_from_m_s(&self, half_view_rad: f64) -> Option<f64> {
+        let holds = |decision: &Decision| self.bearing_rad(decision) <= half_view_rad;
+        let [slowest, fastest] = self.stop.decisions();
+        if holds(&slowest) {
+            return Some(slowest.speed_m_s);
+        }
+        holds(&fastest).then(|| {
+            let (mut low, mut high) = (slowest.speed_m_s, fastest.speed_m_s);
+            // The bearing falls with the speed.
+            while high - low > 1e-9 * high {
+                let middle = 0.5 * (low + high);
+                if holds(&self.stop.at(middle)) { high = middle } else { low = middle }
+            }
+            high
+        })
+    }
+
+    /// How many pixels the target moves in a second, at most, and where.
+    #[must_use]
+    pub fn pixels_per_s(&self, camera: &Camera) -> (f64, Decision) {
+        let of = |decision: &Decision| {
+            let [finest, _] = camera.pixel_angles_rad();
+            let along = Motion::within(camera, decision.distance_m, self.bearing_rad(decision));
+            along.blur_pixels(pace(decision), 1.0) + self.crossing_m_s / (finest * decision.distance_m)
+        };
+        self.most(of)
+    }
+
+    /// How far the target moves across the line of sight in a second, at most, m.
+    #[must_use]
+    pub fn metres_per_s(&self, camera: &Camera) -> f64 {
+        let of = |decision: &Decision| {
+            let along = Motion::within(camera, decision.distance_m, self.bearing_rad(decision));
+            along.blur_m(pace(decision), 1.0) + self.crossing_m_s
+        };
+        self.most(of).0
+    }
+
+    fn most(&self, of: impl Fn(&Decision) -> f64) -> (f64, Decision) {
+        let [slowest, fastest] = self.stop.decisions().map(|one| one.speed_m_s);
+        let at = |step: usize| {
+            let share = step as f64 / SPEEDS as f64;
+            self.stop.at(((1.0 - share) / slowest + share / fastest).recip().clamp(slowest, fastest))
+        };
+        let count = if slowest < fastest { SPEEDS } else { 0 };
+        let swiftest = self.stop.swiftest();
+        (0..=count).map(at).fold((of(&swiftest), swiftest), |(most, where_to), decision| {
+            let found = of(&decision);
+            if found > most { (found, decision) } else { (most, where_to) }
+        })
+    }
+}
+
+/// The larger of the vehicle's own and the closing speed.
+fn pace(decision: &Decision) -> f64 {
+    decision.speed_m_s.max(decision.closing_m_s)
+}
+
+#[cfg(all(test, feature = "library"))]
+mod tests {
+    use super::*;
+    use crate::instrument::presets;
+    use crate::policy::stop::StopFigures;
+
+    const STOP: StopFigures = StopFigures {
+        speeds_m_s: [10.0 / 3.6, 60.0 / 3.6],
+        target_m_s: 0.0,
+        latency_s: 0.5,
+        deceleration_m_s2: 7.0,
+        margin_m: 0.0,
+        start: None,
+    };
+
+    fn camera() -> Camera {
+        let mut preset = presets::find("flir-boson-640-14mm").unwrap();
+        preset.figures.f_number = Some(1.0);
+        preset.camera().unwrap().checked().unwrap()
+    }
+
+    /// The motion itself: a target at any place on its way, that walks either way, along or stands, step by step against what is said at most.
+    #[test]
+    fn no_target_on_its_way_moves_faster_than_said() {
+        let camera = camera();
+        let [finest, _] = camera.pixel_angles_rad();
+        let half = 0.5 * camera.field_of_view_rad.unwrap();
+        for (crossing, offset, along) in [(8.0 / 3.6, 1.0, 0.0), (1.4, 0.0, -1.4), (0.0, 0.5, 1.0), (3.0, 2.0, 0.0)] {
+            let stop = Stop::new(StopFigures { target_m_s: along, ..STOP }).unwrap();
+            let meets = Encounter::new(stop, crossing, offset).unwrap();
+            let (most, _) = meets.pixels_per_s(&camera);
+            let metres = meets.metres_per_s(&camera);
+            let mut seen = [0.0f64; 2];
+            for step in 0..=40 {
+                let decision = stop.at(10.0 / 3.6 + f64::from(step) * (50.0 / 3.6) / 40.0);
+                for place in 0..=20 {
+                    let side = f64::from(place) / 20.0;
+                    let (w, z) = (decision.closing_m_s, decision.distance_m);
+                    let x = side * (crossing * z / w + offset);
+                    if (x / z).atan() > half {
+                        continue;
+                    }
+                    for walks in [-crossing, 0.0, crossing] {
+                        let after = ((x + walks * 1e-5) / (z - w * 1e-5)).atan();
+                        let turned = (after - (x / z).atan()).abs() / 1e-5;
+                        seen[0] = seen[0].max(turned / finest);
+                        seen[1] = seen[1].max(turned * x.hypot(z));
+                    }
+                }
+            }
+            assert!(seen[0] <= most * (1.0 + 1e-3) && seen[1] <= metres * (1.0 + 1e-3), "{seen:?} {most} {metres}");
+            // And it is no wild guess.
+            assert!(seen[0] > 0.8 * most, "{seen:?} {most}");
+        }
+    }
+
+    /// By hand: 5 km/h across 10 km/h is tan θ = ½ and b/z more; 32° of view hold it from 5/tan(16°) = 17.4 km/h on, were b none.
+    #[test]
+    fn a_slow_vehicle_looks_past_who_crosses() {
+        let meets = Encounter::new(Stop::new(STOP).unwrap(), 5.0 / 3.6, 0.0).unwrap();
+        assert!((meets.widest_rad() - 0.5f64.atan()).abs() < 1e-12);
+        let from = meets.in_view_from_m_s(16f64.to_radians()).unwrap() * 3.6;
+        assert!((from / 17.437 - 1.0).abs() < 1e-4, "{from}");
+        assert_eq!(meets.in_view_from_m_s(0.07), None);
+        assert!((meets.in_view_from_m_s(0.5).unwrap() * 3.6 - 10.0).abs() < 1e-9);
+        let beside = Encounter::new(Stop::new(STOP).unwrap(), 5.0 / 3.6, 1.0).unwrap();
+        assert!(beside.in_view_from_m_s(16f64.to_radians()).unwrap() * 3.6 > from);
+        let half = Encounter::half_view_rad(&camera()).unwrap();
+        let by_lens = (0.5f64 * 640.0 * 12e-6 / 14e-3).atan();
+        assert!((half - by_lens.min(16f64.to_radians())).abs() < 1e-3, "{half}");
+        assert!(Encounter::new(Stop::new(STOP).unwrap(), -1.0, 0.0).is_err());
+        assert!(Encounter::new(Stop::new(STOP).unwrap(), 1.0, f64::NAN).is_err());
+    }
+}
