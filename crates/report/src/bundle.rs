@@ -209,7 +209,8 @@ impl Bundle {
         if let Some((name, about, statement)) = &self.statement {
             let mut subject = Vec::with_capacity(files.len());
             for (name, held) in &files {
-                let hash = held.sha256().map_err(|error| Error::file("read", Path::new(name), error.kind()))?;
+                let hash =
+                    held.sha256().map_err(|error| Error::file("read", Path::new(name), error.kind()))?;
                 subject.push(json!({ "name": name, "digest": { "sha256": hash } }));
             }
             // What it is about before what belongs to it.

@@ -24,11 +24,11 @@ enum Block {
     Table(Table),
 }
 
-/// A table; cells of some column are codes.
+/// A table; cells of some columns are codes.
 #[derive(Debug, Clone)]
 struct Table {
     head: Vec<String>,
-    codes: Option<usize>,
+    codes: Vec<usize>,
     rows: Vec<Vec<String>>,
 }
 
@@ -68,15 +68,15 @@ impl Document {
         }
     }
 
-    /// A table; cells of the column `codes` are codes.
-    pub(crate) fn table<R>(&mut self, head: &[&str], codes: Option<usize>, rows: impl IntoIterator<Item = R>)
+    /// A table; cells of the columns `codes` are codes.
+    pub(crate) fn table<R>(&mut self, head: &[&str], codes: &[usize], rows: impl IntoIterator<Item = R>)
     where
         R: IntoIterator,
         R::Item: Into<String>,
     {
         let head = head.iter().map(|cell| (*cell).to_owned()).collect();
         let rows = rows.into_iter().map(|row| row.into_iter().map(Into::into).collect()).collect();
-        self.0.push(Block::Table(Table { head, codes, rows }));
+        self.0.push(Block::Table(Table { head, codes: codes.to_vec(), rows }));
     }
 
     /// All of it, and then all of another.
@@ -110,7 +110,8 @@ impl Document {
                 }
                 Block::Items(items) => {
                     for (code, text) in items {
-                        let code = code.as_deref().map_or_else(String::new, |code| format!("{}: ", verbatim(code)));
+                        let code =
+                            code.as_deref().map_or_else(String::new, |code| format!("{}: ", verbatim(code)));
                         let _ = writeln!(out, "- {code}{}", escaped(text));
                     }
                     out.push('\n');
@@ -128,7 +129,9 @@ impl Document {
             let _ = match block {
                 Block::Heading(level, text) => writeln!(out, "<h{0}>{1}</h{0}>", level + 2, escape(text)),
                 Block::Fields(fields) => {
-                    let rows = fields.iter().map(|(label, value)| format!("<dt>{label}</dt><dd>{}</dd>\n", escape(value)));
+                    let rows = fields
+                        .iter()
+                        .map(|(label, value)| format!("<dt>{label}</dt><dd>{}</dd>\n", escape(value)));
                     writeln!(out, "<dl>\n{}</dl>", rows.collect::<String>())
                 }
                 Block::Paragraph(text) => writeln!(out, "<p>{}</p>", escape(text)),
@@ -136,7 +139,9 @@ impl Document {
                 Block::Quote(text) => writeln!(out, "<blockquote><p>{}</p></blockquote>", escape(text)),
                 Block::Items(items) => {
                     let items = items.iter().map(|(code, text)| {
-                        let code = code.as_deref().map_or_else(String::new, |code| format!("<code>{}</code>: ", escape(code)));
+                        let code = code
+                            .as_deref()
+                            .map_or_else(String::new, |code| format!("<code>{}</code>: ", escape(code)));
                         format!("<li>{code}{}</li>\n", escape(text))
                     });
                     writeln!(out, "<ul>\n{}</ul>", items.collect::<String>())
@@ -153,9 +158,13 @@ impl Document {
 
 impl Table {
     fn to_markdown(&self) -> String {
-        let mut out = format!("| {} |\n|{}\n", self.head.iter().map(|head| cell(head, false)).collect::<Vec<_>>().join(" | "), "---|".repeat(self.head.len()));
+        let mut out = format!(
+            "| {} |\n|{}\n",
+            self.head.iter().map(|head| cell(head, false)).collect::<Vec<_>>().join(" | "),
+            "---|".repeat(self.head.len())
+        );
         for row in &self.rows {
-            let cells = row.iter().enumerate().map(|(column, text)| cell(text, self.codes == Some(column)));
+            let cells = row.iter().enumerate().map(|(column, text)| cell(text, self.codes.contains(&column)));
             let _ = writeln!(out, "| {} |", cells.collect::<Vec<_>>().join(" | "));
         }
         out.push('\n');
@@ -163,18 +172,25 @@ impl Table {
     }
 
     fn to_html(&self) -> String {
-        let head: String = self.head.iter().map(|head| format!("<th scope=\"col\">{}</th>", escape(head))).collect();
+        let head: String =
+            self.head.iter().map(|head| format!("<th scope=\"col\">{}</th>", escape(head))).collect();
         let row = |row: &Vec<String>| {
             let cells = row.iter().enumerate().map(|(column, text)| match column {
+                0 if self.codes.contains(&0) => {
+                    format!("<th scope=\"row\"><code>{}</code></th>", escape(text))
+                }
                 0 => format!("<th scope=\"row\">{}</th>", escape(text)),
-                _ if self.codes == Some(column) => format!("<td><code>{}</code></td>", escape(text)),
+                _ if self.codes.contains(&column) => format!("<td><code>{}</code></td>", escape(text)),
                 _ => format!("<td>{}</td>", escape(text)),
             });
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
         let rows: String = self.rows.iter().map(row).collect();
         let name = self.head.join(", ");
-        wide(&escape(&name), &format!("<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"))
+        wide(
+            &escape(&name),
+            &format!("<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"),
+        )
     }
 }
 
@@ -200,7 +216,7 @@ fn escaped(text: &str) -> String {
             '_' => !in_word,
             '&' => after.is_some_and(|char| char.is_alphanumeric() || *char == '#'),
             '#' | '>' | '+' | '-' | '=' => i == 0,
-            '.' | ')' => digits > 0 && i == digits,
+            '.' | ')' => digits > 0 && i == digits && after.is_none_or(|char| *char == ' '),
             _ => false,
         };
         if special {
@@ -222,7 +238,8 @@ fn verbatim(text: &str) -> String {
 
 /// Without line breaks, without spaces at the ends, and without what is hidden.
 fn one_line(text: &str) -> String {
-    let words = text.split(|char: char| char.is_whitespace() || char.is_control()).filter(|word| !word.is_empty());
+    let words =
+        text.split(|char: char| char.is_whitespace() || char.is_control()).filter(|word| !word.is_empty());
     visible(&words.collect::<Vec<_>>().join(" ")).into_owned()
 }
 
@@ -238,6 +255,7 @@ mod tests {
             ("# no heading", "\\# no heading"),
             ("- no item\n\n# no heading", "\\- no item # no heading"),
             ("1. no list, 1. here", "1\\. no list, 1. here"),
+            ("0.5", "0.5"),
             ("a_b _c_ A_p/F^2 >= 1", "a_b \\_c\\_ A_p/F^2 >= 1"),
             ("&lt;b> & c", "\\&lt;b> & c"),
             ("[x](http://y) `code` $a$ ~~b~~ \\", "\\[x\\](http://y) \\`code\\` \\$a\\$ \\~\\~b\\~\\~ \\\\"),
@@ -247,7 +265,7 @@ mod tests {
             assert_eq!(escaped(text), shown);
         }
         let mut page = Document::default();
-        page.table(&["a", "b"], Some(1), [["x | y", "`k`|"]]);
+        page.table(&["a", "b"], &[1], [["x | y", "`k`|"]]);
         assert_eq!(page.to_markdown(), "| a | b |\n|---|---|\n| x \\| y | `` `k`\\| `` |\n\n");
     }
 }

@@ -49,7 +49,8 @@ pub(crate) struct Page<'a> {
 pub(crate) fn page(page: &Page<'_>) -> String {
     let answer = answer::Answer::of(page.answer);
     let title = escape(page.title.unwrap_or(words::TITLE));
-    let mut sections = vec![("first", words::FIRST, page.first.to_owned()), ("answer", "Answer", lines(answer.details))];
+    let mut sections =
+        vec![("first", words::FIRST, page.first.to_owned()), ("answer", "Answer", lines(answer.details))];
     let pictures: String =
         page.drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
     sections.push(("pictures", "Pictures", pictures));

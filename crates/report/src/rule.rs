@@ -3,11 +3,13 @@
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
 mod record;
+mod reforms;
 mod stand_in;
 
-pub use crate::words::rule::{check, sources, stand_in, tests, text};
-pub use record::{agreement, parsed, record};
+pub use crate::words::rule::{check, reforms, sources, stand_in, tests, text};
 pub(crate) use record::STATEMENT;
+pub use record::{agreement, parsed, record};
+pub use reforms::reforms_bundle;
 pub use stand_in::stand_in_bundle;
 
 use super::bundle::Bundle;

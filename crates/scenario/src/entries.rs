@@ -236,7 +236,8 @@ impl Entries {
                     Some(Dimension::Temperature) => Some(Dimension::TemperatureDifference),
                     other => other,
                 };
-                let u = difference.map_or_else(|| Value::from(*sigma), |dimension| dimension.format(*sigma).into());
+                let u = difference
+                    .map_or_else(|| Value::from(*sigma), |dimension| dimension.format(*sigma).into());
                 both.insert("u".to_owned(), u);
                 if *rectangular {
                     both.insert("law".to_owned(), "rectangular".into());

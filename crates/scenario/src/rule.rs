@@ -11,6 +11,7 @@ mod camera;
 mod citation;
 mod clause;
 mod demand;
+mod reform;
 mod stand_in;
 mod stop;
 mod test;
@@ -19,6 +20,7 @@ pub use camera::{Known, RuleCamera, Uncertainty};
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::Clause;
 pub use demand::{Demand, DepthDemand, DepthObject};
+pub use reform::Reform;
 pub use stand_in::StandInSpec;
 pub use stop::StopSpec;
 pub use test::{RuleTest, Verdict};
@@ -100,6 +102,8 @@ pub struct Rule {
     pub stand_in: Option<StandInSpec>,
     /// Where its figures are from; nothing of a rule that does not say.
     pub sources: Vec<Citation>,
+    /// Other values that somebody proposes.
+    pub reforms: Vec<Reform>,
     /// What is expected of its cameras.
     pub tests: Vec<RuleTest>,
 }
@@ -122,7 +126,8 @@ impl Rule {
         let tests = test::read(root, &cameras, &clauses)?;
         let sources = citation::read(root)?;
         let stand_in = root.read("stand_in", StandInSpec::read)?;
-        Ok(Self { about, coverage_factor, scenario, stand_in, clauses, cameras, sources, tests })
+        let reforms = reform::read(root, about.from)?;
+        Ok(Self { about, coverage_factor, scenario, stand_in, clauses, cameras, sources, reforms, tests })
     }
 
     /// Leaves out, in all clauses, alternatives whose spectra do not cover the bands, if that is asked for.
@@ -182,6 +187,7 @@ impl Rule {
         let camera = |camera: &RuleCamera| {
             Entries::default()
                 .put_if("name", camera.name.as_deref())
+                .put_if("share", camera.share)
                 .and(written(&camera.spec, paths).with_uncertainty(&camera.uncertainty))
                 .read_from(&camera.key)
         };
@@ -199,6 +205,7 @@ impl Rule {
         let stop = self.clauses.iter().find_map(|clause| clause.stop).filter(|_| !self.has_clauses());
         let tests: Vec<_> =
             self.tests.iter().map(|test| test.entries(&self.cameras, &self.clauses)).collect();
+        let reforms: Vec<_> = self.reforms.iter().map(Reform::entries).collect();
         document
             .put("rule", about)
             .put_if(
@@ -209,6 +216,7 @@ impl Rule {
             .put_if("stop", stop.map(|stop| stop.entries()))
             .put_if("stand_in", self.stand_in.as_ref().map(|spec| spec.written(paths)))
             .put("camera", self.cameras.iter().map(camera).collect::<Vec<_>>())
+            .put_if("reform", (!reforms.is_empty()).then_some(reforms))
             .put_if("test", (!tests.is_empty()).then_some(tests))
     }
 }
@@ -217,7 +225,7 @@ impl Rule {
 impl PartialEq for Rule {
     fn eq(&self, other: &Self) -> bool {
         let same = |(a, b): (&RuleCamera, &RuleCamera)| {
-            a.name == b.name && a.spec == b.spec && a.uncertainty == b.uncertainty
+            a.name == b.name && a.spec == b.spec && a.uncertainty == b.uncertainty && a.share == b.share
         };
         let same_clause = |(a, b): (&Clause, &Clause)| {
             (&a.name, &a.text, &a.demand, &a.stop) == (&b.name, &b.text, &b.demand, &b.stop)
@@ -227,6 +235,7 @@ impl PartialEq for Rule {
             && self.scenario == other.scenario
             && self.clauses.len() == other.clauses.len()
             && self.clauses.iter().zip(&other.clauses).all(same_clause)
+            && self.reforms == other.reforms
             && self.tests == other.tests
             && self.stand_in == other.stand_in
             && self.cameras.len() == other.cameras.len()

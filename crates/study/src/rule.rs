@@ -14,8 +14,10 @@ mod envelope;
 mod expected;
 mod guard;
 mod ideal;
+mod market;
 mod not_in_force;
 mod pairs;
+mod reforms;
 mod resolution;
 mod results;
 mod safety;
@@ -31,11 +33,13 @@ pub use clauses::{
     MeasuredVerdict, RuleAnswer,
 };
 pub use expected::{TestCheck, TestResult, Told};
+pub use market::Market;
 pub use not_in_force::NotInForce;
+pub use reforms::{BeforeLaw, Reformed, Reforms};
 pub use results::{
-    ApproachResult, CameraVerdict, Certified, CrossingResult, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult, WhoMeets,
-    WithoutPlaceholders,
+    ApproachResult, CameraVerdict, Certified, CrossingResult, EmissivityError, EnvelopeResult, Fixes,
+    IdealCamera, LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement,
+    StopResult, WhoMeets, WithoutPlaceholders,
 };
 pub use safety::SafetyOfRule;
 pub use stand_in::{StandIn, StandInAnswer, StandInScene};

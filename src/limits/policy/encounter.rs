@@ -91,8 +91,9 @@ impl Encounter {
     #[must_use]
     pub fn half_view_rad(camera: &Camera) -> Option<f64> {
         let by_view = camera.field_of_view_rad.map(|view| 0.5 * view);
-        let by_lens =
-            camera.pixels.map(|pixels| (0.5 * f64::from(pixels) * camera.pixel_m / camera.focal_length_m).atan());
+        let by_lens = camera
+            .pixels
+            .map(|pixels| (0.5 * f64::from(pixels) * camera.pixel_m / camera.focal_length_m).atan());
         by_view.into_iter().chain(by_lens).reduce(f64::min)
     }
 
@@ -183,7 +184,9 @@ mod tests {
         let camera = camera();
         let [finest, _] = camera.pixel_angles_rad();
         let half = 0.5 * camera.field_of_view_rad.unwrap();
-        for (crossing, offset, along) in [(8.0 / 3.6, 1.0, 0.0), (1.4, 0.0, -1.4), (0.0, 0.5, 1.0), (3.0, 2.0, 0.0)] {
+        for (crossing, offset, along) in
+            [(8.0 / 3.6, 1.0, 0.0), (1.4, 0.0, -1.4), (0.0, 0.5, 1.0), (3.0, 2.0, 0.0)]
+        {
             let stop = Stop::new(StopFigures { target_m_s: along, ..STOP }).unwrap();
             let meets = Encounter::new(stop, crossing, offset).unwrap();
             let (most, _) = meets.pixels_per_s(&camera);
@@ -206,7 +209,10 @@ mod tests {
                     }
                 }
             }
-            assert!(seen[0] <= most * (1.0 + 1e-3) && seen[1] <= metres * (1.0 + 1e-3), "{seen:?} {most} {metres}");
+            assert!(
+                seen[0] <= most * (1.0 + 1e-3) && seen[1] <= metres * (1.0 + 1e-3),
+                "{seen:?} {most} {metres}"
+            );
             // And it is no wild guess.
             assert!(seen[0] > 0.8 * most, "{seen:?} {most}");
         }

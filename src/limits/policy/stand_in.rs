@@ -205,7 +205,8 @@ impl Search<'_, '_> {
             let offset = place.first().copied().unwrap_or(0.0);
             let emissivity: Vec<f64> = self.scene.emissivity.iter().map(|e| e + offset).collect();
             let counting = self.scene.counting;
-            let mut found = self.solver.with_counting(&emissivity, self.scene.alternative, &state, counting)?;
+            let mut found =
+                self.solver.with_counting(&emissivity, self.scene.alternative, &state, counting)?;
             if let Some(solver) = &mut self.lit_alike {
                 let alike = solver.with_counting(&emissivity, self.scene.alternative, &state, counting)?;
                 found = if alike.distance < found.distance { alike } else { found };

@@ -17,7 +17,8 @@ use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::sweep::Question;
 use hadar_study::{
-    CameraAnswer, Condition, Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning,
+    CameraAnswer, Condition, Extent, OwnCameras, Reforms, RuleAnswer, RuleAsked, RuleStudy, TestResult,
+    Warning,
 };
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -48,8 +49,11 @@ pub(super) struct RuleArgs {
     /// Say how exact a heated stand-in must be so that no camera tells it from a person as reliably as the rule demands, [stand_in]
     #[arg(long, conflicts_with_all = ["check", "test", "sources"])]
     stand_in: bool,
+    /// Hold the cameras against every reform of the rule, [[reform]], beside the rule as it is
+    #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "on", "accept"])]
+    reforms: bool,
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
-    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "on"])]
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "on"])]
     verify: Option<PathBuf>,
     /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
@@ -78,7 +82,12 @@ pub(super) fn run(
     if let Some(certificate) = &args.verify {
         return verify(certificate, global, read_again);
     }
-    let alone = [(args.test, "--test"), (args.sources, "--sources"), (args.stand_in, "--stand-in")];
+    let alone = [
+        (args.test, "--test"),
+        (args.sources, "--sources"),
+        (args.stand_in, "--stand-in"),
+        (args.reforms, "--reforms"),
+    ];
     if let Some((_, flag)) = alone.into_iter().find(|(asked, _)| *asked && args.rules.len() > 1) {
         let found = format!("{flag} is asked of {} rules at once", args.rules.len());
         return Err(Error::malformed(found, "name one rule"));
@@ -87,7 +96,11 @@ pub(super) fn run(
 }
 
 fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
-    let mut rule_read = Rule::from_written(&global.written(file)?)?;
+    let written = global.written(file)?;
+    if args.reforms {
+        return reforms(&written, global);
+    }
+    let mut rule_read = Rule::from_written(&written)?;
     rule_read.skip_uncovered(global.skip_uncovered);
     if args.sources {
         return sources(&rule_read, global);
@@ -231,14 +244,23 @@ fn verify(
         inputs::called(None, certificate)
     );
     // Every other file of a report says the same, and is as easily changed.
-    let folder = certificate.parent().map(|folder| if folder == Path::new("") { Path::new(".") } else { folder });
+    let folder =
+        certificate.parent().map(|folder| if folder == Path::new("") { Path::new(".") } else { folder });
     let report = folder.filter(|folder| folder.join(manifest::NAME).exists());
     let report = report
-        .map(|folder| super::verify::verified(&VerifyArgs::of(folder.to_owned(), global.inputs.clone()), global, read_again))
+        .map(|folder| {
+            super::verify::verified(
+                &VerifyArgs::of(folder.to_owned(), global.inputs.clone()),
+                global,
+                read_again,
+            )
+        })
         .transpose()?;
     let text = match &report {
         Some(report) => format!("{found}.\nThe report that it is in: {}", of_report(report)),
-        None => format!("Verified: {found}. It is no part of a report: other files beside it were not looked at.\n"),
+        None => format!(
+            "Verified: {found}. It is no part of a report: other files beside it were not looked at.\n"
+        ),
     };
     let verified = report.as_ref().is_none_or(|report| report.verified);
     global.answer(&Output { verified, largest_difference: off, report }, &text, &answer.stats)?;
@@ -274,6 +296,21 @@ fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Glo
     let text = rule::stand_in(&answer);
     let work = global.report(&text, || rule::stand_in_bundle(&answer))?;
     global.answer(&answer, &text, &work)?;
+    Ok(0)
+}
+
+/// Every camera by the rule and by its reforms.
+fn reforms(written: &Written, global: &Global) -> Result<u8> {
+    let bar = global.progress("laws");
+    let found =
+        Reforms::of(written, &global.library()?, global.skip_uncovered, &|done, all| bar.set(done, all))?;
+    bar.finish();
+    let text = rule::reforms(&found);
+    let title = Rule::from_written(written)?.about.name;
+    let work = global.report(&text, || rule::reforms_bundle(&found, title.as_deref()))?;
+    let mut stats = found.stats.clone();
+    stats.add(&work);
+    global.answer(&found, &text, &stats)?;
     Ok(0)
 }
 

@@ -52,7 +52,8 @@ impl VerifyArgs {
             }
             None => None,
         };
-        let envelope = self.envelope.as_deref().map(|path| file::bytes(path, "read the envelope", LONGEST_ENVELOPE));
+        let envelope =
+            self.envelope.as_deref().map(|path| file::bytes(path, "read the envelope", LONGEST_ENVELOPE));
         let on = self.on.map(|day| day.to_string());
         Ok(Demands { passed: self.passed, rule, on, envelope: envelope.transpose()? })
     }

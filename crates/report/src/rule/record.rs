@@ -15,7 +15,9 @@ use crate::words::rule::{measure, together};
 use hadar::error::{Error, Result};
 use hadar::inputs::called;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{CameraBeforeClause, ClauseAnswer, Condition, Found, Line, NotPassed, RuleAnswer, RuleStudy};
+use hadar_study::{
+    CameraBeforeClause, ClauseAnswer, Condition, Found, Line, NotPassed, RuleAnswer, RuleStudy,
+};
 use serde_json::{Value, json};
 
 /// Its name in a report.

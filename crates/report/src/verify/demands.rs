@@ -96,7 +96,8 @@ impl Demands {
 
 /// The keys by which an envelope says that a statement is signed, or what is wrong with it.
 fn signed(envelope: &[u8], statement: &[u8]) -> std::result::Result<Vec<String>, String> {
-    let envelope: Envelope = serde_json::from_slice(envelope).map_err(|error| format!("no DSSE envelope: {error}"))?;
+    let envelope: Envelope =
+        serde_json::from_slice(envelope).map_err(|error| format!("no DSSE envelope: {error}"))?;
     if envelope.payload_type != PAYLOAD {
         return Err(format!("its payload is of type {:?}, not {PAYLOAD}", envelope.payload_type));
     }
@@ -109,7 +110,9 @@ fn signed(envelope: &[u8], statement: &[u8]) -> std::result::Result<Vec<String>,
     if envelope.signatures.is_empty() || !envelope.signatures.iter().all(signs) {
         return Err("nobody signed it".to_owned());
     }
-    let named = |one: Signature| one.keyid.filter(|id| !id.is_empty()).unwrap_or_else(|| "a key without a name".into());
+    let named = |one: Signature| {
+        one.keyid.filter(|id| !id.is_empty()).unwrap_or_else(|| "a key without a name".into())
+    };
     Ok(envelope.signatures.into_iter().map(named).collect())
 }
 
@@ -123,7 +126,8 @@ mod tests {
         let statement = b"{\n  \"_type\": \"x\"\n}\n";
         let of = |payload: &[u8], kind: &str, sig: &str| {
             let signature = json!({ "keyid": "k1", "sig": sig });
-            json!({ "payload": STANDARD.encode(payload), "payloadType": kind, "signatures": [signature] }).to_string()
+            json!({ "payload": STANDARD.encode(payload), "payloadType": kind, "signatures": [signature] })
+                .to_string()
         };
         assert_eq!(signed(of(statement, PAYLOAD, "c2ln").as_bytes(), statement), Ok(vec!["k1".to_owned()]));
         let wrong = |text: &str, told: &str| {
@@ -135,7 +139,10 @@ mod tests {
         wrong(&of(&changed, PAYLOAD, "c2ln"), "another statement");
         wrong(&of(statement, "text/plain", "c2ln"), "text/plain");
         wrong(&of(statement, PAYLOAD, ""), "nobody signed");
-        wrong(&json!({ "payload": "", "payloadType": PAYLOAD, "signatures": [] }).to_string(), "another statement");
+        wrong(
+            &json!({ "payload": "", "payloadType": PAYLOAD, "signatures": [] }).to_string(),
+            "another statement",
+        );
         wrong(&json!({ "payload": "!", "payloadType": PAYLOAD, "signatures": [] }).to_string(), "no base64");
         wrong("{}", "no DSSE envelope");
     }

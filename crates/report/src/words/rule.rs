@@ -3,6 +3,7 @@
 pub(crate) mod certificate;
 mod check;
 mod measured;
+mod reforms;
 mod sources;
 mod stand_in;
 mod stop;
@@ -10,6 +11,7 @@ mod text;
 
 pub use check::check;
 pub(crate) use measured::measure;
+pub use reforms::reforms;
 pub use sources::{sources, tests};
 pub(crate) use stand_in::below_a_line;
 pub use stand_in::stand_in;

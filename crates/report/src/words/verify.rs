@@ -61,7 +61,9 @@ impl Say for Difference {
             Self::Input { path, was, is } => {
                 format!("input {path}: its SHA-256 was {} and is {}", hash(was), hash(is))
             }
-            Self::Demand { demanded, found } => format!("the statement says {found}, and {demanded} is demanded"),
+            Self::Demand { demanded, found } => {
+                format!("the statement says {found}, and {demanded} is demanded")
+            }
             Self::Envelope { found } => format!("the envelope: {found}"),
             Self::Program { was, is } => format!("made by {was}; made again by {is}"),
         }

@@ -99,6 +99,7 @@ pub(crate) static RULE: Table = Table::of(
             silent("distances are as they are written", table("stop", &stop::STOP)),
             silent("the rule is one demand", tables("clause", &clause::CLAUSE)),
             silent("no figure has a source", tables("source", &rule::SOURCE)),
+            silent("no reform is looked at", tables("reform", &rule::REFORM)),
             silent("nothing is tested", tables("test", &rule::TEST)),
             table("uncertainty", &rule::UNCERTAINTY),
             table("stand_in", &stop::STAND_IN),

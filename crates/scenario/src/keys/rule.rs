@@ -78,10 +78,18 @@ const CAMERA_NAME: Key = Key::row(
     "What the camera is called in the answer.",
     "heading of its row",
 );
+const SHARE: Key = Key::row(
+    "share",
+    Value::Number(Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" }),
+    Means("not counted"),
+    "0.3",
+    "What part of a market the camera is.",
+    "which part of the market meets the rule",
+);
 /// `[[camera]]` of a rule.
 pub(crate) static CAMERA: Table = Table {
     meaning: "A camera that is held against the rule; a figure may be a table of a value and its standard uncertainty.",
-    keys: &[&[CAMERA_NAME]],
+    keys: &[&[CAMERA_NAME, SHARE]],
     more: More::UncertainFigures,
 };
 
@@ -196,15 +204,15 @@ const UNCERTAIN_KEYS: &[Key] = &[
 pub(crate) static UNCERTAIN: Table =
     Table::of("A figure of a camera with its standard uncertainty, or a limit of it.", &[UNCERTAIN_KEYS]);
 
-const SOURCE_KEYS: &[Key] = &[
-    Key::row(
-        "keys",
-        Value::List(&Value::Text),
-        Refused,
-        "[\"stop.latency\"]",
-        "Figures of this file, or tables with all of theirs, that it stands behind.",
-        "a rule that names any source must name one for each figure",
-    ),
+const SOURCE_KEYS: &[Key] = &[Key::row(
+    "keys",
+    Value::List(&Value::Text),
+    Refused,
+    "[\"stop.latency\"]",
+    "Figures of this file, or tables with all of theirs, that it stands behind.",
+    "a rule that names any source must name one for each figure",
+)];
+const GROUND_KEYS: &[Key] = &[
     Key::row(
         "document",
         Value::Text,
@@ -255,8 +263,43 @@ const SOURCE_KEYS: &[Key] = &[
     ),
 ];
 /// `[[source]]`.
-pub(crate) static SOURCE: Table =
-    Table::of("Where figures of the rule are from: a document, or a choice with its reason.", &[SOURCE_KEYS]);
+pub(crate) static SOURCE: Table = Table::of(
+    "Where figures of the rule are from: a document, or a choice with its reason.",
+    &[SOURCE_KEYS, GROUND_KEYS],
+);
+
+const REFORM_KEYS: &[Key] = &[
+    Key::row(
+        "name",
+        Value::Text,
+        Refused,
+        "\"H.R. 7353\"",
+        "What the reform is called.",
+        "heading of its column",
+    ),
+    Key::row("status", Value::Text, Means("none"), "\"bill\"", "What became of it.", "quoted in the answer"),
+    Key::row(
+        "from",
+        Value::Date,
+        Means("no day is known"),
+        "\"2031-02-04\"",
+        "The day from which it would hold, not before the law.",
+        "quoted in the answer",
+    ),
+    Key::row(
+        "set",
+        Value::List(&Value::Text),
+        Refused,
+        "[\"requirement.detection_probability = 0.95\"]",
+        "What would stand in the place of values of the law.",
+        "`hadar rule --reforms`",
+    ),
+];
+/// `[[reform]]`.
+pub(crate) static REFORM: Table = Table::of(
+    "Other values of the law that somebody proposes or has enacted, with a document or a choice behind them.",
+    &[REFORM_KEYS, GROUND_KEYS],
+);
 
 const AT_MOST_WHOLE: Allowed =
     Allowed { holds: |value| value > 0.0 && value < 1.0, expected: "above 0 and below 1" };

@@ -66,7 +66,9 @@ const STOP_KEYS: &[Key] = &[
     Key::row(
         "crossing_speed",
         Value::Quantity(Dimension::Speed, FROM_ZERO),
-        Means("nothing is known of its way: the target does not cross, a condition, and blurs as at the edge of the view"),
+        Means(
+            "nothing is known of its way: the target does not cross, a condition, and blurs as at the edge of the view",
+        ),
         "\"5 km/h\"",
         "How fast the target crosses the way; 0 of one that stands on it.",
         "motion blur, and whether the target is in the view until the decision",

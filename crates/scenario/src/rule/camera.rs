@@ -8,6 +8,7 @@ use hadar::allowed::FROM_ZERO;
 use hadar::error::{Error, Place, Result};
 use hadar::instrument::figures::{Kind, Row};
 use hadar::units::Dimension;
+use hadar::words::significant;
 use std::collections::BTreeMap;
 
 /// A list at the top of a file stands before its tables.
@@ -22,6 +23,8 @@ pub struct RuleCamera {
     pub spec: CameraSpec,
     /// How well figures are known, by their keys.
     pub uncertainty: BTreeMap<&'static str, Known>,
+    /// What part of a market it is.
+    pub share: Option<f64>,
     /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
     pub key: String,
 }
@@ -48,6 +51,8 @@ pub struct Uncertainty {
     pub same: Option<String>,
 }
 
+/// What shares may add up to above 1.
+const SHARES_ROUNDING: f64 = 1e-9;
 /// Of which a larger one is never better: noise.
 const NOISE: [&str; 12] = [
     "netd",
@@ -92,7 +97,7 @@ pub(super) fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
             return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
         }
         let (uncertainty, key) = (BTreeMap::new(), format!("cameras[{index}]"));
-        cameras.push(RuleCamera { name: None, spec, uncertainty, key });
+        cameras.push(RuleCamera { name: None, spec, uncertainty, share: None, key });
     }
     Ok(cameras)
 }
@@ -108,7 +113,8 @@ pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
             let spec = read_with(item, &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
             let section = item.table()?;
             let name = section.text("name", "\"ours\"")?;
-            Ok(RuleCamera { name, spec, uncertainty, key: format!("camera[{index}]") })
+            let share = section.number("share")?;
+            Ok(RuleCamera { name, spec, uncertainty, share, key: format!("camera[{index}]") })
         })
         .collect()
 }
@@ -124,17 +130,22 @@ fn uncertain(
     }
     let section = entry.section_of(&UNCERTAIN)?;
     section.at_most_one(&["value", "at_most", "at_least"])?;
-    for (key, known, of) in [("at_most", Known::AtMost, NOISE.as_slice()), ("at_least", Known::AtLeast, &SPEED)] {
+    for (key, known, of) in
+        [("at_most", Known::AtMost, NOISE.as_slice()), ("at_least", Known::AtLeast, &SPEED)]
+    {
         if !section.has_own(key) {
             continue;
         }
         if let Some(beside) = ["u", "law", "same"].into_iter().find(|beside| section.has_own(beside)) {
             let found = format!("{beside} beside {key}");
-            return Err(section.fail(beside, Error::malformed(found, format!("write value and u, or {key} alone"))));
+            return Err(
+                section.fail(beside, Error::malformed(found, format!("write value and u, or {key} alone")))
+            );
         }
         if !of.contains(&row.key) {
             let found = format!("a limit of {}, of which it is not known which side is worse", row.key);
-            let instead = format!("write {} = {{ value = ..., u = ... }}; {key} is for {}", row.key, of.join(", "));
+            let instead =
+                format!("write {} = {{ value = ..., u = ... }}; {key} is for {}", row.key, of.join(", "));
             return Err(section.fail(key, Error::malformed(found, instead)));
         }
         noted.insert(row.key, known);
@@ -159,13 +170,23 @@ fn uncertain(
     Ok(true)
 }
 
-/// Refuses a name of figures with the same error that one figure of a camera has alone: errors of two cameras, which are judged apart, have nothing
+/// Refuses shares of more than a whole market, and a name of figures with the same error that one figure of a camera has alone: errors of two cameras, which are judged apart, have nothing
 /// to do with each other.
 pub(super) fn check(cameras: &[RuleCamera], place: impl Fn(usize, &str) -> Place) -> Result<()> {
     let named = |camera: &RuleCamera, name: &str| {
         let all = camera.uncertainty.values();
         all.filter(|known| matches!(known, Known::Within(one) if one.same.as_deref() == Some(name))).count()
     };
+    let mut all = 0.0;
+    for (index, camera) in cameras.iter().enumerate() {
+        all += camera.share.unwrap_or(0.0);
+        if all > 1.0 + SHARES_ROUNDING {
+            let found = format!("shares of a market that add up to {}", significant(all, 4));
+            return Err(
+                Error::malformed(found, "write shares that add up to 1 at most").at(place(index, "share"))
+            );
+        }
+    }
     for (index, camera) in cameras.iter().enumerate() {
         for (key, known) in &camera.uncertainty {
             let Known::Within(Uncertainty { same: Some(same), .. }) = known else { continue };

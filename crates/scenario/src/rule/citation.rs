@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 use toml::value::Date;
 
 /// Tables and keys at the top of a rule that hold no figures of its own.
-const NO_FIGURES: &[&str] = &["title", "cameras", "rule", "camera", "source", "test", "find"];
+const NO_FIGURES: &[&str] = &["title", "cameras", "rule", "camera", "source", "test", "find", "reform"];
 /// The same of a clause.
 const NO_FIGURES_OF_CLAUSE: &[&str] = &["name", "kind", "text"];
 
@@ -74,15 +74,20 @@ impl Citation {
     }
 
     fn entries(&self) -> Entries {
-        let keys = Entries::default().put("keys", self.keys.clone());
-        match &self.ground {
-            Ground::Document { document, clause, quote, date, mark } => keys
+        Entries::default().put("keys", self.keys.clone()).and(self.ground.entries())
+    }
+}
+
+impl Ground {
+    pub(super) fn entries(&self) -> Entries {
+        match self {
+            Self::Document { document, clause, quote, date, mark } => Entries::default()
                 .put("document", document.as_str())
                 .put("clause", clause.as_str())
                 .put("quote", quote.as_str())
                 .put("date", date.to_string())
                 .put("mark", mark.name()),
-            Ground::Choice(reason) => keys.put("choice", reason.as_str()),
+            Self::Choice(reason) => Entries::default().put("choice", reason.as_str()),
         }
     }
 }
@@ -135,22 +140,26 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
             Err(item.fail(Error::unknown_name("key of this file", key, known)))
         })
         .collect::<Result<_>>()?;
+    Ok(Citation { keys, ground: ground(&section)? })
+}
+
+/// What stands behind something: a document with the keys for it, or a choice.
+pub(super) fn ground(section: &Section<'_>) -> Result<Ground> {
     for key in ["document", "clause", "quote", "date", "mark"] {
         section.at_most_one(&["choice", key])?;
     }
     if let Some(reason) = section.read("choice", |entry| entry.name("\"why\""))? {
-        return Ok(Citation { keys, ground: Ground::Choice(reason) });
+        return Ok(Ground::Choice(reason));
     }
     let text = |key, example| section.require(key)?.name(example);
     let marks = Mark::ALL.map(|mark| (mark.name(), mark));
-    let ground = Ground::Document {
+    Ok(Ground::Document {
         document: text("document", "\"49 CFR 571.127\"")?,
         clause: text("clause", "\"S8.2\"")?,
         quote: text("quote", "\"its own words\"")?,
         date: section.require("date")?.date()?,
         mark: section.require("mark")?.choice(&marks)?,
-    };
-    Ok(Citation { keys, ground })
+    })
 }
 
 /// A figure of a rule as its file has it.

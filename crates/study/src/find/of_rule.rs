@@ -159,8 +159,13 @@ fn put_to_rule(
 ) -> Result<Option<Limit>> {
     let mut own = rule.clone();
     let spec = choice.scenario.camera.clone().unwrap_or_default();
-    own.cameras =
-        vec![RuleCamera { name: None, spec, uncertainty: BTreeMap::new(), key: "camera[0]".into() }];
+    own.cameras = vec![RuleCamera {
+        name: None,
+        spec,
+        uncertainty: BTreeMap::new(),
+        share: None,
+        key: "camera[0]".into(),
+    }];
     own.tests.clear();
     own.scenario.find = None;
     let source = &choice.scenario.bands.source;

@@ -6,8 +6,8 @@
 //! one; frames must fit into the least time that any speed leaves.
 
 use super::results::{ApproachResult, CrossingResult, StopResult};
-use crate::condition::Condition;
 use crate::Shortfall;
+use crate::condition::Condition;
 use hadar::instrument::Camera;
 use hadar::policy::Motion;
 use hadar::policy::encounter::Encounter;

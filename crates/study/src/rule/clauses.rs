@@ -344,6 +344,9 @@ impl Serialize for RuleAnswer {
         let (outcome, reasons) = self.outcome();
         map.serialize_entry("result", &outcome)?;
         map.serialize_entry("reasons", &reasons)?;
+        if let Some(market) = self.market() {
+            map.serialize_entry("market", &market)?;
+        }
         match (self.only(), self.clauses.first()) {
             (Some(only), Some(clause)) => {
                 map.serialize_entry("stop", &clause.stop)?;

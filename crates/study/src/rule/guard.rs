@@ -150,14 +150,16 @@ impl TellApart {
     fn worst_before(&self, candidate: &Candidate, camera: &Camera) -> Result<Option<(Scene, f64)>> {
         let mut moved = candidate.clone();
         for sighted in moved.sighted.iter_mut().chain(&mut moved.between) {
-            *sighted = sighted.before(camera, self.seen_from_m(candidate, sighted, camera), &self.envelope)?;
+            *sighted =
+                sighted.before(camera, self.seen_from_m(candidate, sighted, camera), &self.envelope)?;
         }
         let Some((worst, _)) = self.worst(&moved, false, &|_, _| true, &|_| ())? else { return Ok(None) };
         let Searched { pair, between, .. } = worst;
         let distance = pair.distance;
         let own = candidate.sighted.get(pair.sighted).cloned();
         let sighted = between.map(|between| *between).or(own);
-        Ok(sighted.map(|sighted| (Scene { sighted, alternative: pair.alternative, state: pair.state }, distance)))
+        Ok(sighted
+            .map(|sighted| (Scene { sighted, alternative: pair.alternative, state: pair.state }, distance)))
     }
 }
 

@@ -79,9 +79,10 @@ impl Reason {
     #[must_use]
     pub const fn place(&self) -> Option<&Place> {
         match self {
-            Self::Fails(place) | Self::Undecided(place) | Self::NotProved(place, _) | Self::RestsOn(place, _) => {
-                Some(place)
-            }
+            Self::Fails(place)
+            | Self::Undecided(place)
+            | Self::NotProved(place, _)
+            | Self::RestsOn(place, _) => Some(place),
             Self::Changed { .. } | Self::NoDay | Self::NotInForce(_) => None,
         }
     }
@@ -91,7 +92,8 @@ impl RuleAnswer {
     /// Whether the rule is passed, and why not.
     #[must_use]
     pub fn outcome(&self) -> (Outcome, Vec<Reason>) {
-        let mut reasons: Vec<Reason> = self.clauses.iter().flat_map(|clause| self.of_clause(clause)).collect();
+        let mut reasons: Vec<Reason> =
+            self.clauses.iter().flat_map(|clause| self.of_clause(clause)).collect();
         let fails = reasons.iter().any(|one| matches!(one, Reason::Fails(_)));
         let mut is_rule = true;
         // A rule that does not hold, or with other values, is not the one that is failed.

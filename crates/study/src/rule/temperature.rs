@@ -253,7 +253,8 @@ impl Anew for Scenes<'_> {
         let found = self.before.worst(|sighted| largest(&(self.seen_by)(sighted, camera)?))?;
         let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
         let found = found.filter(|(found, sighted)| {
-            let is_known = known.iter().any(|(state, from)| *state == found.state && std::ptr::eq(*from, *sighted));
+            let is_known =
+                known.iter().any(|(state, from)| *state == found.state && std::ptr::eq(*from, *sighted));
             self.margin_of(found.sigma_k) < before * (1.0 - SMALLER) && !is_known
         });
         let is_new = found.is_some();
@@ -272,9 +273,7 @@ fn before(
 ) -> Result<Before> {
     let mut scenario = rule.with_camera(clause, index);
     let approach = match &clause.stop {
-        Some(spec) => {
-            Some(Approach::of(spec, &named.camera, cameras::Named::bands(named, &scenario)?))
-        }
+        Some(spec) => Some(Approach::of(spec, &named.camera, cameras::Named::bands(named, &scenario)?)),
         None => None,
     };
     let range = approach.as_ref().map(|approach| approach.distance_m).or(envelope.distance_m);

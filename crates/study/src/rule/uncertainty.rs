@@ -12,7 +12,7 @@
 //!
 //! m is taken anew in the worst scenes of all pairs of materials that come near the worst of all, and in those of the camera with its
 //! figures at their ends: another camera may have another worst scene. For draws about the lower end of the interval all scenes are searched
-//! again, until that finds no worse one. The lower end is that of which 95 % of as many draws are surer: the order statistic n p − 1.96 √(n p (1 − p)).
+//! again, until that finds no worse one. The lower end is that of which 95 % of as many draws are surer: the order statistic n p − 1.96 √(n p (1 − p)), of one figure alone n p − 1.
 //! The interval is the wider one of the two. A camera meets a
 //! demand if the interval is above 1, fails if it is below, and is undecided between: the limits are guarded by k u on both sides.
 //!
@@ -311,7 +311,10 @@ impl<'a> Uncertain<'a> {
         }
         // Figures with the same error move the margin together.
         let mut together = vec![0.0; self.errors];
-        budget.iter().zip(&self.figures).for_each(|(line, figure)| together[figure.error] += line.contribution);
+        budget
+            .iter()
+            .zip(&self.figures)
+            .for_each(|(line, figure)| together[figure.error] += line.contribution);
         if let Some((uncertainty, contribution)) = emissivities {
             let (figure, value) = ("emissivities".to_owned(), None);
             budget.push(BudgetLine { figure, value, uncertainty, unit: "", contribution, share: 0.0 });
@@ -373,7 +376,10 @@ impl<'a> Uncertain<'a> {
         let squares: f64 = margins.iter().map(|margin| (margin - mean) * (margin - mean)).sum();
         let deviation = (squares / (n - 1.0).max(1.0)).sqrt();
         let at = |share: f64| crate::identify::quantile(&margins, share);
-        let surer = n * outside - SURE * (n * outside * (1.0 - outside)).sqrt();
+        // Points of a lattice in one dimension are within one of their share, in more as scattered as random ones.
+        let scatter =
+            if self.errors == 1 && !random { 1.0 } else { SURE * (n * outside * (1.0 - outside)).sqrt() };
+        let surer = n * outside - scatter;
         let surely_above = margins.get(surer.max(0.0) as usize).copied().unwrap_or(f64::NAN);
         let interval = [at(outside), at(1.0 - outside)];
         Ok(Drawn { count, mean, deviation, interval, surely_above: surely_above.min(interval[0]) })

@@ -30,8 +30,7 @@ fn scene(of: &str, camera: &str, requirement: &str, more: &str) -> String {
     )
 }
 
-const WHITE: &str =
-    "fixed_pattern = \"0 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\noffset_drift = \"0 mK\"\nflicker_fraction = 0.0";
+const WHITE: &str = "fixed_pattern = \"0 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\noffset_drift = \"0 mK\"\nflicker_fraction = 0.0";
 const ERRORS: &str = "[sensitivity]\nemissivity_error = \"0.005 absolute\"";
 
 /// The sheet states row and column noise of 14 mK each beside 40 mK a pixel: with them no number of frames is enough; without them

@@ -14,8 +14,8 @@ use crate::words::shortfall::no;
 use hadar_scenario::rule::{Ground, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
-    ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade, MeasuredAnswer,
-    MeasuredVerdict, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
+    ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
+    MeasuredAnswer, MeasuredVerdict, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
 };
 
 /// The page.
@@ -51,7 +51,9 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
         let lines = clause.lines();
         let cell = |camera: &CameraAnswer| {
             let line = lines.iter().find(|line| line.camera == camera.name);
-            line.map_or_else(String::new, |line| in_a_word(line.verdict, line.grade, line.conditions, line.fails_by))
+            line.map_or_else(String::new, |line| {
+                in_a_word(line.verdict, line.grade, line.conditions, line.fails_by)
+            })
         };
         let name = clause.name.clone().unwrap_or_else(|| in_words_of_kind(clause.kind).to_owned());
         rows.push(std::iter::once(name).chain(answer.cameras.iter().map(cell)).collect());
@@ -60,13 +62,13 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
         let all = answer.cameras.iter().map(|one| in_a_word(one.verdict, one.grade, &one.conditions, &[]));
         rows.push(std::iter::once("the whole rule".to_owned()).chain(all).collect());
     }
-    out.table(&head, None, rows);
+    out.table(&head, &[], rows);
 
     out.heading(2, "The hardest scenes");
     out.items(answer.clauses.iter().flat_map(|clause| hardest(clause, units)).map(|text| (None, text)));
     if !answer.rule.sources.is_empty() {
         out.heading(2, "Where the numbers of the rule are from");
-        out.table(&["number", "value", "from"], Some(0), from_where(&answer.rule));
+        out.table(&["number", "value", "from"], &[0, 1], from_where(&answer.rule));
     }
     out.heading(2, "What the words mean");
     out.items(WORDS.map(|[word, meaning]| (Some(word.to_owned()), meaning.to_owned())));
@@ -75,16 +77,37 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
 
 /// Words of the page, each with its meaning.
 const WORDS: [[&str; 2]; 9] = [
-    ["yes", "in every scene of the rule a camera like this has information enough; whether its software uses it is not said"],
-    ["yes, if", "the same, provided that something holds which nobody stated or checked; it is listed below, camera by camera"],
+    [
+        "yes",
+        "in every scene of the rule a camera like this has information enough; whether its software uses it is not said",
+    ],
+    [
+        "yes, if",
+        "the same, provided that something holds which nobody stated or checked; it is listed below, camera by camera",
+    ],
     ["undecided", "neither is shown: figures are uncertain, or the proof ends between the two"],
-    ["no", "there is a scene of the rule in which no software can do it with this camera, or its image is spoiled"],
+    [
+        "no",
+        "there is a scene of the rule in which no software can do it with this camera, or its image is spoiled",
+    ],
     ["margin", "what is there over what is demanded: above 1 is enough, below 1 is not"],
-    ["d", "statistical distance: how far two materials are apart in what a camera counts; a decision is right with the probability written beside it"],
-    ["proved", "holds in every scene of the rule by a mathematical bound; simulated: by drawing scenes or errors; searched: none worse was found; assumed: \
-      under conditions"],
-    ["emissivity", "how much of its own heat a surface sends out; the rest of what is seen of it is mirrored surroundings"],
-    ["V", "lighting factor: the share of what a surface mirrors that comes from the surroundings that are named"],
+    [
+        "d",
+        "statistical distance: how far two materials are apart in what a camera counts; a decision is right with the probability written beside it",
+    ],
+    [
+        "proved",
+        "holds in every scene of the rule by a mathematical bound; simulated: by drawing scenes or errors; searched: none worse was found; assumed: \
+      under conditions",
+    ],
+    [
+        "emissivity",
+        "how much of its own heat a surface sends out; the rest of what is seen of it is mirrored surroundings",
+    ],
+    [
+        "V",
+        "lighting factor: the share of what a surface mirrors that comes from the surroundings that are named",
+    ],
 ];
 
 /// Whether the rule is passed, in a sentence.
@@ -101,14 +124,19 @@ fn said(reasons: &[NotPassed]) -> Vec<String> {
         Some(clause) => format!("{} ({clause})", place.camera),
         None => place.camera.clone(),
     };
-    let all = |wanted: &dyn Fn(&NotPassed) -> Option<String>| -> Vec<String> { reasons.iter().filter_map(wanted).collect() };
+    let all = |wanted: &dyn Fn(&NotPassed) -> Option<String>| -> Vec<String> {
+        reasons.iter().filter_map(wanted).collect()
+    };
     let mut out = Vec::new();
     let mut one = |names: Vec<String>, what: &str| {
         if !names.is_empty() {
-            out.push(format!("{what}: {}", names.join(", ")));
+            out.push(format!("{what}: {}", names.join("; ")));
         }
     };
-    one(all(&|one| if let NotPassed::Fails(place) = one { Some(of(place)) } else { None }), "does not meet it");
+    one(
+        all(&|one| if let NotPassed::Fails(place) = one { Some(of(place)) } else { None }),
+        "does not meet it",
+    );
     one(all(&|one| if let NotPassed::Undecided(place) = one { Some(of(place)) } else { None }), "undecided");
     let unproved = |one: &NotPassed| match one {
         NotPassed::NotProved(place, grade) => Some(format!("{} ({})", of(place), grade.name())),
@@ -116,7 +144,7 @@ fn said(reasons: &[NotPassed]) -> Vec<String> {
     };
     one(all(&unproved), "met, and not proved");
     let rests = |one: &NotPassed| match one {
-        NotPassed::RestsOn(place, codes) => Some(format!("{} [{}]", of(place), codes.join(" "))),
+        NotPassed::RestsOn(place, codes) => Some(format!("{}: {}", of(place), codes.join(", "))),
         _ => None,
     };
     one(all(&rests), "rests on conditions that nobody accepted (--accept)");
@@ -155,7 +183,12 @@ fn hardest(clause: &ClauseAnswer, units: Units) -> Vec<String> {
     match &clause.found {
         Found::Apart(apart) => {
             let of = |camera: &CameraVerdict| {
-                format!("{}{of_clause}: {}; margin {}", camera.name, scene_in_words(camera, clause, units), significant(camera.margin, 3))
+                format!(
+                    "{}{of_clause}: {}; margin {}",
+                    camera.name,
+                    scene_in_words(camera, clause, units),
+                    significant(camera.margin, 3)
+                )
             };
             apart.cameras.iter().map(of).collect()
         }
@@ -179,8 +212,9 @@ fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -
         None => {}
     }
     let lit = scene.surroundings_k.iter().zip(&scene.lighting);
-    let lit: Vec<String> =
-        lit.map(|(kelvin, factor)| format!("{} (V {})", units.temperature(*kelvin), significant(*factor, 3))).collect();
+    let lit: Vec<String> = lit
+        .map(|(kelvin, factor)| format!("{} (V {})", units.temperature(*kelvin), significant(*factor, 3)))
+        .collect();
     if !lit.is_empty() {
         out += &format!(", lit by surroundings of {}", lit.join(" and "));
     }
@@ -262,7 +296,7 @@ fn details(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> D
          sha256sum gives the hash of a file; of what is built in the program gives it.",
     );
     let inputs = provenance.inputs.iter().map(|input| [input.path.clone(), hash(input)]);
-    out.table(&["input", "SHA-256"], Some(1), inputs);
+    out.table(&["input", "SHA-256"], &[1], inputs);
     out
 }
 
@@ -305,7 +339,7 @@ fn of_apart(apart: &ApartAnswer, units: Units, out: &mut Document) {
         "limiting scene",
         "would do",
     ];
-    out.table(&head, None, apart.cameras.iter().map(|camera| row(camera, units)));
+    out.table(&head, &[], apart.cameras.iter().map(|camera| row(camera, units)));
     out.items(safety::of_rule(&apart.safety).into_iter().map(|sentence| (None, sentence)));
     if let Some(part) = &apart.not_identifiable {
         out.paragraph(&format!("{}.", text::no_camera(part).join("; ")));
@@ -327,7 +361,7 @@ fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut Document) {
             measured::measured_scene(&camera.limiting, units),
         ]
     };
-    out.table(&head, None, measured.cameras.iter().map(cells));
+    out.table(&head, &[], measured.cameras.iter().map(cells));
 }
 
 fn row(camera: &CameraVerdict, units: Units) -> [String; 9] {

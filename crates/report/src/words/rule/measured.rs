@@ -117,7 +117,10 @@ pub(super) fn uncertainty(margin: f64, found: &MarginUncertainty) -> Vec<String>
     )];
     if let Some(drawn) = &found.draws {
         let [low, high] = drawn.interval.map(|end| significant(end, 3));
-        lines.push(format!("{low} to {high} by {} draws", drawn.count));
+        let surely = significant(drawn.surely_above, 3);
+        let surely =
+            if surely == low { String::new() } else { format!(", the lower end surely above {surely}") };
+        lines.push(format!("{low} to {high} by {} draws{surely}", drawn.count));
     }
     lines.extend(found.budget.iter().map(|line| {
         let told = |value: f64| match line.unit {

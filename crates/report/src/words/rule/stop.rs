@@ -59,7 +59,9 @@ pub(super) fn approach(approach: &ApproachResult, units: Units) -> String {
         _ => String::new(),
     };
     let outside = match approach.in_view_from_m_s {
-        Some(Some(speed)) => format!("; who crosses is in its view until then from {} on", units.speed(speed)),
+        Some(Some(speed)) => {
+            format!("; who crosses is in its view until then from {} on", units.speed(speed))
+        }
         Some(None) => "; who crosses leaves its view before, at every speed".to_owned(),
         None => String::new(),
     };

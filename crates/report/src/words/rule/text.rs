@@ -2,6 +2,7 @@
 
 use super::in_words_of_kind;
 use super::measured::{of_measured, uncertainty, undecided};
+use super::reforms::of_market;
 use super::stop::{approach, decisions};
 use crate::text::columns::aligned;
 use crate::text::footing::{gaussian, of_scene, warnings};
@@ -30,6 +31,9 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     let mut out = format!("{}\n\n", answer.sentence.say());
     if answer.only().is_none() {
         out.push_str(&overview(answer));
+    }
+    if let Some(market) = answer.market() {
+        let _ = writeln!(out, "Shares: {}\n", of_market(&market));
     }
     for clause in &answer.clauses {
         if let Some(name) = &clause.name {

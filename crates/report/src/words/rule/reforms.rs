@@ -1,0 +1,82 @@
+//! Reforms beside the law, in words.
+
+use crate::text::columns::aligned;
+use crate::text::significant;
+use hadar::words::share;
+use hadar_scenario::rule::Verdict;
+use hadar_study::{BeforeLaw, Market, Reforms};
+use std::fmt::Write as _;
+
+/// What each reform changes, then every camera by the law and by each.
+#[must_use]
+pub fn reforms(found: &Reforms) -> String {
+    let mut out = String::new();
+    for reform in &found.reforms {
+        let when = reform.from.as_ref().map(|day| format!("from {day}"));
+        let about: Vec<String> = when.into_iter().chain(reform.status.clone()).collect();
+        let about = if about.is_empty() { String::new() } else { format!(" ({})", about.join(", ")) };
+        let changes: Vec<String> = found
+            .law
+            .iter()
+            .zip(&reform.cameras)
+            .filter(|(law, own)| law.differs_from(own))
+            .map(|(law, own)| format!("{} from {} to {}", law.camera, verdict(law), verdict(own)))
+            .collect();
+        let changes = if changes.is_empty() { "no verdict".to_owned() } else { changes.join("; ") };
+        let _ = writeln!(out, "{}{about} changes {changes}.", reform.name);
+    }
+    out.push('\n');
+    let heads = found.reforms.iter().map(|reform| reform.name.clone());
+    let head: Vec<String> =
+        ["camera".to_owned(), "the law as it is".to_owned()].into_iter().chain(heads).collect();
+    let cell = |one: &BeforeLaw| {
+        let by = one.limiting_clause.as_ref().map_or_else(String::new, |clause| format!(", {clause}"));
+        format!("{} ({}{by})", verdict(one), significant(one.margin, 3))
+    };
+    let mut rows = vec![head];
+    for (index, law) in found.law.iter().enumerate() {
+        let by_reform = found.reforms.iter().filter_map(|reform| reform.cameras.get(index)).map(cell);
+        rows.push([law.camera.clone(), cell(law)].into_iter().chain(by_reform).collect());
+    }
+    out += &aligned(&rows, &[]);
+    out += "  in brackets: least margin, above 1 where the demand is met, and the clause of it\n\n";
+    for (name, market) in std::iter::once(("the law as it is", found.market))
+        .chain(found.reforms.iter().map(|reform| (reform.name.as_str(), reform.market)))
+    {
+        if let Some(market) = market {
+            let _ = writeln!(out, "{name}: {}", of_market(&market));
+        }
+    }
+    for reform in &found.reforms {
+        let set: Vec<String> = reform.set.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
+        let _ = writeln!(out, "{} sets {}", reform.name, set.join("; "));
+    }
+    out += "A reform stands beside the law: it makes no certificate of it.\n";
+    out
+}
+
+/// A verdict in a word or two.
+fn verdict(one: &BeforeLaw) -> &'static str {
+    match (one.verdict, one.conditions.is_empty()) {
+        (Verdict::Meets, true) => "yes",
+        (Verdict::Meets, false) => "yes, if",
+        (Verdict::Undecided, _) => "undecided",
+        (Verdict::Fails, _) => "no",
+    }
+}
+
+/// Which part of a market meets a rule.
+pub(crate) fn of_market(market: &Market) -> String {
+    let parts = [
+        (market.meets, "meets it"),
+        (market.meets_if, "meets it under conditions"),
+        (market.undecided, "is undecided"),
+        (market.fails, "does not meet it"),
+        (market.not_stated, "is of cameras that are not named"),
+    ];
+    let said = parts
+        .into_iter()
+        .filter(|(part, _)| *part > 1e-9)
+        .map(|(part, what)| format!("{} {what}", share(part)));
+    format!("of the market {}", said.collect::<Vec<_>>().join(", "))
+}
