@@ -268,4 +268,53 @@ mod tests {
         page.table(&["a", "b"], &[1], [["x | y", "`k`|"]]);
         assert_eq!(page.to_markdown(), "| a | b |\n|---|---|\n| x \\| y | `` `k`\\| `` |\n\n");
     }
+
+    /// Read by another program: a paragraph, an item or a cell of anything is that text and nothing else.
+    #[test]
+    fn whatever_somebody_writes_is_text() {
+        use pulldown_cmark::{Event, Options, Parser, Tag};
+        const PIECES: [&str; 26] = [
+            "*", "_", "`", "~", "#", ">", "<", "[", "]", "(", ")", "!", "|", "\\", "&amp;", "&", "-", "+",
+            "1.", "=", "<!--", "-->", "<b>", " ", "a", "$",
+        ];
+        let mut state = 1u64;
+        let mut random = |below: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % below
+        };
+        for _ in 0..4000 {
+            let count = 1 + random(8);
+            let text: String = (0..count).map(|_| PIECES[random(PIECES.len())]).collect();
+            let line = one_line(&text);
+            if line.is_empty() {
+                continue;
+            }
+            let mut page = Document::default();
+            page.paragraph(&text);
+            page.items([(None, text.clone())]);
+            page.table(&["head"], &[], [[text.clone()]]);
+            page.table(&["head"], &[0], [[text.clone()]]);
+            let (mut said, mut code) = (Vec::new(), String::new());
+            let markdown = page.to_markdown();
+            for event in Parser::new_ext(&markdown, Options::all()) {
+                match event {
+                    Event::Text(text) => said.push(text.into_string()),
+                    Event::Code(text) => code.push_str(&text),
+                    Event::Start(
+                        Tag::Paragraph
+                        | Tag::List(None)
+                        | Tag::Item
+                        | Tag::Table(_)
+                        | Tag::TableHead
+                        | Tag::TableRow
+                        | Tag::TableCell,
+                    )
+                    | Event::End(_) => {}
+                    other => panic!("{text:?}: {other:?}\n{markdown}"),
+                }
+            }
+            assert_eq!(said.concat(), format!("{line}{line}head{line}head"), "{markdown}");
+            assert_eq!(code, line, "{markdown}");
+        }
+    }
 }

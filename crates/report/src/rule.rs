@@ -2,11 +2,13 @@
 //!
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
+mod moved;
 mod record;
 mod reforms;
 mod stand_in;
 
-pub use crate::words::rule::{check, reforms, sources, stand_in, tests, text};
+pub use crate::words::rule::{check, figures_moved, reforms, sources, stand_in, tests, text};
+pub use moved::moved_bundle;
 pub(crate) use record::STATEMENT;
 pub use record::{agreement, parsed, record};
 pub use reforms::reforms_bundle;

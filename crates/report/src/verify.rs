@@ -15,7 +15,7 @@ mod demands;
 mod verified;
 
 pub use crate::words::verify::text;
-pub use demands::Demands;
+pub use demands::{Demands, EnvelopeFault};
 pub use verified::{Difference, Verified};
 
 /// Files that ask again what a report answers.

@@ -5,7 +5,7 @@ use serde::ser::{SerializeMap, Serializer};
 use std::collections::BTreeMap;
 use toml::Value;
 
-use super::rule::{Known, Uncertainty};
+use super::rule::known::{Known, Uncertainty};
 use super::source::{Source, dotted};
 use hadar::units::Dimension;
 

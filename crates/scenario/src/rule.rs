@@ -11,15 +11,17 @@ mod camera;
 mod citation;
 mod clause;
 mod demand;
+pub(crate) mod known;
 mod reform;
 mod stand_in;
 mod stop;
 mod test;
 
-pub use camera::{Known, RuleCamera, Uncertainty};
+pub use camera::RuleCamera;
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::Clause;
 pub use demand::{Demand, DepthDemand, DepthObject};
+pub use known::{Known, Uncertainty};
 pub use reform::Reform;
 pub use stand_in::StandInSpec;
 pub use stop::StopSpec;

@@ -90,11 +90,11 @@ pub use remembered::Remembered;
 pub use rule::{
     ApartAnswer, ApproachResult, BeforeLaw, BudgetLine, CameraAnswer, CameraBeforeClause, CameraVerdict,
     Certified, ClauseAnswer, CrossingResult, Definition, Drawn, EmissivityError, EnvelopeResult, Extent,
-    Fixes, Found, IdealCamera, LightTime, LimitingScene, Line, MarginUncertainty, Market, Measure,
-    MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood, NotIdentifiable, NotInForce, NotPassed,
-    Outcome, Proof, Quotable, Reformed, Reforms, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
-    SafetyOfRule, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
-    WithoutPlaceholders,
+    FiguresMoved, Fixes, Found, IdealCamera, LightTime, LimitingScene, Line, MarginUncertainty, Market,
+    Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Moved, Neighbourhood, NotIdentifiable,
+    NotInForce, NotPassed, Outcome, Proof, Quotable, Reformed, Reforms, RuleAnswer, RuleAsked,
+    RuleRequirement, RuleStudy, SafetyOfRule, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck,
+    TestResult, Told, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -15,6 +15,7 @@ mod expected;
 mod guard;
 mod ideal;
 mod market;
+mod moved;
 mod not_in_force;
 mod pairs;
 mod reforms;
@@ -34,6 +35,7 @@ pub use clauses::{
 };
 pub use expected::{TestCheck, TestResult, Told};
 pub use market::Market;
+pub use moved::{FiguresMoved, Moved};
 pub use not_in_force::NotInForce;
 pub use reforms::{BeforeLaw, Reformed, Reforms};
 pub use results::{

@@ -19,7 +19,7 @@ hadar::named! {
         MotionBlur = "motion-blur",
         /// A speed is demanded, and without a distance nothing can be said of the blur: what cannot be said is not met.
         MotionUnknown = "motion-unknown",
-        /// Who crosses is not in the view until the decision.
+        /// The target, on its way across, is not in the view in time for the decision.
         OutOfView = "out-of-view",
         /// A reading of the brightest scene does not fit into the full well.
         FullWell = "full-well",

@@ -5,7 +5,11 @@
 //!
 //! tan θ = c/w + b/z,
 //!
-//! largest where the decision must stand, and at the lowest speed. On its way, walking or standing, at any bearing up to θ_e = min(θ, half the
+//! largest where the decision must stand, and at the lowest speed. Beyond half the view θ_h the camera must have decided before, at
+//!
+//! z_h = b/(tan θ_h − c/w),
+//!
+//! and cannot where c/w ≥ tan θ_h: it never sees the target. On its way, walking or standing, at any bearing up to θ_e = min(θ, half the
 //! view), it moves across the line of sight by no more than
 //!
 //! v_⊥ = v sin θ_e + c,   Δ = v_⊥ t/(z α) pixels in the time t
@@ -97,23 +101,46 @@ impl Encounter {
         by_view.into_iter().chain(by_lens).reduce(f64::min)
     }
 
-    /// The lowest speed from which on a target is within half a view until the decision, m s⁻¹; `None` where at none.
+    /// Where a decision must stand at the latest, m: as the manoeuvre says, or where the target leaves half a view; `None` where it is not in it
+    /// after it has come into view.
+    #[must_use]
+    pub fn decided_m(&self, decision: &Decision, half_view_rad: f64) -> Option<f64> {
+        let inward = half_view_rad.min(SIDEWAYS_RAD).tan() - self.crossing_m_s / decision.closing_m_s;
+        // Who meets the camera itself is at one bearing all the time.
+        let sees = if self.offset_m > 0.0 { inward > 0.0 } else { inward >= 0.0 };
+        let leaves_m = if self.offset_m > 0.0 { self.offset_m / inward } else { 0.0 };
+        let decided_m = decision.distance_m.max(leaves_m);
+        (sees && decision.start_m.is_none_or(|start_m| decided_m < start_m)).then_some(decided_m)
+    }
+
+    /// The lowest speed from which on a target can be seen in time, m s⁻¹; `None` where at none.
     #[must_use]
     pub fn in_view_from_m_s(&self, half_view_rad: f64) -> Option<f64> {
-        let holds = |decision: &Decision| self.bearing_rad(decision) <= half_view_rad;
-        let [slowest, fastest] = self.stop.decisions();
-        if holds(&slowest) {
-            return Some(slowest.speed_m_s);
+        let holds = |decision: &Decision| self.decided_m(decision, half_view_rad).is_some();
+        let mut speeds = self.speeds();
+        speeds.reverse();
+        // From the highest speed downwards, as far as it holds.
+        let last = speeds.iter().take_while(|decision| holds(decision)).last()?;
+        let next = speeds.iter().find(|decision| decision.speed_m_s < last.speed_m_s && !holds(decision));
+        let Some(next) = next else { return Some(last.speed_m_s) };
+        let (mut low, mut high) = (next.speed_m_s, last.speed_m_s);
+        while high - low > 1e-9 * high {
+            let middle = 0.5 * (low + high);
+            if holds(&self.stop.at(middle)) { high = middle } else { low = middle }
         }
-        holds(&fastest).then(|| {
-            let (mut low, mut high) = (slowest.speed_m_s, fastest.speed_m_s);
-            // The bearing falls with the speed.
-            while high - low > 1e-9 * high {
-                let middle = 0.5 * (low + high);
-                if holds(&self.stop.at(middle)) { high = middle } else { low = middle }
-            }
-            high
-        })
+        Some(high)
+    }
+
+    /// The speeds that are looked at, the lowest first.
+    #[must_use]
+    pub fn speeds(&self) -> Vec<Decision> {
+        let [slowest, fastest] = self.stop.decisions().map(|one| one.speed_m_s);
+        let at = |step: usize| {
+            let share = step as f64 / SPEEDS as f64;
+            self.stop.at(((1.0 - share) / slowest + share / fastest).recip().clamp(slowest, fastest))
+        };
+        let count = if slowest < fastest { SPEEDS } else { 0 };
+        (0..=count).map(at).collect()
     }
 
     /// How many pixels the target moves in a second, at most, and where.
@@ -138,19 +165,16 @@ impl Encounter {
     }
 
     fn most(&self, of: impl Fn(&Decision) -> f64) -> (f64, Decision) {
-        let [slowest, fastest] = self.stop.decisions().map(|one| one.speed_m_s);
-        let at = |step: usize| {
-            let share = step as f64 / SPEEDS as f64;
-            self.stop.at(((1.0 - share) / slowest + share / fastest).recip().clamp(slowest, fastest))
-        };
-        let count = if slowest < fastest { SPEEDS } else { 0 };
         let swiftest = self.stop.swiftest();
-        (0..=count).map(at).fold((of(&swiftest), swiftest), |(most, where_to), decision| {
+        self.speeds().into_iter().fold((of(&swiftest), swiftest), |(most, where_to), decision| {
             let found = of(&decision);
             if found > most { (found, decision) } else { (most, where_to) }
         })
     }
 }
+
+/// The widest bearing there is.
+const SIDEWAYS_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
 /// The larger of the vehicle's own and the closing speed.
 fn pace(decision: &Decision) -> f64 {
@@ -161,7 +185,7 @@ fn pace(decision: &Decision) -> f64 {
 mod tests {
     use super::*;
     use crate::instrument::presets;
-    use crate::policy::stop::StopFigures;
+    use crate::policy::stop::{Start, StopFigures};
 
     const STOP: StopFigures = StopFigures {
         speeds_m_s: [10.0 / 3.6, 60.0 / 3.6],
@@ -227,8 +251,21 @@ mod tests {
         assert!((from / 17.437 - 1.0).abs() < 1e-4, "{from}");
         assert_eq!(meets.in_view_from_m_s(0.07), None);
         assert!((meets.in_view_from_m_s(0.5).unwrap() * 3.6 - 10.0).abs() < 1e-9);
-        let beside = Encounter::new(Stop::new(STOP).unwrap(), 5.0 / 3.6, 1.0).unwrap();
-        assert!(beside.in_view_from_m_s(16f64.to_radians()).unwrap() * 3.6 > from);
+        // Half a metre beside, at 2.8 m from 10 km/h, is outside 16°; who stands there was inside from 0.5 m/tan(16°) = 1.74 m on: in time at 2.84 m.
+        let beside = Encounter::new(Stop::new(STOP).unwrap(), 0.0, 2.0).unwrap();
+        let slow = Stop::new(STOP).unwrap().decisions()[0];
+        let left_m = 2.0 / 16f64.to_radians().tan();
+        assert!((beside.decided_m(&slow, 16f64.to_radians()).unwrap() - left_m).abs() < 1e-12);
+        assert!(
+            left_m > slow.distance_m
+                && beside.in_view_from_m_s(16f64.to_radians()).unwrap() * 3.6 < 10.0 + 1e-9
+        );
+        // Not where it comes into view after that.
+        let late =
+            Stop::new(StopFigures { start: Some(Start::Distance(6.0)), speeds_m_s: [10.0 / 3.6; 2], ..STOP })
+                .unwrap();
+        let late = Encounter::new(late, 0.0, 2.0).unwrap();
+        assert_eq!(late.in_view_from_m_s(16f64.to_radians()), None);
         let half = Encounter::half_view_rad(&camera()).unwrap();
         let by_lens = (0.5f64 * 640.0 * 12e-6 / 14e-3).atan();
         assert!((half - by_lens.min(16f64.to_radians())).abs() < 1e-3, "{half}");

@@ -16,7 +16,7 @@ use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::json;
 use hadar_report::manifest::{Input, Provenance, answer_json, sha256};
 use hadar_report::text::{self, with_settings};
-use hadar_scenario::{Scenario, Setting, Written};
+use hadar_scenario::{Date, Scenario, Setting, Written};
 use hadar_study::budget::{self, Limits, Takes};
 use hadar_study::warning::Warning;
 use hadar_study::{Condition, OwnCameras, Study};
@@ -163,10 +163,17 @@ impl Global {
         }
     }
 
-    /// The same for a report that is made again into a folder of its own, with nothing printed.
-    pub(super) fn made_again(self, out: &Path, remade: Arc<Remade>, by: &Self) -> Self {
+    /// The same for a report that is made again into a folder of its own, with nothing printed, of materials in `library` where there are any.
+    pub(super) fn made_again(
+        self,
+        out: &Path,
+        remade: Arc<Remade>,
+        by: &Self,
+        library: Vec<PathBuf>,
+    ) -> Self {
         let (out, kept) = (Some(out.to_owned()), Some(Arc::default()));
-        Self { out, kept, remade: Some(remade), quiet: true, threads: by.threads, ..self }
+        let library = if library.is_empty() { self.library } else { library };
+        Self { out, kept, remade: Some(remade), quiet: true, threads: by.threads, library, ..self }
     }
 
     /// The embedded library with the user's own materials.
@@ -446,6 +453,11 @@ fn time(text: &str) -> std::result::Result<Duration, String> {
 /// A size given to --memory-limit.
 fn memory(text: &str) -> std::result::Result<u64, String> {
     budget::size(text).map_err(|error| error.to_string())
+}
+
+/// A day as a flag has it.
+pub(super) fn day(text: &str) -> std::result::Result<Date, String> {
+    hadar_scenario::day(text).ok_or_else(|| "write year, month and day, as in 2029-09-01".to_owned())
 }
 
 /// The code of a condition given to a flag.

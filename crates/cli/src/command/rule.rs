@@ -1,6 +1,6 @@
 //! `hadar rule`: which cameras meet a rule.
 
-use super::global::{Global, condition};
+use super::global::{Global, condition, day as on_day};
 use super::several;
 use super::verify::{Again, VerifyArgs};
 use clap::Args;
@@ -17,8 +17,8 @@ use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::sweep::Question;
 use hadar_study::{
-    CameraAnswer, Condition, Extent, OwnCameras, Reforms, RuleAnswer, RuleAsked, RuleStudy, TestResult,
-    Warning,
+    CameraAnswer, Condition, Extent, FiguresMoved, OwnCameras, Reforms, RuleAnswer, RuleAsked, RuleStudy,
+    TestResult, Warning,
 };
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -52,14 +52,17 @@ pub(super) struct RuleArgs {
     /// Hold the cameras against every reform of the rule, [[reform]], beside the rule as it is
     #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "on", "accept"])]
     reforms: bool,
+    /// Move every number of the rule by a tenth, alone, and say what hangs on it
+    #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "reforms", "on", "accept"])]
+    figures: bool,
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
-    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "on"])]
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "figures", "on"])]
     verify: Option<PathBuf>,
     /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
     accept: Vec<String>,
     /// Ask about a day: a rule that does not hold on it says so
-    #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = on_day)]
     on: Option<Date>,
 }
 
@@ -68,10 +71,6 @@ impl RuleArgs {
     pub(super) const fn verifies(&self) -> bool {
         self.verify.is_some()
     }
-}
-
-pub(super) fn on(text: &str) -> std::result::Result<Date, String> {
-    day(text).ok_or_else(|| "write year, month and day, as in 2029-09-01".to_owned())
 }
 
 pub(super) fn run(
@@ -87,6 +86,7 @@ pub(super) fn run(
         (args.sources, "--sources"),
         (args.stand_in, "--stand-in"),
         (args.reforms, "--reforms"),
+        (args.figures, "--figures"),
     ];
     if let Some((_, flag)) = alone.into_iter().find(|(asked, _)| *asked && args.rules.len() > 1) {
         let found = format!("{flag} is asked of {} rules at once", args.rules.len());
@@ -99,6 +99,9 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     let written = global.written(file)?;
     if args.reforms {
         return reforms(&written, global);
+    }
+    if args.figures {
+        return figures(&written, global);
     }
     let mut rule_read = Rule::from_written(&written)?;
     rule_read.skip_uncovered(global.skip_uncovered);
@@ -247,17 +250,25 @@ fn verify(
     let folder =
         certificate.parent().map(|folder| if folder == Path::new("") { Path::new(".") } else { folder });
     let report = folder.filter(|folder| folder.join(manifest::NAME).exists());
+    // Names of inputs are from the folder of the rule, where that is not the report's own copy.
+    let home = (!path.ends_with(rule::AS_READ)).then(|| path.parent().map(Path::to_owned)).flatten();
+    let home = home.map(|home| if home == Path::new("") { PathBuf::from(".") } else { home });
     let report = report
         .map(|folder| {
             super::verify::verified(
-                &VerifyArgs::of(folder.to_owned(), global.inputs.clone()),
+                &VerifyArgs::of(folder.to_owned(), global.inputs.clone().or(home)),
                 global,
                 read_again,
             )
         })
         .transpose()?;
     let text = match &report {
-        Some(report) => format!("{found}.\nThe report that it is in: {}", of_report(report)),
+        Some(report) if report.verified => {
+            format!("Verified: {found}.\nThe report that it is in: {}", of_report(report))
+        }
+        Some(report) => {
+            format!("Not verified, though {found}.\nThe report that it is in: {}", of_report(report))
+        }
         None => format!(
             "Verified: {found}. It is no part of a report: other files beside it were not looked at.\n"
         ),
@@ -308,6 +319,20 @@ fn reforms(written: &Written, global: &Global) -> Result<u8> {
     let text = rule::reforms(&found);
     let title = Rule::from_written(written)?.about.name;
     let work = global.report(&text, || rule::reforms_bundle(&found, title.as_deref()))?;
+    let mut stats = found.stats.clone();
+    stats.add(&work);
+    global.answer(&found, &text, &stats)?;
+    Ok(0)
+}
+
+/// What hangs on every figure of the rule.
+fn figures(written: &Written, global: &Global) -> Result<u8> {
+    let bar = global.progress("figures");
+    let found = FiguresMoved::of(written, &global.library()?, &|done, all| bar.set(done, all))?;
+    bar.finish();
+    let text = rule::figures_moved(&found);
+    let title = Rule::from_written(written)?.about.name;
+    let work = global.report(&text, || rule::moved_bundle(&found, title.as_deref()))?;
     let mut stats = found.stats.clone();
     stats.add(&work);
     global.answer(&found, &text, &stats)?;

@@ -1,6 +1,6 @@
 //! `hadar verify FOLDER`: the command of a report given again, and every file compared. Exit codes: 0 the same, 1 not.
 
-use super::global::{Global, Remade};
+use super::global::{Global, Remade, day};
 use super::provenance;
 use clap::Args;
 use hadar::error::{Error, Result};
@@ -30,7 +30,7 @@ pub(super) struct VerifyArgs {
     #[arg(long, value_name = "RULE")]
     rule: Option<PathBuf>,
     /// Demand that it is about this day
-    #[arg(long, value_name = "YYYY-MM-DD", value_parser = super::rule::on)]
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
     on: Option<Date>,
     /// Demand that this DSSE envelope holds the statement; whose signature it has is for the tool to say that made it
     #[arg(long, value_name = "FILE")]
@@ -91,6 +91,11 @@ pub(super) fn verified(
     read_again: &dyn Fn(&[String]) -> Option<Again>,
 ) -> Result<Verified> {
     let demands = args.demands()?;
+    // Named from here, and not from where the inputs are.
+    let absolute = |path: &PathBuf| {
+        std::path::absolute(path).map_err(|error| Error::file("read the library", path, error.kind()))
+    };
+    let library = global.library.iter().map(absolute).collect::<Result<Vec<_>>>()?;
     let folder = std::path::absolute(&args.folder)
         .map_err(|error| Error::file("read the report", &args.folder, error.kind()))?;
     let stored = Stored::read(&folder)?;
@@ -113,7 +118,7 @@ pub(super) fn verified(
     let copy = stored.asked.clone().zip(scenario).map(|(text, path)| (path, text));
     let copy = copy.filter(|_| !is_itself);
     let remade = Arc::new(Remade::new(copy, stored.provenance().clone()));
-    let given = again.given.made_again(&made, Arc::clone(&remade), global);
+    let given = again.given.made_again(&made, Arc::clone(&remade), global, library);
     let (outcome, _) = inputs_of(|| (again.run)(&given));
     outcome?;
     stored.against(&folder, &made, &remade.inputs(), asked.as_deref(), provenance::COMMIT, &demands)

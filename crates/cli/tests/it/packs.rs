@@ -60,6 +60,10 @@ fn a_threshold_that_is_moved_breaks_a_test() {
             let line = text.lines().nth(figure.line - 1).unwrap();
             let (key, value) = line.split_once('=').unwrap();
             let changed = format!("{key}={}", tenth_more(value));
+            // A tenth of nothing.
+            if ["\"0 km/h\"", "\"0 m\""].contains(&value.split('#').next().unwrap().trim()) {
+                continue;
+            }
             let mut lines: Vec<&str> = text.lines().collect();
             lines[figure.line - 1] = &changed;
             let changed_rule = Rule::from_toml(&lines.join("\n"), None).ok();

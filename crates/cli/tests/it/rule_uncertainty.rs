@@ -6,6 +6,9 @@ use hadar::instrument::presets;
 use hadar_scenario::Rule;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{RuleAsked, RuleStudy};
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use std::fs;
 
 /// A rule of a camera whose noise is all electronic: d goes with 1/NETD, 1/F² and the root of the exposure.
@@ -249,4 +252,34 @@ fn the_worst_scene_of_another_camera_is_looked_at() {
     assert!(found.low < 1.01 * noisy.margin, "{} {}", found.low, noisy.margin);
     assert!(found.high > 0.99 * quiet.margin, "{} {}", found.high, quiet.margin);
     assert_eq!(uncertain.verdict, Verdict::Undecided);
+}
+
+/// Scenes and pairs searched anew in every draw, as the program does for one camera: the lower end is no higher than theirs, and not far below.
+#[test]
+fn the_lower_end_is_that_of_cameras_searched_one_by_one() {
+    let text = NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "");
+    let (scene, _) = text.split_once("[stop]").unwrap();
+    let scene = scene
+        .replace("[\"aluminium\"]", "[\"aluminium\", \"pmma\", \"polycarbonate\", \"soda-lime-glass\"]")
+        .replace("[envelope]", "[unknown]\nnuisances = [\"temperature\", \"lighting\"]\n[envelope]\nlighting = [0.1, 0.9]\nsurroundings = [\"-5 degC\", \"20 degC\"]");
+    let camera = |netd: &str, f_number: &str| {
+        format!(
+            "{scene}[requirement]\ndistance = 0.3\n[[camera]]\nnoise_exposure = \"10 ms\"\nexposure = \"10 ms\"\npixel = \"12 um\"\n\
+             focal_length = \"14 mm\"\nnetd_temperature = \"25 degC\"\nnetd_f_number = 1.0\nnetd = {netd}\nf_number = {f_number}\n"
+        )
+    };
+    let guarded = only(&camera("{ value = \"30 mK\", u = \"8 mK\" }", "{ value = 1.1, u = 0.1 }"));
+    let found = guarded.uncertainty.unwrap();
+    let mut random = ChaCha8Rng::seed_from_u64(45);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut margins: Vec<f64> = (0..240)
+        .filter_map(|_| {
+            let (netd, f) = (30.0 + 8.0 * draw(), 1.1 + 0.1 * draw());
+            (netd > 0.0 && f > 0.5).then(|| only(&camera(&format!("\"{netd} mK\""), &f.to_string())).margin)
+        })
+        .collect();
+    margins.sort_by(f64::total_cmp);
+    // The share of 2.28 % is between the second and the eleventh of 240 (95 %).
+    assert!(found.low <= margins[10], "{} {:?}", found.low, &margins[..12]);
+    assert!(found.low >= 0.8 * margins[1], "{} {:?}", found.low, &margins[..12]);
 }

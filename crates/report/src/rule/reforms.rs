@@ -4,6 +4,7 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, NamedSeries, NamedValues};
 use crate::table::{Table, number};
+use crate::words::rule::{ALL_CLAUSES, title_of_reforms};
 use hadar::error::Result;
 use hadar_study::{BeforeLaw, Reforms};
 
@@ -12,8 +13,7 @@ use hadar_study::{BeforeLaw, Reforms};
 /// # Errors
 /// A table that cannot be written.
 pub fn reforms_bundle(found: &Reforms, title: Option<&str>) -> Result<Bundle> {
-    let title =
-        title.map_or_else(|| "Reforms beside the law".to_owned(), |title| format!("{title}: reforms"));
+    let title = title_of_reforms(title);
     let mut bundle = Bundle::about(Some(&title));
     bundle.add_plots(&[margins(found, &title)])?;
     Ok(bundle)
@@ -43,7 +43,7 @@ fn margins(found: &Reforms, title: &str) -> Plot {
     let of = |cameras: &[BeforeLaw]| cameras.iter().map(|one| one.margin).collect::<Vec<_>>();
     let axis = Axis::log("margin: what is there over what is demanded");
     let mut figure = NamedValues::new(title.to_owned(), names, axis)
-        .subtitle("Least over all clauses and scenes.".to_owned())
+        .subtitle(ALL_CLAUSES.to_owned())
         .series(NamedSeries::new("the law as it is", of(&found.law)));
     for reform in &found.reforms {
         figure = figure.series(NamedSeries::new(reform.name.clone(), of(&reform.cameras)));

@@ -87,33 +87,57 @@ impl Demands {
         if let Some(envelope) = &self.envelope {
             match signed(envelope, &text) {
                 Ok(found) => keys = found,
-                Err(found) => unmet.push(Difference::Envelope { found }),
+                Err(fault) => unmet.push(Difference::Envelope { fault }),
             }
         }
         Ok((unmet, keys))
     }
 }
 
+/// What is wrong with an envelope.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[serde(tag = "fault", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum EnvelopeFault {
+    /// It is none.
+    NoEnvelope {
+        /// Why not.
+        why: String,
+    },
+    /// Its payload is of another type.
+    OtherType {
+        /// Of which.
+        found: String,
+    },
+    /// Its payload is no base64.
+    NoBase64 {
+        /// Why not.
+        why: String,
+    },
+    /// It holds another statement.
+    OtherStatement,
+    /// Nobody signed it.
+    Unsigned,
+}
+
 /// The keys by which an envelope says that a statement is signed, or what is wrong with it.
-fn signed(envelope: &[u8], statement: &[u8]) -> std::result::Result<Vec<String>, String> {
-    let envelope: Envelope =
-        serde_json::from_slice(envelope).map_err(|error| format!("no DSSE envelope: {error}"))?;
+fn signed(envelope: &[u8], statement: &[u8]) -> std::result::Result<Vec<String>, EnvelopeFault> {
+    let envelope: Envelope = serde_json::from_slice(envelope)
+        .map_err(|error| EnvelopeFault::NoEnvelope { why: error.to_string() })?;
     if envelope.payload_type != PAYLOAD {
-        return Err(format!("its payload is of type {:?}, not {PAYLOAD}", envelope.payload_type));
+        return Err(EnvelopeFault::OtherType { found: envelope.payload_type });
     }
     let payload = STANDARD.decode(&envelope.payload).or_else(|_| URL_SAFE.decode(&envelope.payload));
-    let payload = payload.map_err(|error| format!("its payload is no base64: {error}"))?;
+    let payload = payload.map_err(|error| EnvelopeFault::NoBase64 { why: error.to_string() })?;
     if payload != statement {
-        return Err(format!("it holds another statement than {STATEMENT}, byte by byte"));
+        return Err(EnvelopeFault::OtherStatement);
     }
     let signs = |one: &Signature| !one.sig.is_empty();
     if envelope.signatures.is_empty() || !envelope.signatures.iter().all(signs) {
-        return Err("nobody signed it".to_owned());
+        return Err(EnvelopeFault::Unsigned);
     }
-    let named = |one: Signature| {
-        one.keyid.filter(|id| !id.is_empty()).unwrap_or_else(|| "a key without a name".into())
-    };
-    Ok(envelope.signatures.into_iter().map(named).collect())
+    // A key without a name has none.
+    Ok(envelope.signatures.into_iter().map(|one| one.keyid.unwrap_or_default()).collect())
 }
 
 #[cfg(test)]
@@ -130,20 +154,21 @@ mod tests {
                 .to_string()
         };
         assert_eq!(signed(of(statement, PAYLOAD, "c2ln").as_bytes(), statement), Ok(vec!["k1".to_owned()]));
-        let wrong = |text: &str, told: &str| {
+        let wrong = |text: &str, fault: EnvelopeFault| {
             let found = signed(text.as_bytes(), statement).unwrap_err();
-            assert!(found.contains(told), "{found}");
+            assert_eq!(std::mem::discriminant(&found), std::mem::discriminant(&fault), "{found:?}");
         };
-        let mut changed = statement.to_vec();
+        let (mut changed, none) = (statement.to_vec(), String::new());
         changed[5] ^= 1;
-        wrong(&of(&changed, PAYLOAD, "c2ln"), "another statement");
-        wrong(&of(statement, "text/plain", "c2ln"), "text/plain");
-        wrong(&of(statement, PAYLOAD, ""), "nobody signed");
-        wrong(
-            &json!({ "payload": "", "payloadType": PAYLOAD, "signatures": [] }).to_string(),
-            "another statement",
-        );
-        wrong(&json!({ "payload": "!", "payloadType": PAYLOAD, "signatures": [] }).to_string(), "no base64");
-        wrong("{}", "no DSSE envelope");
+        wrong(&of(&changed, PAYLOAD, "c2ln"), EnvelopeFault::OtherStatement);
+        wrong(&of(statement, "text/plain", "c2ln"), EnvelopeFault::OtherType { found: none.clone() });
+        wrong(&of(statement, PAYLOAD, ""), EnvelopeFault::Unsigned);
+        let of = |payload: &str| {
+            json!({ "payload": payload, "payloadType": PAYLOAD, "signatures": [] }).to_string()
+        };
+        wrong(&of(&STANDARD.encode(statement)), EnvelopeFault::Unsigned);
+        wrong(&of(""), EnvelopeFault::OtherStatement);
+        wrong(&of("!"), EnvelopeFault::NoBase64 { why: none.clone() });
+        wrong("{}", EnvelopeFault::NoEnvelope { why: none });
     }
 }

@@ -1,5 +1,6 @@
 //! What comes of a report that was made again.
 
+use super::demands::EnvelopeFault;
 use serde::Serialize;
 
 /// What is not as it should be.
@@ -51,7 +52,8 @@ pub enum Difference {
     /// An envelope is not about this statement.
     Envelope {
         /// What is wrong with it.
-        found: String,
+        #[serde(flatten)]
+        fault: EnvelopeFault,
     },
     /// Another program made it: no difference by itself.
     Program {

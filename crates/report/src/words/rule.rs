@@ -3,6 +3,7 @@
 pub(crate) mod certificate;
 mod check;
 mod measured;
+mod moved;
 mod reforms;
 mod sources;
 mod stand_in;
@@ -11,7 +12,10 @@ mod text;
 
 pub use check::check;
 pub(crate) use measured::measure;
+pub use moved::figures_moved;
+pub(crate) use moved::title_of_figures;
 pub use reforms::reforms;
+pub(crate) use reforms::title_of_reforms;
 pub use sources::{sources, tests};
 pub(crate) use stand_in::below_a_line;
 pub use stand_in::stand_in;
@@ -110,7 +114,18 @@ impl Say for Quotable {
                 self.units.lengths([significant(start_m, 3).parse().unwrap_or(start_m); 2])
             );
         }
-        if let Some(speed) = self.speed_m_s {
+        let crossing = self.stop.and_then(|stop| stop.crossing);
+        if let (Some(speed), Some(crossing)) = (self.speed_m_s, crossing) {
+            let way = match crossing.speed_m_s {
+                0.0 => "which does not cross".to_owned(),
+                speed => format!("which crosses at {}", self.units.speed(speed)),
+            };
+            let (beside, speed) = (self.units.length(crossing.offset_m), self.units.speed(speed));
+            out += &format!(
+                ", and the target, {way} and is met within {beside} of the camera's axis, is in its view in time and moves by less than a \
+                 pixel while all bands are exposed, seen from a vehicle that drives forward at {speed}"
+            );
+        } else if let Some(speed) = self.speed_m_s {
             let speed = self.units.speed(speed);
             out += &format!(
                 ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \

@@ -19,7 +19,7 @@ const fn clause(by: Shortfall) -> &'static str {
         Shortfall::MotionUnknown => {
             "whether the target moves by a pixel while all bands are exposed is not known without target.distance"
         }
-        Shortfall::OutOfView => "who crosses is not in the view until the decision",
+        Shortfall::OutOfView => "the target is not in the view in time",
         Shortfall::FullWell => "a reading does not fit into the full well",
         Shortfall::FrameRate => "the exposure is longer than a frame",
         Shortfall::Diffraction => "the lens blurs a point over more than the pixel",
@@ -36,7 +36,7 @@ pub(crate) fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::Distance => "distance",
         Shortfall::MotionBlur => "motion blur of a pixel or more",
         Shortfall::MotionUnknown => "motion that is not known without a distance",
-        Shortfall::OutOfView => "who crosses is outside the view",
+        Shortfall::OutOfView => "the target is not in the view in time",
         Shortfall::FullWell => "the brightest scene fills the well",
         Shortfall::FrameRate => "longer than a frame",
         Shortfall::Impractical => "not a practical camera",

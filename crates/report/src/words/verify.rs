@@ -1,7 +1,7 @@
 //! What is said of a report that was made again.
 
 use super::Say;
-use crate::verify::{Difference, Verified};
+use crate::verify::{Difference, EnvelopeFault, Verified};
 use std::fmt::Write as _;
 
 /// Differences of which the text tells.
@@ -37,7 +37,7 @@ pub fn text(verified: &Verified) -> String {
         let _ = writeln!(
             text,
             "The envelope holds this statement, signed by {}; whether the signature is theirs the tool that made it says.",
-            verified.signed_by.join(", ")
+            verified.signed_by.iter().map(|key| named(key)).collect::<Vec<_>>().join(", ")
         );
     }
     let _ = writeln!(text, "The command that was given again: {}", verified.command);
@@ -45,6 +45,27 @@ pub fn text(verified: &Verified) -> String {
         let _ = writeln!(text, "Not of the report, and not looked at: {}", verified.strangers.join(", "));
     }
     text
+}
+
+/// A key by its name.
+fn named(key: &str) -> &str {
+    if key.is_empty() { "a key without a name" } else { key }
+}
+
+impl Say for EnvelopeFault {
+    fn say(&self) -> String {
+        match self {
+            Self::NoEnvelope { why } => format!("it is no DSSE envelope: {why}"),
+            Self::OtherType { found } => {
+                format!("its payload is of type {found:?}, not application/vnd.in-toto+json")
+            }
+            Self::NoBase64 { why } => format!("its payload is no base64: {why}"),
+            Self::OtherStatement => {
+                "it holds another statement than certificate.intoto.json, byte by byte".into()
+            }
+            Self::Unsigned => "nobody signed it".into(),
+        }
+    }
 }
 
 impl Say for Difference {
@@ -64,7 +85,7 @@ impl Say for Difference {
             Self::Demand { demanded, found } => {
                 format!("the statement says {found}, and {demanded} is demanded")
             }
-            Self::Envelope { found } => format!("the envelope: {found}"),
+            Self::Envelope { fault } => format!("the envelope: {}", fault.say()),
             Self::Program { was, is } => format!("made by {was}; made again by {is}"),
         }
     }

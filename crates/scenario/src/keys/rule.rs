@@ -2,7 +2,8 @@
 
 use super::key::Silent::{Is, Means, Refused};
 use super::key::{COUNT, Key, LENGTH, More, POSITIVE, TIME, Table, Value};
-use hadar::allowed::{Allowed, FROM_ZERO};
+use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
+use hadar::units::Dimension;
 
 const ABOUT_KEYS: &[Key] = &[
     Key::row(
@@ -350,6 +351,14 @@ const TEST_KEYS: &[Key] = &[
         Means("any"),
         "\"2 s\"",
         "Least time until then, as it is expected.",
+        "`hadar rule --test`",
+    ),
+    Key::row(
+        "bearing",
+        Value::Quantity(Dimension::Angle, ABOVE_ZERO),
+        Means("any"),
+        "\"27 deg\"",
+        "How far beside the axis a target that crosses is until then, at most, as it is expected.",
         "`hadar rule --test`",
     ),
     Key::row(

@@ -1,5 +1,6 @@
 //! The cameras of a rule: known ones by name (`cameras`), others as tables (`[[camera]]`).
 
+use super::known::{Known, Uncertainty};
 use crate::CameraSpec;
 use crate::camera::read_with;
 use crate::keys::rule::UNCERTAIN;
@@ -27,28 +28,6 @@ pub struct RuleCamera {
     pub share: Option<f64>,
     /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
     pub key: String,
-}
-
-/// How well a figure is known.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Known {
-    /// It has an error.
-    Within(Uncertainty),
-    /// It is no larger than is stated.
-    AtMost,
-    /// It is no smaller than is stated.
-    AtLeast,
-}
-
-/// The error of a figure.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Uncertainty {
-    /// Its standard uncertainty, in the unit used inside; not negative.
-    pub sigma: f64,
-    /// Whether it is anything within √3 of that, and no more; else Gaussian.
-    pub rectangular: bool,
-    /// What has the same error, so many deviations of its own.
-    pub same: Option<String>,
 }
 
 /// What shares may add up to above 1.

@@ -93,6 +93,13 @@ impl Ground {
 }
 
 /// The keys that it has in a rule.
+impl Serialize for Ground {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        self.entries().serialize(serializer)
+    }
+}
+
+/// The keys that it has in a rule.
 impl Serialize for Citation {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         self.entries().serialize(serializer)
@@ -111,7 +118,9 @@ pub(super) fn read(root: &Section<'_>) -> Result<Vec<Citation>> {
     let items = entry.items("each source as [[source]], in double brackets")?;
     let citations: Vec<Citation> = items.iter().map(|item| one(item, source)).collect::<Result<_>>()?;
     let keys = figures(root.document()).into_iter().map(|(_, key)| key);
-    let untagged = keys.into_iter().find(|key| !citations.iter().any(|one| one.covers(key)));
+    // Who sets a value says so in the answer.
+    let is_set = |key: &String| source.settings.iter().any(|set| set.covers(key));
+    let untagged = keys.into_iter().find(|key| !is_set(key) && !citations.iter().any(|one| one.covers(key)));
     if let Some(key) = untagged {
         let instead = format!(
             "name `{key}` in the keys of a [[source]], with document, clause, quote, date and mark, or with choice = \"why\""
@@ -133,7 +142,10 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
         .iter()
         .map(|item| {
             let key = item.text("\"stop.latency\"")?.trim();
-            if source.lines.contains_key(key) {
+            // What is set over the file stands on no line of it.
+            let is_set =
+                source.settings.iter().any(|set| set.covers(key) || set.is_in(key) || within(&set.key, key));
+            if source.lines.contains_key(key) || is_set {
                 return Ok(key.to_owned());
             }
             let known = source.lines.keys().map(String::as_str);
@@ -172,6 +184,14 @@ pub struct Figure {
     pub value: String,
     /// Its line.
     pub line: usize,
+}
+
+impl Figure {
+    /// That of a key with a value as it is written, on no line.
+    #[must_use]
+    pub fn new(key: &str, value: &str) -> Self {
+        Self { key: key.to_owned(), value: value.to_owned(), line: 0 }
+    }
 }
 
 /// All figures in the text of a rule.

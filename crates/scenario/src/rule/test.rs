@@ -25,6 +25,8 @@ pub struct RuleTest {
     pub decision_distance_m: Option<f64>,
     /// Least time until then, s.
     pub decision_time_s: Option<f64>,
+    /// How far beside the camera's axis the target is until then, at most, rad.
+    pub bearing_rad: Option<f64>,
     /// Frames of all bands that fit into it.
     pub frames: Option<u32>,
     /// Share of itself by which the margin may miss.
@@ -57,6 +59,7 @@ impl RuleTest {
             .put_if("margin", self.margin)
             .put_quantity("decision_distance", Dimension::Length, self.decision_distance_m)
             .put_quantity("decision_time", Dimension::Time, self.decision_time_s)
+            .put_quantity("bearing", Dimension::Angle, self.bearing_rad)
             .put_if("frames", self.frames)
             .put("tolerance", self.tolerance)
     }
@@ -90,11 +93,13 @@ fn one(item: &Entry<'_>, cameras: &[RuleCamera], clauses: &[Clause]) -> Result<R
         margin: section.number("margin")?,
         decision_distance_m: section.quantity("decision_distance")?,
         decision_time_s: section.quantity("decision_time")?,
+        bearing_rad: section.quantity("bearing")?,
         frames: section.read("frames", |entry| entry.count("60"))?,
         tolerance: section.number("tolerance")?.unwrap_or(TOLERANCE),
     };
-    let RuleTest { verdict, margin, decision_distance_m, decision_time_s, frames, .. } = &test;
-    let numbers = margin.is_some() || decision_distance_m.is_some() || decision_time_s.is_some();
+    let RuleTest { verdict, margin, decision_distance_m, decision_time_s, bearing_rad, frames, .. } = &test;
+    let numbers =
+        [margin, decision_distance_m, decision_time_s, bearing_rad].iter().any(|number| number.is_some());
     if verdict.is_none() && frames.is_none() && !numbers {
         let instead = "write what is expected, as in verdict = \"meets\" and margin = 1.23";
         return Err(item.fail(Error::malformed("the test expects nothing", instead)));

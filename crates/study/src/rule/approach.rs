@@ -75,10 +75,11 @@ impl Moving {
         Some(per_s * camera.sweep_s(bands))
     }
 
-    /// Where the target leaves the view too early, if it does; who does not cross is taken to stay in it.
+    /// That the target is not in the view in time, if so; who does not cross is taken to stay in it.
     pub(super) fn out_of_view(self, camera: &Camera) -> Option<Shortfall> {
-        let outside = self.encounter?.widest_rad() > Encounter::half_view_rad(camera)?;
-        outside.then_some(Shortfall::OutOfView)
+        let (encounter, half_view_rad) = (self.encounter?, Encounter::half_view_rad(camera)?);
+        let seen = |decision: &Decision| encounter.decided_m(decision, half_view_rad).is_some();
+        (!encounter.speeds().iter().all(seen)).then_some(Shortfall::OutOfView)
     }
 
     /// What nobody stated of where the target is in the picture.
@@ -107,10 +108,27 @@ impl Approach {
         let stop = spec.stop();
         let [near, far] = stop.decisions();
         let needed_s = camera.acquisition_s(bands);
-        let first_m = far.distance_m + far.closing_m_s * needed_s;
-        // What needs more time than there is cannot look from before the start; that it is too slow is said elsewhere.
-        let seen_from_m = far.start_m.map_or(first_m, |start_m| start_m.min(first_m));
-        let time_s = stop.hastiest().and_then(|one| one.time_s);
+        let half_view_rad = Encounter::half_view_rad(camera);
+        // Who leaves the view before is decided about before.
+        let seen = spec.encounter().zip(half_view_rad).map(|(encounter, half_view_rad)| {
+            let decided = |one: Decision| Some((one, encounter.decided_m(&one, half_view_rad)?));
+            encounter.speeds().into_iter().filter_map(decided).collect::<Vec<_>>()
+        });
+        let first = |decision: &Decision, decided_m: f64| {
+            let first_m = decided_m + decision.closing_m_s * needed_s;
+            // What needs more time than there is cannot look from before the start; that it is too slow is said elsewhere.
+            decision.start_m.map_or(first_m, |start_m| start_m.min(first_m))
+        };
+        let of_view = seen.iter().flatten().map(|(decision, decided_m)| first(decision, *decided_m));
+        let seen_from_m = of_view.fold(first(&far, far.distance_m), f64::max);
+        let left = |(decision, decided_m): &(Decision, f64)| {
+            Some((decision.start_m? - decided_m) / decision.closing_m_s)
+        };
+        let of_view = seen.iter().flatten().filter_map(left).reduce(f64::min);
+        let time_s = stop
+            .hastiest()
+            .and_then(|one| one.time_s)
+            .map(|time_s| of_view.map_or(time_s, |of_view| time_s.min(of_view)));
         Self {
             distance_m: [near.distance_m, seen_from_m],
             result: ApproachResult {
@@ -120,11 +138,12 @@ impl Approach {
                 time_s,
                 frames_within: time_s.map(|time_s| camera.frames_within(time_s, bands)),
                 footprint_m: camera.footprint_m(far.distance_m),
-                in_view_from_m_s: spec.encounter().and_then(|one| {
-                    let half_view_rad = Encounter::half_view_rad(camera)?;
-                    let seen = one.widest_rad() <= half_view_rad;
-                    if seen { None } else { Some(one.in_view_from_m_s(half_view_rad)) }
-                }),
+                in_view_from_m_s: spec.encounter().zip(half_view_rad).and_then(
+                    |(encounter, half_view_rad)| {
+                        let seen = encounter.in_view_from_m_s(half_view_rad);
+                        (seen != Some(near.speed_m_s)).then_some(seen)
+                    },
+                ),
             },
         }
     }

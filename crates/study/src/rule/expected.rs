@@ -75,6 +75,7 @@ impl RuleAnswer {
             ("margin", test.margin, line.map(|line| line.margin), test.tolerance),
             ("decision_distance_m", test.decision_distance_m, stop.map(|stop| stop.fastest.distance_m), SAME),
             ("decision_time_s", test.decision_time_s, stop.and_then(|stop| stop.hastiest?.time_s), SAME),
+            ("bearing_rad", test.bearing_rad, stop.and_then(|stop| Some(stop.crossing?.bearing_rad)), SAME),
             (
                 "frames",
                 test.frames.map(f64::from),

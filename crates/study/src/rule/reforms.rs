@@ -7,7 +7,7 @@ use crate::condition::Condition;
 use hadar::demand::Work;
 use hadar::error::{Error, Place, Result};
 use hadar::material::Library;
-use hadar_scenario::rule::{Reform, Verdict};
+use hadar_scenario::rule::{Ground, Reform, Verdict};
 use hadar_scenario::{Rule, Setting, Written};
 
 /// A rule and its reforms.
@@ -36,6 +36,9 @@ pub struct Reformed {
     pub from: Option<String>,
     /// What stands in the place of the law's own values.
     pub set: Vec<Setting>,
+    /// What says so.
+    #[serde(flatten)]
+    pub ground: Ground,
     /// What comes of every camera, in the order of the law's.
     pub cameras: Vec<BeforeLaw>,
     /// Those with another verdict, by their names.
@@ -61,7 +64,7 @@ pub struct BeforeLaw {
 }
 
 impl BeforeLaw {
-    fn of(camera: &CameraAnswer) -> Self {
+    pub(super) fn of(camera: &CameraAnswer) -> Self {
         Self {
             camera: camera.name.clone(),
             verdict: camera.verdict,
@@ -110,7 +113,7 @@ impl Reforms {
         let mut stats = own.stats.clone();
         let before = standings(&own);
         let mut reforms = Vec::with_capacity(law.reforms.len());
-        for (index, Reform { name, status, from, set, .. }) in law.reforms.iter().enumerate() {
+        for (index, Reform { name, status, from, set, ground }) in law.reforms.iter().enumerate() {
             let named = |error: Error| {
                 error.at(Place { key: Some(format!("reform[{index}].set")), ..law.scenario.place("reform") })
             };
@@ -125,6 +128,7 @@ impl Reforms {
                 status: status.clone(),
                 from: from.map(|day| day.to_string()),
                 set: set.clone(),
+                ground: ground.clone(),
                 changed: changed.map(|(law, _)| law.camera.clone()).collect(),
                 market: answer.market(),
                 cameras,

@@ -366,8 +366,8 @@ pub struct ApproachResult {
     pub frames_within: Option<u32>,
     /// Side of what a pixel sees at the greatest distance of a decision, m.
     pub footprint_m: f64,
-    /// Of a target that crosses and leaves its view before the decision: the speed from which on it does not, m s⁻¹; an inner `None` where there
-    /// is none. `None` where it stays in view, or nobody says how it crosses.
+    /// Of a target on its way across that is not in the view in time at every speed: the speed from which on it is, m s⁻¹; an inner `None` where
+    /// there is none. `None` where it is, or nobody says how it crosses.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub in_view_from_m_s: Option<Option<f64>>,
 }

@@ -190,3 +190,22 @@ fn the_same_material_is_told_by_its_temperature_alone() {
     assert!((found.state.temperature_k - 312.0).abs() < 1e-9);
     assert!((found.person.temperature_k - 311.0).abs() < 1e-4);
 }
+
+/// Two objects that light by different amounts: a thing of the person's own material is one, however it is lit, and no person has to be in what both
+/// ranges have in common.
+#[test]
+fn a_thing_of_the_persons_own_is_one_however_it_is_lit() {
+    let mut own = Scene::of(1e-14, &[Nuisance::Temperature, Nuisance::Lighting]);
+    let nodes = own.bands.nodes_cm1().to_vec();
+    let object = |temperature_k| EnvironmentObject { temperature_k, emissivity: None };
+    own.surroundings = Surroundings::new(&nodes, vec![object(273.0), object(291.0)]).unwrap();
+    own.mannequin = own.person.clone();
+    // What 0.05 to 0.12 and 0.12 to 0.24 have in common.
+    own.range.lighting = [0.12, 0.12];
+    let all =
+        Ranges::new([301.0, 303.0], vec![[0.05, 0.12], [0.12, 0.24]], vec![[273.0; 2], [291.0; 2]]).unwrap();
+    let found = farthest(&own.scene(), [0.0; 2], &all, &ALL).unwrap();
+    assert!(found.distance < 1e-6, "{}", found.distance);
+    let told = farthest(&own.scene(), [-0.01, 0.01], &all, &ALL).unwrap();
+    assert!(told.distance > 1e3 * found.distance.max(1e-12) && told.upper_bound >= told.distance);
+}

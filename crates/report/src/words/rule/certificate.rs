@@ -1,7 +1,7 @@
 //! The certificate: a page for whoever must decide by it, then what was checked, what came out, and what it rests on, in Markdown.
 
 use super::stop::{decisions, metres};
-use super::{in_words_of_kind, measured, text};
+use super::{in_words_of_kind, measured, sources, text};
 use crate::document::Document;
 use crate::manifest::{Input, Provenance, VERSION};
 use crate::text::footing::{RESTS_ON, gaussian, of_scene};
@@ -11,7 +11,7 @@ use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use crate::words::safety;
 use crate::words::shortfall::no;
-use hadar_scenario::rule::{Ground, Verdict};
+use hadar_scenario::rule::Verdict;
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
     ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
@@ -68,7 +68,7 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     out.items(answer.clauses.iter().flat_map(|clause| hardest(clause, units)).map(|text| (None, text)));
     if !answer.rule.sources.is_empty() {
         out.heading(2, "Where the numbers of the rule are from");
-        out.table(&["number", "value", "from"], &[0, 1], from_where(&answer.rule));
+        out.table(&["number", "value", "from"], &[0, 1], numbers_of(&answer.rule));
     }
     out.heading(2, "What the words mean");
     out.items(WORDS.map(|[word, meaning]| (Some(word.to_owned()), meaning.to_owned())));
@@ -226,15 +226,10 @@ fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -
 }
 
 /// Every number of the rule with what stands behind it.
-fn from_where(rule: &Rule) -> Vec<[String; 3]> {
+fn numbers_of(rule: &Rule) -> Vec<[String; 3]> {
     let behind = |key: &str| {
         let all = rule.sources.iter().filter(|citation| citation.covers(key));
-        let said = all.map(|citation| match &citation.ground {
-            Ground::Document { document, clause, quote, date, mark } => {
-                format!("\u{201c}{quote}\u{201d}, {document}, {clause} ({date}, {})", mark.name())
-            }
-            Ground::Choice(reason) => format!("a choice: {reason}"),
-        });
+        let said = all.map(|citation| sources::from_where(&citation.ground));
         said.collect::<Vec<_>>().join("; ")
     };
     let named = |key: &str| match behind(key) {

@@ -1,5 +1,6 @@
 //! Reforms beside the law, in words.
 
+use super::sources::from_where;
 use crate::text::columns::aligned;
 use crate::text::significant;
 use hadar::words::share;
@@ -49,7 +50,7 @@ pub fn reforms(found: &Reforms) -> String {
     }
     for reform in &found.reforms {
         let set: Vec<String> = reform.set.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
-        let _ = writeln!(out, "{} sets {}", reform.name, set.join("; "));
+        let _ = writeln!(out, "{} sets {}: {}", reform.name, set.join("; "), from_where(&reform.ground));
     }
     out += "A reform stands beside the law: it makes no certificate of it.\n";
     out
@@ -79,4 +80,9 @@ pub(crate) fn of_market(market: &Market) -> String {
         .filter(|(part, _)| *part > 1e-9)
         .map(|(part, what)| format!("{} {what}", share(part)));
     format!("of the market {}", said.collect::<Vec<_>>().join(", "))
+}
+
+/// The title of a report about reforms.
+pub(crate) fn title_of_reforms(rule: Option<&str>) -> String {
+    rule.map_or_else(|| "Reforms beside the law".into(), |rule| format!("{rule}: reforms"))
 }

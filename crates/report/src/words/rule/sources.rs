@@ -42,6 +42,16 @@ pub fn sources(rule: &Rule) -> String {
     out
 }
 
+/// What stands behind something, in a phrase.
+pub(super) fn from_where(ground: &Ground) -> String {
+    match ground {
+        Ground::Document { document, clause, quote, date, mark } => {
+            format!("\u{201c}{quote}\u{201d}, {document}, {clause} ({date}, {})", mark.name())
+        }
+        Ground::Choice(reason) => format!("a choice: {reason}"),
+    }
+}
+
 /// Whose the rule is and when it holds, a line each.
 pub(super) fn dates(rule: &Rule) -> Vec<String> {
     let about = &rule.about;

@@ -38,8 +38,8 @@ pub(super) fn decisions(stop: &StopResult, units: Units) -> String {
     }
     if let Some(crossing) = &stop.crossing {
         let way = match crossing.speed_m_s {
-            0.0 => "who stands there is".to_owned(),
-            speed => format!("who crosses at {} is", units.speed(speed)),
+            0.0 => "the target is".to_owned(),
+            speed => format!("the target, which crosses at {}, is", units.speed(speed)),
         };
         let bearing = significant(crossing.bearing_rad.to_degrees(), 3);
         said += &format!("; {way} up to {bearing} deg beside the axis until then");
@@ -60,9 +60,9 @@ pub(super) fn approach(approach: &ApproachResult, units: Units) -> String {
     };
     let outside = match approach.in_view_from_m_s {
         Some(Some(speed)) => {
-            format!("; who crosses is in its view until then from {} on", units.speed(speed))
+            format!("; the target can be seen in time from {} on", units.speed(speed))
         }
-        Some(None) => "; who crosses leaves its view before, at every speed".to_owned(),
+        Some(None) => "; the target is not in its view in time".to_owned(),
         None => String::new(),
     };
     format!(
