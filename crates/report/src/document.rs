@@ -296,7 +296,7 @@ mod tests {
             page.table(&["head"], &[0], [[text.clone()]]);
             let (mut said, mut code) = (Vec::new(), String::new());
             let markdown = page.to_markdown();
-            for event in Parser::new_ext(&markdown, Options::all()) {
+            for event in Parser::new_ext(&markdown, Options::all() - Options::ENABLE_SMART_PUNCTUATION) {
                 match event {
                     Event::Text(text) => said.push(text.into_string()),
                     Event::Code(text) => code.push_str(&text),

@@ -15,8 +15,8 @@ mod demands;
 mod verified;
 
 pub use crate::words::verify::text;
-pub use demands::{Demands, EnvelopeFault};
-pub use verified::{Difference, Verified};
+pub use demands::Demands;
+pub use verified::{Difference, EnvelopeFault, Verified};
 
 /// Files that ask again what a report answers.
 const ASKED: [&str; 3] = ["scenario.toml", AS_READ, "rule.toml"];

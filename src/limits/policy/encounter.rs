@@ -12,9 +12,9 @@
 //! and cannot where c/w ≥ tan θ_h: it never sees the target. On its way, walking or standing, at any bearing up to θ_e = min(θ, half the
 //! view), it moves across the line of sight by no more than
 //!
-//! v_⊥ = v sin θ_e + c,   Δ = v_⊥ t/(z α) pixels in the time t
+//! v_⊥ = w sin θ_e + c,   Δ = v_⊥ t/(z α) pixels in the time t
 //!
-//! (v the vehicle's speed or w, whichever is larger; α the angle of a pixel, rad). A target that keeps its pace and will be hit stands still in the
+//! (α the angle of a pixel, rad). A target that keeps its pace and will be hit stands still in the
 //! picture but for b; people do not keep their pace.
 //!
 //! Over a range of speeds Δ and v_⊥ are the largest of 257 speeds, equal steps of 1/v apart, and of the swiftest of a target straight ahead.
@@ -149,7 +149,7 @@ impl Encounter {
         let of = |decision: &Decision| {
             let [finest, _] = camera.pixel_angles_rad();
             let along = Motion::within(camera, decision.distance_m, self.bearing_rad(decision));
-            along.blur_pixels(pace(decision), 1.0) + self.crossing_m_s / (finest * decision.distance_m)
+            along.blur_pixels(decision.closing_m_s, 1.0) + self.crossing_m_s / (finest * decision.distance_m)
         };
         self.most(of)
     }
@@ -159,7 +159,7 @@ impl Encounter {
     pub fn metres_per_s(&self, camera: &Camera) -> f64 {
         let of = |decision: &Decision| {
             let along = Motion::within(camera, decision.distance_m, self.bearing_rad(decision));
-            along.blur_m(pace(decision), 1.0) + self.crossing_m_s
+            along.blur_m(decision.closing_m_s, 1.0) + self.crossing_m_s
         };
         self.most(of).0
     }
@@ -175,11 +175,6 @@ impl Encounter {
 
 /// The widest bearing there is.
 const SIDEWAYS_RAD: f64 = std::f64::consts::FRAC_PI_2;
-
-/// The larger of the vehicle's own and the closing speed.
-fn pace(decision: &Decision) -> f64 {
-    decision.speed_m_s.max(decision.closing_m_s)
-}
 
 #[cfg(all(test, feature = "library"))]
 mod tests {

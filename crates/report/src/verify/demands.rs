@@ -5,7 +5,7 @@
 //!
 //! Source: DSSE v1.0.2 (github.com/secure-systems-lab/dsse); in-toto attestation framework, Statement v1.
 
-use super::verified::Difference;
+use super::verified::{Difference, EnvelopeFault};
 use crate::folder::inside::Inside;
 use crate::rule::STATEMENT;
 use base64::Engine as _;
@@ -92,32 +92,6 @@ impl Demands {
         }
         Ok((unmet, keys))
     }
-}
-
-/// What is wrong with an envelope.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-#[serde(tag = "fault", rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum EnvelopeFault {
-    /// It is none.
-    NoEnvelope {
-        /// Why not.
-        why: String,
-    },
-    /// Its payload is of another type.
-    OtherType {
-        /// Of which.
-        found: String,
-    },
-    /// Its payload is no base64.
-    NoBase64 {
-        /// Why not.
-        why: String,
-    },
-    /// It holds another statement.
-    OtherStatement,
-    /// Nobody signed it.
-    Unsigned,
 }
 
 /// The keys by which an envelope says that a statement is signed, or what is wrong with it.

@@ -1,6 +1,5 @@
 //! What comes of a report that was made again.
 
-use super::demands::EnvelopeFault;
 use serde::Serialize;
 
 /// What is not as it should be.
@@ -84,4 +83,30 @@ pub struct Verified {
     pub signed_by: Vec<String>,
     /// Files in the folder that are not the report's, of which nothing is said.
     pub strangers: Vec<String>,
+}
+
+/// What is wrong with an envelope.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "fault", rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum EnvelopeFault {
+    /// It is none.
+    NoEnvelope {
+        /// Why not.
+        why: String,
+    },
+    /// Its payload is of another type.
+    OtherType {
+        /// Of which.
+        found: String,
+    },
+    /// Its payload is no base64.
+    NoBase64 {
+        /// Why not.
+        why: String,
+    },
+    /// It holds another statement.
+    OtherStatement,
+    /// Nobody signed it.
+    Unsigned,
 }

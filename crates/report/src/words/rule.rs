@@ -2,6 +2,7 @@
 
 pub(crate) mod certificate;
 mod check;
+mod market;
 mod measured;
 mod moved;
 mod reforms;

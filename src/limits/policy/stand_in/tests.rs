@@ -111,7 +111,8 @@ fn means_of_corners_are_as_near_as_is_said() {
         (vec![0.0, 303.0, 0.3, 278.0], vec![0.0, 303.0, 0.3, 308.0]),
     ] {
         let solver = scene.solver();
-        let mut search = Search { scene: &scene, solver, objects: 1, corners: HashMap::new() };
+        let mut search =
+            Search { scene: &scene, solver, lit_alike: None, objects: 1, corners: HashMap::new() };
         let places =
             (0..16).map(|n: usize| (0..4).map(|i| if n >> i & 1 == 1 { high[i] } else { low[i] }).collect());
         let places: Vec<Vec<f64>> = places.collect();

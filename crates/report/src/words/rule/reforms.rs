@@ -1,11 +1,11 @@
 //! Reforms beside the law, in words.
 
+use super::market::of_market;
 use super::sources::from_where;
 use crate::text::columns::aligned;
 use crate::text::significant;
-use hadar::words::share;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{BeforeLaw, Market, Reforms};
+use hadar_study::{BeforeLaw, Reforms};
 use std::fmt::Write as _;
 
 /// What each reform changes, then every camera by the law and by each.
@@ -64,22 +64,6 @@ fn verdict(one: &BeforeLaw) -> &'static str {
         (Verdict::Undecided, _) => "undecided",
         (Verdict::Fails, _) => "no",
     }
-}
-
-/// Which part of a market meets a rule.
-pub(crate) fn of_market(market: &Market) -> String {
-    let parts = [
-        (market.meets, "meets it"),
-        (market.meets_if, "meets it under conditions"),
-        (market.undecided, "is undecided"),
-        (market.fails, "does not meet it"),
-        (market.not_stated, "is of cameras that are not named"),
-    ];
-    let said = parts
-        .into_iter()
-        .filter(|(part, _)| *part > 1e-9)
-        .map(|(part, what)| format!("{} {what}", share(part)));
-    format!("of the market {}", said.collect::<Vec<_>>().join(", "))
 }
 
 /// The title of a report about reforms.

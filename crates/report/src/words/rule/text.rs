@@ -1,8 +1,8 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use super::in_words_of_kind;
+use super::market::of_market;
 use super::measured::{of_measured, uncertainty, undecided};
-use super::reforms::of_market;
 use super::stop::{approach, decisions};
 use crate::text::columns::aligned;
 use crate::text::footing::{gaussian, of_scene, warnings};
