@@ -61,7 +61,8 @@ fn a_threshold_that_is_moved_breaks_a_test() {
             let (key, value) = line.split_once('=').unwrap();
             let changed = format!("{key}={}", tenth_more(value));
             // A tenth of nothing.
-            if ["\"0 km/h\"", "\"0 m\""].contains(&value.split('#').next().unwrap().trim()) {
+            let digits = |text: &str| text.chars().filter(char::is_ascii_digit).all(|digit| digit == '0');
+            if value.contains('0') && digits(value.split('#').next().unwrap()) {
                 continue;
             }
             let mut lines: Vec<&str> = text.lines().collect();
