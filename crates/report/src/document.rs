@@ -124,10 +124,13 @@ impl Document {
 
     /// The same as a part of a page of HTML, headings two levels lower.
     pub(crate) fn to_html(&self) -> String {
-        let mut out = String::new();
+        let (mut out, mut below) = (String::new(), "");
         for block in &self.0 {
             let _ = match block {
-                Block::Heading(level, text) => writeln!(out, "<h{0}>{1}</h{0}>", level + 2, escape(text)),
+                Block::Heading(level, text) => {
+                    below = text;
+                    writeln!(out, "<h{0}>{1}</h{0}>", level + 2, escape(text))
+                }
                 Block::Fields(fields) => {
                     let rows = fields
                         .iter()
@@ -147,7 +150,7 @@ impl Document {
                     writeln!(out, "<ul>\n{}</ul>", items.collect::<String>())
                 }
                 Block::Table(table) => {
-                    out.push_str(&table.to_html());
+                    out.push_str(&table.to_html(below));
                     Ok(())
                 }
             };
@@ -171,7 +174,8 @@ impl Table {
         out
     }
 
-    fn to_html(&self) -> String {
+    /// Below a heading, which is its caption.
+    fn to_html(&self, below: &str) -> String {
         let head: String =
             self.head.iter().map(|head| format!("<th scope=\"col\">{}</th>", escape(head))).collect();
         let row = |row: &Vec<String>| {
@@ -186,11 +190,11 @@ impl Table {
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
         let rows: String = self.rows.iter().map(row).collect();
-        let name = self.head.join(", ");
-        wide(
-            &escape(&name),
-            &format!("<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"),
-        )
+        let caption = escape(below);
+        let table = format!(
+            "<table>\n<caption>{caption}</caption>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
+        );
+        wide(&caption, &table)
     }
 }
 

@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, NamedSeries, NamedValues};
 use crate::table::{Table, number};
-use crate::words::rule::{ALL_CLAUSES, title_of_reforms};
+use crate::words::rule::{LEAST, title_of_reforms};
 use hadar::error::Result;
 use hadar_study::{BeforeLaw, Reforms};
 
@@ -43,8 +43,8 @@ fn margins(found: &Reforms, title: &str) -> Plot {
     let of = |cameras: &[BeforeLaw]| cameras.iter().map(|one| one.margin).collect::<Vec<_>>();
     let axis = Axis::log("margin: what is there over what is demanded");
     let mut figure = NamedValues::new(title.to_owned(), names, axis)
-        .subtitle(ALL_CLAUSES.to_owned())
-        .series(NamedSeries::new("the law as it is", of(&found.law)));
+        .subtitle(LEAST.to_owned())
+        .series(NamedSeries::new("the rule as it is", of(&found.law)));
     for reform in &found.reforms {
         figure = figure.series(NamedSeries::new(reform.name.clone(), of(&reform.cameras)));
     }

@@ -297,6 +297,9 @@ pub(crate) fn in_words_of_kind(kind: &str) -> &str {
     }
 }
 
+/// Below the margins by reforms.
+pub(crate) const LEAST: &str = "The least margin of all clauses and scenes.";
+
 /// Below the margins over all clauses.
 pub(crate) const ALL_CLAUSES: &str =
     "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails.";

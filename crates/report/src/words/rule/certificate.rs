@@ -11,11 +11,11 @@ use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use crate::words::safety;
 use crate::words::shortfall::no;
-use hadar_scenario::rule::Verdict;
+use hadar_scenario::rule::{Clause, Demand, Ground, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
     ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
-    MeasuredAnswer, MeasuredVerdict, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
+    MeasuredAnswer, MeasuredVerdict, NearestState, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
 };
 
 /// The page.
@@ -28,10 +28,11 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
     let mut out = Document::default();
     out.heading(1, &title(answer));
+    out.quote(&what_it_is(&answer.rule));
     let stated = [("Authority", &about.authority), ("Version", &about.version), ("Status", &about.status)];
     let mut fields: Vec<(&'static str, String)> =
         stated.into_iter().filter_map(|(label, value)| Some((label, value.clone()?))).collect();
-    fields.extend(in_force(&answer.rule).map(|dates| ("In force", dates)));
+    fields.extend(in_force(&answer.rule).map(|dates| ("Holds", dates)));
     let day = answer.on.map_or_else(|| "none was stated".to_owned(), |day| day.to_string());
     fields.push(("Day that is asked about", day));
     fields.push(("Checked with", format!("hadar {VERSION}, commit {}", provenance.commit)));
@@ -66,6 +67,9 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
 
     out.heading(2, "The hardest scenes");
     out.items(answer.clauses.iter().flat_map(|clause| hardest(clause, units)).map(|text| (None, text)));
+    if let Some(range) = look_alikes(&answer.rule) {
+        out.paragraph(&range);
+    }
     if !answer.rule.sources.is_empty() {
         out.heading(2, "Where the numbers of the rule are from");
         out.table(&["number", "value", "from"], &[0, 1], numbers_of(&answer.rule));
@@ -75,8 +79,29 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     out
 }
 
+/// What the page is, and what it is not.
+fn what_it_is(rule: &Rule) -> String {
+    let figures = rule.figures();
+    let of_choice = |key: &str| {
+        let behind = rule.sources.iter().filter(|citation| citation.covers(key));
+        let grounds: Vec<&Ground> = behind.map(|citation| &citation.ground).collect();
+        grounds.is_empty() || grounds.iter().any(|ground| matches!(ground, Ground::Choice(_)))
+    };
+    let chosen = figures.iter().filter(|figure| of_choice(&figure.key)).count();
+    format!(
+        "A calculation by hadar, no type approval, no test and no legal advice: nothing was measured. It answers for one reading of a rule: of its {} numbers {} \
+         are those of documents, {chosen} are choices of the author or have no source. It judges what cameras could tell, not what their software does.",
+        figures.len(),
+        figures.len() - chosen
+    )
+}
+
 /// Words of the page, each with its meaning.
-const WORDS: [[&str; 2]; 9] = [
+const WORDS: [[&str; 2]; 12] = [
+    [
+        "PASSED",
+        "every camera of the list meets every clause, proved, under no open condition, on a stated day on which the rule holds; FAILED: one does not; WARNED: neither",
+    ],
     [
         "yes",
         "in every scene of the rule a camera like this has information enough; whether its software uses it is not said",
@@ -88,17 +113,23 @@ const WORDS: [[&str; 2]; 9] = [
     ["undecided", "neither is shown: figures are uncertain, or the proof ends between the two"],
     [
         "no",
-        "there is a scene of the rule in which no software can do it with this camera, or its image is spoiled",
+        "there is a scene of the rule in which what the clause counts (one pixel, unless it says the whole object) does not carry enough information, whatever the \
+         software; or the picture is spoiled, or the target is not in the view in time",
     ],
-    ["margin", "what is there over what is demanded: above 1 is enough, below 1 is not"],
+    [
+        "margin",
+        "what is there over what is demanded: below 1 is a no; above 1 is needed and not enough, since blur, view and time count too",
+    ],
     [
         "d",
-        "statistical distance: how far two materials are apart in what a camera counts; a decision is right with the probability written beside it",
+        "statistical distance: how far two materials are apart in what is counted; a decision is right with the probability written beside it",
     ],
+    ["motion blur", "the picture of the target moves by a pixel or more while it is taken"],
+    ["out of view", "the target is not in the camera's field of view long enough before the decision"],
     [
         "proved",
-        "holds in every scene of the rule by a mathematical bound; simulated: by drawing scenes or errors; searched: none worse was found; assumed: \
-      under conditions",
+        "holds in every scene of the rule by a mathematical bound; simulated: by drawing scenes or errors; searched: none worse was found; assumed: under \
+         conditions",
     ],
     [
         "emissivity",
@@ -218,11 +249,40 @@ fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -
     if !lit.is_empty() {
         out += &format!(", lit by surroundings of {}", lit.join(" and "));
     }
-    out += &format!(", to be told from {}", scene.alternative);
+    let NearestState { temperature_k, lighting, .. } = &scene.nearest_state;
+    let mirrored: Vec<String> = lighting.iter().map(|factor| significant(*factor, 3)).collect();
+    let mirrored = if mirrored.is_empty() { String::new() } else { format!(", V {}", mirrored.join(" ")) };
+    out += &format!(
+        ", against {} that looks alike at {}{mirrored}",
+        scene.alternative,
+        units.temperature(*temperature_k)
+    );
     if let Some(stop) = &clause.stop {
         out += &format!(", from a vehicle at up to {}", units.speed(stop.fastest.speed_m_s));
     }
     out
+}
+
+/// That what must be told apart may be anything, where the rule does not narrow it.
+fn look_alikes(rule: &Rule) -> Option<String> {
+    let tells = |clause: &&Clause| matches!(clause.demand, Demand::TellApart | Demand::FalseAlarm);
+    let mut silent = Vec::new();
+    for clause in rule.clauses.iter().filter(tells) {
+        let lines = &clause.scenario.source.lines;
+        for (key, word) in
+            [("alternatives.temperature", "temperature"), ("alternatives.lighting", "lighting")]
+        {
+            if !lines.contains_key(key) && !silent.contains(&word) {
+                silent.push(word);
+            }
+        }
+    }
+    (!silent.is_empty()).then(|| {
+        format!(
+            "What the target must be told from may have any {}: the rule sets no range.",
+            silent.join(" and any ")
+        )
+    })
 }
 
 /// Every number of the rule with what stands behind it.

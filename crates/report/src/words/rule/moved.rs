@@ -12,8 +12,12 @@ const NOTHING: f64 = 1e-3;
 #[must_use]
 pub fn figures_moved(found: &FiguresMoved) -> String {
     let deciding: Vec<&Moved> = found.figures.iter().filter(|one| !one.verdicts.is_empty()).collect();
-    let mut keys: Vec<&str> = deciding.iter().map(|one| one.key.as_str()).collect();
-    keys.dedup();
+    let mut keys: Vec<&str> = Vec::new();
+    for one in &deciding {
+        if !keys.contains(&one.key.as_str()) {
+            keys.push(&one.key);
+        }
+    }
     let mut out = match keys.as_slice() {
         [] => "No verdict hangs on a tenth of any one figure of the rule.\n".to_owned(),
         keys => format!("Verdicts hang on a tenth of {}: {}.\n", counted(keys.len()), keys.join(", ")),
@@ -45,8 +49,9 @@ pub fn figures_moved(found: &FiguresMoved) -> String {
     let mut silent: Vec<&str> = idle
         .iter()
         .map(|one| one.key.as_str())
-        .filter(|key| found.figures.iter().all(|one| one.key != *key || !moves(&one)))
+        .filter(|key| !keys.contains(key) && found.figures.iter().all(|one| one.key != *key || !moves(&one)))
         .collect();
+    silent.sort_unstable();
     silent.dedup();
     if !silent.is_empty() {
         let _ = writeln!(out, "\nDecide nothing, a tenth either way: {}", silent.join(", "));

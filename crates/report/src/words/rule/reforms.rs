@@ -29,7 +29,7 @@ pub fn reforms(found: &Reforms) -> String {
     out.push('\n');
     let heads = found.reforms.iter().map(|reform| reform.name.clone());
     let head: Vec<String> =
-        ["camera".to_owned(), "the law as it is".to_owned()].into_iter().chain(heads).collect();
+        ["camera".to_owned(), "the rule as it is".to_owned()].into_iter().chain(heads).collect();
     let cell = |one: &BeforeLaw| {
         let by = one.limiting_clause.as_ref().map_or_else(String::new, |clause| format!(", {clause}"));
         format!("{} ({}{by})", verdict(one), significant(one.margin, 3))
@@ -41,7 +41,7 @@ pub fn reforms(found: &Reforms) -> String {
     }
     out += &aligned(&rows, &[]);
     out += "  in brackets: least margin, above 1 where the demand is met, and the clause of it\n\n";
-    for (name, market) in std::iter::once(("the law as it is", found.market))
+    for (name, market) in std::iter::once(("the rule as it is", found.market))
         .chain(found.reforms.iter().map(|reform| (reform.name.as_str(), reform.market)))
     {
         if let Some(market) = market {
@@ -52,7 +52,7 @@ pub fn reforms(found: &Reforms) -> String {
         let set: Vec<String> = reform.set.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
         let _ = writeln!(out, "{} sets {}: {}", reform.name, set.join("; "), from_where(&reform.ground));
     }
-    out += "A reform stands beside the law: it makes no certificate of it.\n";
+    out += "This holds proposals beside the rule: it changes no certificate.\n";
     out
 }
 
