@@ -14,6 +14,7 @@ const TASK: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n\
 const RULE: &str = "[[camera]]\npreset = \"flir-a325sc\"\nname = \"ours\"\n[[clause]]\nname = \"a\"\n\
     [[clause.environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n\
     [[test]]\ncamera = \"ours\"\nverdict = \"fails\"\n\
+    [[reform]]\nname = \"b\"\nset = [\"target.temperature = 36 degC\"]\nchoice = \"why\"\n\
     [[source]]\nkeys = [\"target\", \"environment\", \"class\", \"clause\", \"category\"]\nchoice = \"why\"\n";
 const CAMERA: &str = "[camera]\npreset = \"flir-a325sc\"\n";
 const STREET: &str = "[scene]\nsky = { material = \"skin\", temperature = \"288 K\" }\n\
