@@ -215,10 +215,19 @@ fn escaped(text: &str) -> String {
         let before = i.checked_sub(1).and_then(|i| chars.get(i));
         let after = chars.get(i + 1);
         let in_word = [before, after].iter().all(|one| one.is_some_and(|char| char.is_alphanumeric()));
+        // An address that is made a link takes a stroke before a bracket with it.
+        let entity = match char {
+            '<' => Some("&lt;"),
+            '&' if after.is_some_and(|char| char.is_alphanumeric() || *char == '#') => Some("&amp;"),
+            _ => None,
+        };
+        if let Some(entity) = entity {
+            out.push_str(entity);
+            continue;
+        }
         let special = match char {
-            '\\' | '`' | '*' | '[' | ']' | '<' | '~' | '$' => true,
+            '\\' | '`' | '*' | '[' | ']' | '~' | '$' => true,
             '_' => !in_word,
-            '&' => after.is_some_and(|char| char.is_alphanumeric() || *char == '#'),
             '#' | '>' | '+' | '-' | '=' => i == 0,
             '.' | ')' => digits > 0 && i == digits && after.is_none_or(|char| *char == ' '),
             _ => false,
@@ -254,14 +263,14 @@ mod tests {
     #[test]
     fn what_has_a_meaning_is_shown_as_it_is() {
         for (text, shown) in [
-            ("<!-- what the law says", "\\<!-- what the law says"),
+            ("<!-- what the law says", "&lt;!-- what the law says"),
             ("1, **all cameras meet**", "1, \\*\\*all cameras meet\\*\\*"),
             ("# no heading", "\\# no heading"),
             ("- no item\n\n# no heading", "\\- no item # no heading"),
             ("1. no list, 1. here", "1\\. no list, 1. here"),
             ("0.5", "0.5"),
             ("a_b _c_ A_p/F^2 >= 1", "a_b \\_c\\_ A_p/F^2 >= 1"),
-            ("&lt;b> & c", "\\&lt;b> & c"),
+            ("&lt;b> & c", "&amp;lt;b> & c"),
             ("[x](http://y) `code` $a$ ~~b~~ \\", "\\[x\\](http://y) \\`code\\` \\$a\\$ \\~\\~b\\~\\~ \\\\"),
             ("===", "\\==="),
             ("> quote", "\\> quote"),

@@ -91,8 +91,11 @@ impl Stored {
         let inputs = self.compare_inputs(now, asked, &mut differences);
         self.compare_files(folder, &again, &mut differences)?;
         let strangers = self.strangers(folder)?;
-        let (unmet, signed_by) =
-            if demands.is_none() { Default::default() } else { demands.unmet(folder)? };
+        let (unmet, signed_by) = if demands.is_none() {
+            Default::default()
+        } else {
+            demands.unmet(folder, self.manifest.lists(crate::rule::STATEMENT))?
+        };
         differences.extend(unmet);
         let is_none = |difference: &Difference| matches!(difference, Difference::Program { .. });
         Ok(Verified {

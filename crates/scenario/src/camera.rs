@@ -53,7 +53,7 @@ pub(super) fn read_with(
         {
             // Its value alone, if it has one of its own.
             let table = entry.section_of(&UNCERTAIN)?;
-            let value = ["value", "at_most", "at_least"].into_iter().find_map(|key| table.get(key));
+            let value = ["value", "at_most"].into_iter().find_map(|key| table.get(key));
             if let Some(value) = value {
                 let number = match row.kind {
                     Kind::Quantity(dimension, allowed, _) => value.quantity_as(dimension, allowed)?,

@@ -228,7 +228,6 @@ impl Entries {
             let mut both = toml::Table::new();
             match known {
                 Known::AtMost => both.insert("at_most".to_owned(), entry.value.clone()),
-                Known::AtLeast => both.insert("at_least".to_owned(), entry.value.clone()),
                 Known::Within(_) => both.insert("value".to_owned(), entry.value.clone()),
             };
             if let Known::Within(Uncertainty { sigma, rectangular, same }) = known {

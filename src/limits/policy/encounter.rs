@@ -17,7 +17,7 @@
 //! (α the angle of a pixel, rad). A target that keeps its pace and will be hit stands still in the
 //! picture but for b; people do not keep their pace.
 //!
-//! Over a range of speeds Δ and v_⊥ are the largest of 257 speeds, equal steps of 1/v apart, and of the swiftest of a target straight ahead.
+//! Over a range of speeds Δ and v_⊥ are the largest of 257 speeds each with equal steps of v, of 1/v and of ln v, and of the swiftest of a target straight ahead.
 //!
 //! Assumptions: a straight way, the camera looks along it. Units: m, s, m s⁻¹, rad.
 //!
@@ -135,12 +135,17 @@ impl Encounter {
     #[must_use]
     pub fn speeds(&self) -> Vec<Decision> {
         let [slowest, fastest] = self.stop.decisions().map(|one| one.speed_m_s);
-        let at = |step: usize| {
-            let share = step as f64 / SPEEDS as f64;
-            self.stop.at(((1.0 - share) / slowest + share / fastest).recip().clamp(slowest, fastest))
-        };
+        let share = |step: usize| step as f64 / SPEEDS as f64;
+        let slow = |step: usize| ((1.0 - share(step)) / slowest + share(step) / fastest).recip();
+        let even = |step: usize| slowest + share(step) * (fastest - slowest);
+        let steep = |step: usize| slowest * (fastest / slowest).powf(share(step));
         let count = if slowest < fastest { SPEEDS } else { 0 };
-        (0..=count).map(at).collect()
+        let mut speeds: Vec<f64> =
+            (0..=count).flat_map(|step| [slow(step), even(step), steep(step)]).collect();
+        speeds.iter_mut().for_each(|speed| *speed = speed.clamp(slowest, fastest));
+        speeds.sort_by(f64::total_cmp);
+        speeds.dedup();
+        speeds.into_iter().map(|speed| self.stop.at(speed)).collect()
     }
 
     /// How many pixels the target moves in a second, at most, and where.

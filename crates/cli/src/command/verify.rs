@@ -48,7 +48,9 @@ impl VerifyArgs {
         let rule = match &self.rule {
             Some(path) => {
                 let hash = sha256_of_file(path).map_err(|error| unread(path, error.kind()))?;
-                Some(hash.ok_or_else(|| unread(path, ErrorKind::InvalidInput))?)
+                let hash = hash.ok_or_else(|| unread(path, ErrorKind::InvalidInput))?;
+                let home = std::path::absolute(path).map_err(|error| unread(path, error.kind()))?;
+                Some((hash, home.parent().map_or_else(PathBuf::new, Path::to_owned)))
             }
             None => None,
         };

@@ -123,6 +123,11 @@ fn a_report_is_held_against_what_is_demanded() {
         folder.file("signed.json", &envelope(&other));
         assert_eq!(verify(&["--envelope", "signed.json"]).code, 1, "{byte}");
     }
+    // A statement that the report does not list was not made again, and is none.
+    let other = folder.run(&["rule", "a.toml", "--figures", "--out", "plain", "-q"]);
+    assert_eq!(other.code, 0, "{}", other.stderr);
+    fs::write(folder.path().join("plain/certificate.intoto.json"), &statement).unwrap();
+    assert!(folder.refusal(&["verify", "plain", "--on", "2026-11-28"]).contains("there is no statement"));
     // One byte in any file of the report is enough.
     for name in ["certificate.md", "certificate.intoto.json", "report.html", "margins.png", "cameras.csv"] {
         let path = folder.path().join("out").join(name);
@@ -245,7 +250,7 @@ fn limits_and_shared_errors_of_figures() {
     let folder = Folder::with("");
     for (figures, said) in [
         ("netd = { at_most = \"50 mK\", u = \"1 mK\" }", "u beside at_most"),
-        ("netd = { at_least = \"50 mK\" }", "not known which side is worse"),
+        ("netd = \"50 mK\"\nflicker_fraction = { at_most = 0.5 }", "not known which side is worse"),
         ("netd = { value = \"50 mK\" }", "u"),
         ("netd = { value = \"50 mK\", u = \"1 mK\", same = \"lens\" }", "no other figure has the same error"),
         ("netd = { value = \"50 mK\", u = \"1 mK\", law = \"flat\" }", "rectangular"),

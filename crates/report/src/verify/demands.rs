@@ -7,6 +7,7 @@
 
 use super::verified::{Difference, EnvelopeFault};
 use crate::folder::inside::Inside;
+use crate::manifest::sha256_of_file;
 use crate::rule::STATEMENT;
 use base64::Engine as _;
 use base64::engine::general_purpose::{STANDARD, URL_SAFE};
@@ -14,7 +15,7 @@ use hadar::error::{Error, Result};
 use serde::Deserialize;
 use serde_json::Value;
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The type of the payload of an envelope that holds a statement.
 const PAYLOAD: &str = "application/vnd.in-toto+json";
@@ -26,8 +27,8 @@ const LONGEST: u64 = 1 << 26;
 pub struct Demands {
     /// That the rule is passed.
     pub passed: bool,
-    /// SHA-256 of the rule, which must be the whole policy: nothing set over it, nothing accepted.
-    pub rule: Option<String>,
+    /// SHA-256 of the rule, over which nothing is set and of which no condition is accepted, and its folder, in which all files are that it names.
+    pub rule: Option<(String, PathBuf)>,
     /// The day that must have been asked about, as it is written.
     pub on: Option<String>,
     /// An envelope that must hold the statement.
@@ -57,11 +58,12 @@ impl Demands {
     }
 
     /// Holds them against the statement in a folder: what is not met, and the keys by which an envelope says that it is signed.
-    pub(super) fn unmet(&self, folder: &Path) -> Result<(Vec<Difference>, Vec<String>)> {
+    pub(super) fn unmet(&self, folder: &Path, is_listed: bool) -> Result<(Vec<Difference>, Vec<String>)> {
         let mut text = Vec::new();
         let read = Inside::open(folder).and_then(|inside| inside.file(STATEMENT));
         let read = read.and_then(|file| file.take(LONGEST).read_to_end(&mut text));
-        if read.is_err() {
+        // One that the report does not list was not made again.
+        if read.is_err() || !is_listed {
             let instead = "name the report of a rule: hadar rule RULE --out FOLDER";
             return Err(Error::malformed("there is no statement in this folder", instead).in_file(folder));
         }
@@ -77,8 +79,19 @@ impl Demands {
         if self.passed {
             demand("PASSED", &predicate["result"]);
         }
-        if let Some(rule) = &self.rule {
+        if let Some((rule, home)) = &self.rule {
             demand(rule, &predicate["policy"]["digest"]["sha256"]);
+            // What is built in is of the program; every other file must be the one beside the rule.
+            for input in predicate["configuration"].as_array().into_iter().flatten().skip(1) {
+                let name = input["name"].as_str().unwrap_or_default();
+                if !name.starts_with("built-in: ") {
+                    let there = sha256_of_file(&home.join(name)).ok().flatten();
+                    demand(
+                        &there.unwrap_or_else(|| format!("{name} beside the rule")),
+                        &input["digest"]["sha256"],
+                    );
+                }
+            }
         }
         if let Some(day) = &self.on {
             demand(day, &predicate["on"]);

@@ -192,14 +192,6 @@ const UNCERTAIN_KEYS: &[Key] = &[
         "In the place of value: a noise that is no larger than this, as a sheet promises it. A camera that fails by the margin is undecided.",
         "the margin at the limit",
     ),
-    Key::row(
-        "at_least",
-        Value::Figure,
-        Means("no limit"),
-        "\"30 Hz\"",
-        "In the place of value: a frame_rate that is no lower than this.",
-        "the margin at the limit",
-    ),
 ];
 /// A figure with its uncertainty.
 pub(crate) static UNCERTAIN: Table =

@@ -33,12 +33,11 @@ pub struct RuleCamera {
 /// What shares may add up to above 1.
 const SHARES_ROUNDING: f64 = 1e-9;
 /// Of which a larger one is never better: noise.
-const NOISE: [&str; 12] = [
+const NOISE: [&str; 11] = [
     "netd",
     "noise_electrons",
     "read_noise",
     "dark_rate",
-    "flicker_fraction",
     "fixed_pattern",
     "row_noise",
     "column_noise",
@@ -47,9 +46,6 @@ const NOISE: [&str; 12] = [
     "temporal_column_noise",
     "frame_noise",
 ];
-/// Of which a smaller one is never better.
-const SPEED: [&str; 1] = ["frame_rate"];
-
 impl RuleCamera {
     /// What it is called in a rule: the name it is given, or that of a known camera.
     #[must_use]
@@ -108,26 +104,22 @@ fn uncertain(
         return Ok(false);
     }
     let section = entry.section_of(&UNCERTAIN)?;
-    section.at_most_one(&["value", "at_most", "at_least"])?;
-    for (key, known, of) in
-        [("at_most", Known::AtMost, NOISE.as_slice()), ("at_least", Known::AtLeast, &SPEED)]
-    {
-        if !section.has_own(key) {
-            continue;
-        }
+    section.at_most_one(&["value", "at_most"])?;
+    if section.has_own("at_most") {
         if let Some(beside) = ["u", "law", "same"].into_iter().find(|beside| section.has_own(beside)) {
-            let found = format!("{beside} beside {key}");
-            return Err(
-                section.fail(beside, Error::malformed(found, format!("write value and u, or {key} alone")))
-            );
+            let found = format!("{beside} beside at_most");
+            return Err(section.fail(beside, Error::malformed(found, "write value and u, or at_most alone")));
         }
-        if !of.contains(&row.key) {
+        if !NOISE.contains(&row.key) {
             let found = format!("a limit of {}, of which it is not known which side is worse", row.key);
-            let instead =
-                format!("write {} = {{ value = ..., u = ... }}; {key} is for {}", row.key, of.join(", "));
-            return Err(section.fail(key, Error::malformed(found, instead)));
+            let instead = format!(
+                "write {} = {{ value = ..., u = ... }}; at_most is for {}",
+                row.key,
+                NOISE.join(", ")
+            );
+            return Err(section.fail("at_most", Error::malformed(found, instead)));
         }
-        noted.insert(row.key, known);
+        noted.insert(row.key, Known::AtMost);
         return Ok(true);
     }
     let u = section.require("u")?;

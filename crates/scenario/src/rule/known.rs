@@ -7,8 +7,6 @@ pub enum Known {
     Within(Uncertainty),
     /// It is no larger than is stated.
     AtMost,
-    /// It is no smaller than is stated.
-    AtLeast,
 }
 
 /// The error of a figure.

@@ -22,7 +22,7 @@ pub(super) struct Named {
 impl Named {
     /// Whether it may be better than its figures, which are limits.
     pub(super) fn may_be_better(&self) -> bool {
-        self.uncertainty.values().any(|known| matches!(known, Known::AtMost | Known::AtLeast))
+        self.uncertainty.values().any(|known| matches!(known, Known::AtMost))
     }
 
     /// How many bands of a scenario it reads.

@@ -17,7 +17,7 @@
 //! demand if the interval is above 1, fails if it is below, and is undecided between: the limits are guarded by k u on both sides.
 //!
 //! Figures may share an error (`same`), of which each has so many of its own deviations; a rectangular one goes to √3 u. A figure that is a limit
-//! (`at_most`, `at_least`) is taken at it: whoever meets a demand there meets it, and whoever fails may be better.
+//! (`at_most`) is taken at it: whoever meets a demand there meets it, and whoever fails may be better.
 //!
 //! Source: JCGM 100:2008 (GUM) 5.1 (first order), JCGM 101:2008 (draws), JCGM 106:2012 8.3 (guard bands).
 

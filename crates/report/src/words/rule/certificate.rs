@@ -144,7 +144,7 @@ const WORDS: [[&str; 2]; 12] = [
 /// Whether the rule is passed, in a sentence.
 fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
     match outcome {
-        Outcome::Passed => "Result: PASSED. Every camera meets every clause, proved, without a condition, on a day on which the rule holds.".into(),
+        Outcome::Passed => "Result: PASSED. Every camera meets every clause, proved, under no condition but those that are accepted, on a day on which the rule holds.".into(),
         _ => format!("Result: {}. {}", outcome.word(), if reasons.len() == 1 { "The reason:" } else { "The reasons:" }),
     }
 }
