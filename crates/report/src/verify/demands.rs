@@ -119,7 +119,7 @@ fn signed(envelope: &[u8], statement: &[u8]) -> std::result::Result<Vec<String>,
     if payload != statement {
         return Err(EnvelopeFault::OtherStatement);
     }
-    let signs = |one: &Signature| !one.sig.is_empty();
+    let signs = |one: &Signature| !one.sig.trim().is_empty();
     if envelope.signatures.is_empty() || !envelope.signatures.iter().all(signs) {
         return Err(EnvelopeFault::Unsigned);
     }

@@ -2,6 +2,7 @@
 
 use super::Say;
 use crate::verify::{Difference, EnvelopeFault, Verified};
+use hadar::words;
 use std::fmt::Write as _;
 
 /// Differences of which the text tells.
@@ -37,7 +38,7 @@ pub fn text(verified: &Verified) -> String {
         let _ = writeln!(
             text,
             "The envelope holds this statement, signed by {}; whether the signature is theirs the tool that made it says.",
-            verified.signed_by.iter().map(|key| named(key)).collect::<Vec<_>>().join(", ")
+            verified.signed_by.iter().map(|key| words::visible(named(key))).collect::<Vec<_>>().join(", ")
         );
     }
     let _ = writeln!(text, "The command that was given again: {}", verified.command);

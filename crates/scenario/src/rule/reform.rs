@@ -8,7 +8,7 @@ use hadar::error::{Error, Result};
 use toml::value::Date;
 
 /// Tables that no reform of a law changes.
-const NOT_LAW: [&str; 7] = ["camera", "cameras", "rule", "source", "test", "reform", "find"];
+const NOT_LAW: [&str; 8] = ["title", "camera", "cameras", "rule", "source", "test", "reform", "find"];
 
 /// Other values of a rule.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,7 +82,13 @@ fn one(item: &Entry<'_>, law_from: Option<Date>) -> Result<Reform> {
         }
         Ok(setting)
     };
-    let set = items.iter().map(setting).collect::<Result<_>>()?;
+    let set: Vec<Setting> = items.iter().map(setting).collect::<Result<_>>()?;
+    if let Some(twice) =
+        (1..set.len()).find(|index| set[..*index].iter().any(|one| one.key == set[*index].key))
+    {
+        let found = format!("{} is set twice", set[twice].key);
+        return Err(items[twice].fail(Error::malformed(found, "set it once")));
+    }
     let status = section.text("status", "\"bill\"")?;
     Ok(Reform { name, status, from, set, ground: ground(&section)? })
 }

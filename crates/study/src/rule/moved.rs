@@ -5,11 +5,12 @@
 
 use super::asked::{Extent, RuleAsked};
 use super::reforms::BeforeLaw;
-use super::{RuleAnswer, RuleStudy};
+use super::{Line, RuleAnswer, RuleStudy};
+use crate::condition::Condition;
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar_scenario::rule::Figure;
+use hadar_scenario::rule::{Figure, Verdict};
 use hadar_scenario::{Rule, Setting, Written};
 
 /// By how much a number is moved, and a temperature, K.
@@ -125,14 +126,17 @@ impl Moved {
                     (is.margin - was.margin).abs() / was.margin.max(is.margin)
                 };
                 largest = largest.max(change);
-                if was.verdict != is.verdict {
+                // A yes under conditions is another than one without.
+                let open = |line: &Line<'_>| {
+                    Condition::open(line.conditions).any(|one| !matches!(one, Condition::Setting { .. }))
+                };
+                if (was.verdict, open(was)) != (is.verdict, open(&is)) {
                     let clause = after.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
-                    self.verdicts.push(format!(
-                        "{}{clause}: {} to {}",
-                        was.camera,
-                        was.verdict.name(),
-                        is.verdict.name()
-                    ));
+                    let said = |line: &Line<'_>| match (line.verdict, open(line)) {
+                        (Verdict::Meets, true) => "meets, if",
+                        (verdict, _) => verdict.name(),
+                    };
+                    self.verdicts.push(format!("{}{clause}: {} to {}", was.camera, said(was), said(&is)));
                 }
             }
         }
