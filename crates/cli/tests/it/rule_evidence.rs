@@ -86,7 +86,11 @@ fn a_rule_is_passed_on_a_stated_day_alone() {
 /// What is demanded of a report is not believed but read in a statement that was made again; an envelope holds its very bytes.
 #[test]
 fn a_report_is_held_against_what_is_demanded() {
-    let folder = Folder::with(&easy("", "").replacen("[target]", "[rule]\nname = \"R\"\n[target]", 1));
+    let folder = Folder::with(&easy("", "").replacen(
+        "[target]",
+        "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]",
+        1,
+    ));
     let codes = Condition::codes().join(",");
     let made =
         folder.run(&["rule", "a.toml", "--on", "2026-11-28", "--accept", &codes, "--out", "out", "-q"]);

@@ -47,6 +47,8 @@ pub enum Reason {
     },
     /// No day was stated.
     NoDay,
+    /// The rule does not say when it holds.
+    NoDates,
     /// The rule does not hold on that day.
     NotInForce(NotInForce),
 }
@@ -71,6 +73,7 @@ impl Reason {
             Self::RestsOn(..) => "conditions",
             Self::Changed { .. } => "changed",
             Self::NoDay => "no-day",
+            Self::NoDates => "no-dates",
             Self::NotInForce(_) => "not-in-force",
         }
     }
@@ -83,7 +86,7 @@ impl Reason {
             | Self::Undecided(place)
             | Self::NotProved(place, _)
             | Self::RestsOn(place, _) => Some(place),
-            Self::Changed { .. } | Self::NoDay | Self::NotInForce(_) => None,
+            Self::Changed { .. } | Self::NoDay | Self::NoDates | Self::NotInForce(_) => None,
         }
     }
 }
@@ -107,6 +110,10 @@ impl RuleAnswer {
         }
         if self.on.is_none() {
             reasons.push(Reason::NoDay);
+        }
+        // Of a rule without dates nobody knows that it holds.
+        if self.rule.about.from.is_none() && self.rule.about.until.is_none() {
+            reasons.push(Reason::NoDates);
         }
         let outcome = match (fails && is_rule, reasons.is_empty()) {
             (true, _) => Outcome::Failed,
@@ -157,7 +164,7 @@ impl serde::Serialize for Reason {
                 map.serialize_entry("value", value)?;
             }
             Self::NotInForce(idle) => map.serialize_entry("day", &idle.day.to_string())?,
-            Self::Fails(_) | Self::Undecided(_) | Self::NoDay => {}
+            Self::Fails(_) | Self::Undecided(_) | Self::NoDay | Self::NoDates => {}
         }
         map.end()
     }

@@ -187,6 +187,9 @@ fn said(reasons: &[NotPassed]) -> Vec<String> {
     for reason in reasons {
         match reason {
             NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),
+            NotPassed::NoDates => {
+                out.push("the rule does not say from which day it holds ([rule] from)".into())
+            }
             NotPassed::NotInForce(idle) => out.push(idle.say()),
             _ => {}
         }
