@@ -85,21 +85,23 @@ impl Camera {
     }
 
     /// Variance that the counts of a pixel have in common with its row, with its column and with the whole picture, counts², in each of so many
-    /// bands; what it has for itself is the noise of a camera whose pattern is [`Pattern::of_pixels`].
+    /// bands: what stays, and what changes from frame to frame, which the noise of a pixel holds. What a pixel has for itself is the noise of a
+    /// camera whose pattern is [`Pattern::of_pixels`], less that.
     #[must_use]
-    pub fn var_in_common(&self, bands: usize) -> [f64; 3] {
-        let mut common = [0.0; 3];
+    pub fn var_in_common(&self, bands: usize) -> [[f64; 2]; 3] {
+        let mut common = [[0.0; 2]; 3];
         if self.pattern.is_shared() {
             for (term, var) in self.pattern_terms() {
+                let kind = usize::from(!term.is_fixed);
                 match term.of_each {
-                    [true, false] => common[0] += var,
-                    [false, true] => common[1] += var,
-                    [false, false] => common[2] += var,
+                    [true, false] => common[0][kind] += var,
+                    [false, true] => common[1][kind] += var,
+                    [false, false] => common[2][kind] += var,
                     [true, true] => {}
                 }
             }
         }
-        common.map(|var| var * self.spread(bands))
+        common.map(|kinds| kinds.map(|var| var * self.spread(bands)))
     }
 
     /// Share of the variance of the electronic noise of a band, at the exposure for which it is stated, that grows as the square of the

@@ -5,6 +5,7 @@
 
 mod calibrate;
 mod cameras;
+mod certificate;
 mod cube_format;
 mod decompose;
 mod diff;

@@ -26,7 +26,9 @@ use hadar::error::Result;
 use hadar::policy::Quantity;
 use hadar_scenario::rule::Verdict;
 use hadar_study::companion::Companion;
-use hadar_study::{CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning};
+use hadar_study::{
+    CameraAnswer, CameraVerdict, Condition, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning,
+};
 
 /// What can be changed of a camera.
 const HARDWARE: [Quantity; 5] =
@@ -260,6 +262,9 @@ fn margins(answer: &RuleAnswer) -> Plot {
     }
     // The margin does not show what else a camera fails by.
     let named = |camera: &&CameraAnswer| match (camera.verdict, verdict(camera)) {
+        (Verdict::Meets, _) if Condition::open(&camera.conditions).next().is_some() => {
+            format!("{}\nyes, if", camera.name)
+        }
         (Verdict::Meets, _) => camera.name.clone(),
         (Verdict::Undecided, Some(_)) => format!("{}\nundecided", camera.name),
         (Verdict::Fails, Some(own)) => format!("{}\n{}", camera.name, no(&own.fails_by)),

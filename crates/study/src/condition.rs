@@ -140,6 +140,11 @@ conditions! {
         /// The two of the pair that decides.
         emissivities: [f64; 2],
     } = "constant-emissivities", Assumed, "alternatives.materials";
+    /// Spectra go on beyond where they were measured as they are guessed to.
+    Extrapolated {
+        /// Of which materials.
+        materials: Vec<String>,
+    } = "extrapolated", Assumed, "target.extrapolate";
     /// Materials that were left out of the alternatives, or that a class lacks.
     LeftOut {
         /// Their names.
@@ -400,7 +405,9 @@ impl Condition {
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
             Self::AlikePixels { pixels } => Taken::Number(*pixels),
             Self::FrameNoise { figures } => Taken::Texts(figures.clone()),
-            Self::LeftOut { materials } => Taken::Texts(materials.iter().map(String::as_str).collect()),
+            Self::LeftOut { materials } | Self::Extrapolated { materials } => {
+                Taken::Texts(materials.iter().map(String::as_str).collect())
+            }
             Self::Setting { value, .. } => Taken::Text(value),
             Self::Spoiled { by } => Taken::Text(by.code()),
             Self::NoLimit

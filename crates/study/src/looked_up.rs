@@ -51,6 +51,8 @@ pub struct Study {
     pub(super) skies: Vec<String>,
     /// Materials that do not cover the bands and were left out, as was asked for.
     pub(super) left_out: Vec<String>,
+    /// Materials that do not cover the bands and are guessed beyond their spectra, as was asked for.
+    pub(super) extrapolated: Vec<String>,
     pub(super) warnings: Vec<Warning>,
     /// What it took to look everything up.
     pub(super) looked_up: Work,

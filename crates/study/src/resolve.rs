@@ -96,6 +96,12 @@ impl Study {
 
         let surfaces = std::iter::once(&target).chain(&alternatives).flat_map(|group| &group.members);
         let surfaces: Vec<&Material> = surfaces.map(|(material, _)| material.as_ref()).collect();
+        let mut extrapolated: Vec<String> = Vec::new();
+        for material in surfaces.iter().filter(|material| !finder::covers(material, &bands, None)) {
+            if !extrapolated.iter().any(|known| known == material.name()) {
+                extrapolated.push(material.name().to_owned());
+            }
+        }
         let atmosphere = Air::of(&scenario)?;
         let spectra = Spectra {
             surfaces: &surfaces,
@@ -157,6 +163,7 @@ impl Study {
             required,
             skies,
             left_out,
+            extrapolated,
             warnings,
             looked_up: library.work().and(&integrals),
             remembered: None,

@@ -276,6 +276,9 @@ impl Study {
         if !self.is_unknown(Nuisance::Gain) {
             found.push(Condition::Calibrated);
         }
+        if !self.extrapolated.is_empty() {
+            found.push(Condition::Extrapolated { materials: self.extrapolated.clone() });
+        }
         if !self.left_out.is_empty() {
             found.push(Condition::LeftOut { materials: self.left_out.clone() });
         }

@@ -68,6 +68,8 @@ pub struct RuleStudy {
     rule: Rule,
     clauses: Vec<Kind>,
     warnings: Vec<Warning>,
+    /// Materials that mean another thing than in this program.
+    replaced: Vec<String>,
     looked_up: Work,
 }
 
@@ -170,7 +172,8 @@ impl RuleStudy {
             };
             clauses.push(kind);
         }
-        Ok(Self { rule: filled, clauses, warnings, looked_up: library.work() })
+        let replaced = library.replaced().to_vec();
+        Ok(Self { rule: filled, clauses, warnings, replaced, looked_up: library.work() })
     }
 
     /// The rule with its defaults filled in.
@@ -232,6 +235,7 @@ impl RuleStudy {
         Ok(RuleAnswer {
             rule,
             on: asked.on,
+            replaced: self.replaced.clone(),
             accepted,
             sentence,
             cameras,

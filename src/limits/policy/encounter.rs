@@ -272,4 +272,28 @@ mod tests {
         assert!(Encounter::new(Stop::new(STOP).unwrap(), -1.0, 0.0).is_err());
         assert!(Encounter::new(Stop::new(STOP).unwrap(), 1.0, f64::NAN).is_err());
     }
+
+    /// Whatever the speed in a range, however wide, the target moves no faster than the range says (to the steps of it).
+    #[test]
+    fn no_speed_of_a_range_is_faster_than_the_range() {
+        let camera = camera();
+        for (low, high) in [(0.033, 25.0), (0.00258, 2.37), (2.8, 16.7), (1.0, 1.1)] {
+            for (crossing, offset, margin_m) in [(0.0, 3.0, 0.5), (2.2, 0.5, 0.0), (0.4, 1.0, 2.0)] {
+                let of = |speeds_m_s: [f64; 2]| {
+                    let figures = StopFigures { speeds_m_s, margin_m, ..STOP };
+                    let meets = Encounter::new(Stop::new(figures).unwrap(), crossing, offset).unwrap();
+                    [meets.pixels_per_s(&camera).0, meets.metres_per_s(&camera)]
+                };
+                let range = of([low, high]);
+                for step in 0..=3000 {
+                    let speed = low * (high / low as f64).powf(f64::from(step) / 3000.0);
+                    let one = of([speed.min(high); 2]);
+                    assert!(
+                        one.iter().zip(&range).all(|(one, range)| *one <= range * 1.002),
+                        "{low} {high} {speed}: {one:?} {range:?}"
+                    );
+                }
+            }
+        }
+    }
 }

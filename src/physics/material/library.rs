@@ -33,6 +33,8 @@ pub struct Library {
     ambiguous: BTreeMap<String, Vec<String>>,
     classes: BTreeMap<String, LibraryClass>,
     warnings: Vec<String>,
+    /// Names that now mean another material or class than before.
+    replaced: Vec<String>,
     strict: bool,
 }
 
@@ -89,10 +91,12 @@ impl Library {
         if self.materials.contains_key(&name) {
             let source = &material.provenance().source;
             self.warnings.push(format!("the material `{name}` is replaced by that of {source}"));
+            self.replaced.push(name.clone());
         }
         if self.classes.remove(&name).is_some() {
             let source = &material.provenance().source;
             self.warnings.push(format!("the class `{name}` is replaced by the material of {source}"));
+            self.replaced.push(name.clone());
         }
         self.materials.insert(name, Stored::Read(Box::new(material)));
     }
@@ -194,6 +198,12 @@ impl Library {
         &self.warnings
     }
 
+    /// Names that now mean another material or class than before something was added.
+    #[must_use]
+    pub fn replaced(&self) -> &[String] {
+        &self.replaced
+    }
+
     /// Adds materials by names that may differ from their own, which is then ambiguous: it is an error that lists those names.
     pub fn add_qualified(&mut self, materials: impl IntoIterator<Item = (Material, String)>) {
         let mut ambiguous: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -208,6 +218,7 @@ impl Library {
             if self.materials.remove(&name).is_some() {
                 let listed = qualified.join("`, `");
                 self.warnings.push(format!("the material `{name}` is replaced by `{listed}`"));
+                self.replaced.push(name.clone());
             }
             self.ambiguous.insert(name, qualified);
         }

@@ -268,3 +268,46 @@ fn limits_and_shared_errors_of_figures() {
     folder.file("a.toml", &two);
     assert!(folder.refusal(&["rule", "a.toml"]).contains("figures of two cameras"));
 }
+
+/// Materials by a name of the program that are others, and spectra beyond what was measured, are no ground for a pass.
+#[test]
+fn other_materials_and_guessed_spectra_are_no_pass() {
+    let text = easy("", "").replacen("[target]", "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]", 1);
+    let folder = Folder::with(&text);
+    fs::create_dir(folder.path().join("own")).unwrap();
+    folder.file("own/skin.csv", "wavenumber_cm1,emissivity\n700,0.97\n1300,0.98\n");
+    let codes = Condition::codes().join(",");
+    let run = |more: &[&str]| {
+        let asked = [
+            &["rule", "a.toml", "--on", "2026-11-28", "--accept", &codes, "--out", "out", "--force", "-q"],
+            more,
+        ]
+        .concat();
+        let made = folder.run(&asked);
+        assert_eq!(made.code, 0, "{}", made.stderr);
+        let text = fs::read(folder.path().join("out/certificate.intoto.json")).unwrap();
+        serde_json::from_slice::<Value>(&text).unwrap()["predicate"].clone()
+    };
+    assert_eq!(run(&[])["result"], "PASSED");
+    let other = run(&["--library", "own"]);
+    assert_eq!(
+        (&other["result"], &other["reasons"][0]["code"]),
+        (&json!("WARNED"), &json!("materials-replaced"))
+    );
+
+    folder.file("short.csv", "wavenumber_cm1,emissivity\n900,0.3\n1300,0.4\n");
+    folder.file("a.toml", &text.replace("[\"aluminium\"]", "[\"short.csv\"]\nextrapolate = \"hold\""));
+    let guessed = run(&[]);
+    assert!(
+        guessed["conditions"]["ideal-pnrd"].as_array().unwrap().contains(&json!("extrapolated")),
+        "{guessed}"
+    );
+    // The policy is the rule's file, and every file that it names must be the one beside it.
+    let plain = folder.run(&["rule", "a.toml", "--on", "2026-11-28", "--out", "out", "--force", "-q"]);
+    assert_eq!(plain.code, 0, "{}", plain.stderr);
+    assert_eq!(folder.run(&["verify", "out", "--rule", "a.toml"]).code, 0);
+    fs::create_dir(folder.path().join("law")).unwrap();
+    fs::copy(folder.path().join("a.toml"), folder.path().join("law/a.toml")).unwrap();
+    folder.file("law/short.csv", "wavenumber_cm1,emissivity\n900,0.5\n1300,0.6\n");
+    assert_eq!(folder.run(&["verify", "out", "--rule", "law/a.toml"]).code, 1);
+}

@@ -199,6 +199,9 @@ impl Say for Condition {
             Self::OneScene => "what is ranged has the texture of the one scene that is rendered".into(),
             Self::SurroundingsKnown => "the temperatures of the surroundings are known".into(),
             Self::Calibrated => "the gain of the camera is known".into(),
+            Self::Extrapolated { materials } => {
+                format!("spectra go on beyond their tables as they are guessed to ({})", listed(materials))
+            }
             Self::LeftOut { materials } => {
                 format!("what was left out is never met ({})", listed(materials))
             }
@@ -211,7 +214,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 35] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     [
         "range",
         "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
@@ -247,6 +250,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 35] = [
         "errors-correlated",
         "Over which length errors of the emissivities are correlated is not stated.",
         "State sensitivity.correlation beside the error.",
+    ],
+    [
+        "extrapolated",
+        "Bands lie beyond where a spectrum was measured, and extrapolate = \"hold\" or \"linear\" guesses what is there.",
+        "Choose bands that the spectra cover, or measure farther.",
     ],
     [
         "nobody-crosses",

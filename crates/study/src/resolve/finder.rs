@@ -290,7 +290,7 @@ impl<'a> Group<'a> {
     }
 }
 
-fn covers(material: &Material, bands: &Bands, extrapolate: Option<Extrapolation>) -> bool {
+pub(super) fn covers(material: &Material, bands: &Bands, extrapolate: Option<Extrapolation>) -> bool {
     let (low, high) = bands.range_cm1();
     let range = material.range_cm1();
     extrapolate.is_some() || range.is_none_or(|(first, last)| first <= low && last >= high)

@@ -26,6 +26,8 @@ pub struct RuleAnswer {
     pub rule: Rule,
     /// The day that was asked about.
     pub on: Option<Date>,
+    /// Materials by a name of this program that are others here.
+    pub replaced: Vec<String>,
     /// Codes of conditions that whoever asks accepts.
     pub accepted: Vec<String>,
     /// Which cameras do, in JSON a sentence.

@@ -45,6 +45,11 @@ pub enum Reason {
         /// What stands there.
         value: String,
     },
+    /// Materials by a name of this program are others.
+    Replaced {
+        /// Their names.
+        materials: Vec<String>,
+    },
     /// No day was stated.
     NoDay,
     /// The rule does not say when it holds.
@@ -72,6 +77,7 @@ impl Reason {
             Self::NotProved(..) => "not-proved",
             Self::RestsOn(..) => "conditions",
             Self::Changed { .. } => "changed",
+            Self::Replaced { .. } => "materials-replaced",
             Self::NoDay => "no-day",
             Self::NoDates => "no-dates",
             Self::NotInForce(_) => "not-in-force",
@@ -86,7 +92,11 @@ impl Reason {
             | Self::Undecided(place)
             | Self::NotProved(place, _)
             | Self::RestsOn(place, _) => Some(place),
-            Self::Changed { .. } | Self::NoDay | Self::NoDates | Self::NotInForce(_) => None,
+            Self::Changed { .. }
+            | Self::Replaced { .. }
+            | Self::NoDay
+            | Self::NoDates
+            | Self::NotInForce(_) => None,
         }
     }
 }
@@ -103,6 +113,10 @@ impl RuleAnswer {
         for set in &self.rule.scenario.source.settings {
             is_rule = false;
             reasons.push(Reason::Changed { key: set.key.clone(), value: set.value.clone() });
+        }
+        if !self.replaced.is_empty() {
+            is_rule = false;
+            reasons.push(Reason::Replaced { materials: self.replaced.clone() });
         }
         if let Some(idle) = self.sentence.idle {
             is_rule = false;
@@ -163,6 +177,7 @@ impl serde::Serialize for Reason {
                 map.serialize_entry("key", key)?;
                 map.serialize_entry("value", value)?;
             }
+            Self::Replaced { materials } => map.serialize_entry("materials", materials)?,
             Self::NotInForce(idle) => map.serialize_entry("day", &idle.day.to_string())?,
             Self::Fails(_) | Self::Undecided(_) | Self::NoDay | Self::NoDates => {}
         }

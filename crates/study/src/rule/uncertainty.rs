@@ -336,7 +336,7 @@ impl<'a> Uncertain<'a> {
     fn drawn(&self, random: bool, anew: &dyn Anew) -> Result<Drawn> {
         let count = if random { RANDOM_DRAWS } else { DRAWS };
         let lattice = GoldenLattice::new(vec![0.5; self.errors]);
-        // What no camera can be is not drawn; the interval does not reach there.
+        // What no camera can be has no margin of its own; it counts as the least that was found.
         let camera = |index: usize| {
             let point = lattice.point(index);
             let of = |figure: &Figure| figure.deviations(point[figure.error]);
@@ -369,9 +369,12 @@ impl<'a> Uncertain<'a> {
                 break;
             }
         }
-        let margins: Vec<f64> = margins.into_iter().map(|(margin, _)| margin).collect();
+        let impossible = count - margins.len();
         let count = margins.len();
-        let n = count as f64;
+        let least = margins.first().map(|(margin, _)| *margin);
+        let least = std::iter::repeat_n(least, impossible).flatten();
+        let margins: Vec<f64> = least.chain(margins.into_iter().map(|(margin, _)| margin)).collect();
+        let n = margins.len() as f64;
         let mean = margins.iter().sum::<f64>() / n.max(1.0);
         let squares: f64 = margins.iter().map(|margin| (margin - mean) * (margin - mean)).sum();
         let deviation = (squares / (n - 1.0).max(1.0)).sqrt();

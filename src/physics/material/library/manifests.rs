@@ -48,6 +48,7 @@ impl Library {
             }
             if self.classes.insert(name.clone(), class).is_some() {
                 self.warnings.push(format!("the class `{name}` is replaced by that of {}", path.display()));
+                self.replaced.push(name.clone());
             }
         }
         Ok(())

@@ -187,6 +187,12 @@ fn said(reasons: &[NotPassed]) -> Vec<String> {
     for reason in reasons {
         match reason {
             NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),
+            NotPassed::Replaced { materials } => {
+                out.push(format!(
+                    "materials of these names are not the program's, but those of --library: {}",
+                    materials.join(", ")
+                ));
+            }
             NotPassed::NoDates => {
                 out.push("the rule does not say from which day it holds ([rule] from)".into())
             }
