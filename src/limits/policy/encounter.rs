@@ -286,7 +286,7 @@ mod tests {
                 };
                 let range = of([low, high]);
                 for step in 0..=3000 {
-                    let speed = low * (high / low as f64).powf(f64::from(step) / 3000.0);
+                    let speed = low * (high / low).powf(f64::from(step) / 3000.0);
                     let one = of([speed.min(high); 2]);
                     assert!(
                         one.iter().zip(&range).all(|(one, range)| *one <= range * 1.002),
