@@ -299,7 +299,10 @@ fn other_materials_and_guessed_spectra_are_no_pass() {
     folder.file("a.toml", &text.replace("[\"aluminium\"]", "[\"short.csv\"]\nextrapolate = \"hold\""));
     let guessed = run(&[]);
     assert!(
-        guessed["conditions"]["ideal-pnrd"].as_array().unwrap().contains(&json!("extrapolated")),
+        guessed["conditions"]["ideal-pnrd with exposure changed"]
+            .as_array()
+            .unwrap()
+            .contains(&json!("extrapolated")),
         "{guessed}"
     );
     // The policy is the rule's file, and every file that it names must be the one beside it.
