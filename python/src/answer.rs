@@ -293,7 +293,7 @@ pub(crate) fn rule(
         let text = rule_report::text(&answer, &study);
         answer.stats.add(&no_report());
         let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;
-        let json = reading.json(&rule_report::Output { answer: &answer, inputs: &provenance.inputs })?;
+        let json = reading.json(&rule_report::Output::of(&answer, &provenance.inputs))?;
         let draw = move || rule_report::bundle(&study, &answer, &provenance);
         Ok(Found { json, text, draw: Box::new(draw) })
     })

@@ -20,7 +20,7 @@ use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, joined, number, optional, yes_no};
 use super::tables;
-use crate::words::rule::{ALL_CLAUSES, certificate, measure, one_clause};
+use crate::words::rule::{ALL_CLAUSES, HardestScene, certificate, hardest_scenes, measure, one_clause};
 use crate::words::shortfall::{codes, no};
 use hadar::error::Result;
 use hadar::policy::Quantity;
@@ -43,8 +43,18 @@ pub struct Output<'a> {
     /// The answer.
     #[serde(flatten)]
     pub answer: &'a RuleAnswer,
+    /// The scene in which every camera is nearest to failing each clause, or fails it most.
+    hardest: Vec<HardestScene>,
     /// All that it rests on, by its content.
     pub inputs: &'a [Input],
+}
+
+impl<'a> Output<'a> {
+    /// That of an answer, which rests on `inputs`.
+    #[must_use]
+    pub fn of(answer: &'a RuleAnswer, inputs: &'a [Input]) -> Self {
+        Self { answer, hardest: hardest_scenes(answer), inputs }
+    }
 }
 
 /// All files; paths in the rule are written relative to `out` where they lie below it.

@@ -1,5 +1,7 @@
 //! Several scenarios asked the same: a row of a table for each, with the verdict and the figures that matter, or why there is no answer.
 
+mod laws;
+
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::columns::aligned;
@@ -171,7 +173,8 @@ pub fn text(question: Question, rows: &[Row]) -> String {
         }
         lines.push(line);
     }
-    let mut out = aligned(&lines, &[]);
+    let side_by_side = if question == Question::Rule { laws::text(rows) } else { None };
+    let mut out = side_by_side.map_or_else(String::new, |text| text + "\n") + &aligned(&lines, &[]);
     if !rests_on.is_empty() {
         let _ = write!(out, "\n{rests_on}");
     }
@@ -204,6 +207,9 @@ pub fn bundle(question: Question, rows: &[Row]) -> Result<Bundle> {
     }
     let mut bundle = Bundle::about(Some(&format!("{} of {} scenarios", question.name(), rows.len())));
     bundle.add_table("scenarios.csv", table)?;
+    if let Some(plot) = laws::plot(rows).filter(|_| question == Question::Rule) {
+        bundle.add_plots(&[plot])?;
+    }
     Ok(bundle)
 }
 

@@ -10,7 +10,7 @@ use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_report::rule;
 use hadar_scenario::rule::{Citation, Figure};
-use hadar_scenario::{Date, Rule, Written};
+use hadar_scenario::{Date, Rule, Setting, Written};
 use hadar_study::sweep::Question;
 use hadar_study::{
     CameraAnswer, Condition, Extent, FiguresMoved, Reforms, RuleAnswer, RuleAsked, RuleStudy, TestResult,
@@ -53,6 +53,9 @@ pub(super) struct RuleArgs {
     /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
     accept: Vec<String>,
+    /// Cameras to be judged in the place of the rule's own, by name: the program's, or those of --cameras
+    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', conflicts_with_all = ["verify", "sources"])]
+    judge: Vec<String>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
     on: Option<Date>,
@@ -87,8 +90,18 @@ pub(super) fn run(
     several::each(Question::Rule, &args.rules, global, |path, global| one(path, args, global))
 }
 
+/// What stands in the place of the rule's own cameras, and of the tests that name them.
+fn judged(names: &[String]) -> Vec<Setting> {
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let set = |key: &str, value: String| Setting { key: key.into(), value, by: "--judge" };
+    let names = serde_json::json!(names).to_string();
+    vec![set("cameras", names), set("camera", "[]".into()), set("test", "[]".into())]
+}
+
 fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
-    let written = global.written(file)?;
+    let written = global.written(file)?.with(judged(&args.judge));
     if args.reforms {
         return reforms(&written, global);
     }
@@ -135,7 +148,7 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     let text = if extent == Extent::Verdicts { rule::check(&answer) } else { rule::text(&answer, &study) };
     let provenance = global.provenance()?;
     answer.stats.add(&global.report(&text, || rule::bundle(&study, &answer, &provenance))?);
-    global.answer(&rule::Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;
+    global.answer(&rule::Output::of(&answer, &provenance.inputs), &text, &answer.stats)?;
     Ok(code(args, &answer))
 }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod certificate;
 mod check;
+mod hardest;
 mod market;
 mod measured;
 mod moved;
@@ -12,6 +13,7 @@ mod stop;
 mod text;
 
 pub use check::check;
+pub(crate) use hardest::{HardestScene, hardest_scenes};
 pub(crate) use measured::measure;
 pub use moved::figures_moved;
 pub(crate) use moved::title_of_figures;

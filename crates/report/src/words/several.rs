@@ -18,3 +18,53 @@ pub(crate) fn only_if(scenario: &str, codes: &str) -> String {
 pub(crate) fn unanswered(failed: usize, all: usize) -> String {
     format!("{failed} of {all} scenarios without an answer.")
 }
+
+/// A verdict on a camera by a rule that does not hold on the day.
+pub(crate) const BESIDES: &str = "as if in force: yes";
+
+/// The title of rules side by side.
+pub(crate) const SIDE_BY_SIDE: &str = "Rules side by side";
+
+/// Below that title.
+pub(crate) const LEAST_OR_SPOILED: &str = "The least margin of all clauses and scenes; a camera whose picture is spoiled fails whatever its margin.";
+
+/// What a marked name of them means.
+pub(crate) const NOT_ALL: &str = "not every rule is met";
+
+/// Below their table.
+pub(crate) const IN_BRACKETS: &str = "  in brackets: least margin, above 1 where the demand is met, or what spoils the picture, and the clause of it; - : the rule does not name the camera\n";
+
+/// Which cameras meet all rules.
+pub(crate) fn before_all(
+    meet: &[&str],
+    conditional: bool,
+    cameras: usize,
+    laws: usize,
+    asked: usize,
+) -> String {
+    let of = if laws == asked {
+        format!("all {laws} rules")
+    } else {
+        format!("all {laws} of {asked} rules that have an answer")
+    };
+    let on = if conditional { ", under conditions" } else { "" };
+    match meet {
+        [] => format!("None of {cameras} cameras meets {of}.\n\n"),
+        [one] => format!("{one} alone of {cameras} cameras meets {of}{on}.\n\n"),
+        some => format!("{} of {cameras} cameras meet {of}{on}: {}.\n\n", some.len(), some.join(", ")),
+    }
+}
+
+/// That one name stands for several cameras.
+pub(crate) fn not_the_same(cameras: &[&str]) -> String {
+    format!(
+        "  not the same figures in every rule: {}; `--judge` holds the same camera against all\n",
+        cameras.join(", ")
+    )
+}
+
+/// The scenes that decide by a rule.
+pub(crate) fn hardest(law: &str, scenes: &[(&str, &str)]) -> String {
+    let lines: Vec<String> = scenes.iter().map(|(camera, scene)| format!("  {camera}: {scene}\n")).collect();
+    format!("\nHardest scenes of {law}\n{}", lines.concat())
+}

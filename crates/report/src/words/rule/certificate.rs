@@ -1,6 +1,7 @@
 //! The certificate: a page for whoever must decide by it, then what was checked, what came out, and what it rests on, in Markdown.
 
-use super::stop::{decisions, metres};
+use super::hardest::hardest_scenes;
+use super::stop::decisions;
 use super::{in_words_of_kind, measured, sources, text};
 use crate::document::Document;
 use crate::manifest::{Input, Provenance, VERSION};
@@ -15,7 +16,7 @@ use hadar_scenario::rule::{Clause, Demand, Ground, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
     ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
-    MeasuredAnswer, MeasuredVerdict, NearestState, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
+    MeasuredAnswer, MeasuredVerdict, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
 };
 
 /// The page.
@@ -25,7 +26,7 @@ pub(crate) fn page(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenan
 
 /// What somebody who is no physicist must know: who asked what, what came out and why, the worst scenes, where the numbers are from.
 pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Document {
-    let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
+    let about = &answer.rule.about;
     let mut out = Document::default();
     out.heading(1, &title(answer));
     out.quote(&what_it_is(&answer.rule));
@@ -66,7 +67,7 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     out.table(&head, &[], rows);
 
     out.heading(2, "The hardest scenes");
-    out.items(answer.clauses.iter().flat_map(|clause| hardest(clause, units)).map(|text| (None, text)));
+    out.items(hardest_scenes(answer).iter().map(|scene| (None, scene.say())));
     if let Some(range) = look_alikes(&answer.rule) {
         out.paragraph(&range);
     }
@@ -215,61 +216,6 @@ fn in_a_word(verdict: Verdict, grade: Grade, conditions: &[Condition], fails_by:
         Verdict::Fails if fails_by.is_empty() => "no".into(),
         Verdict::Fails => no(fails_by),
     }
-}
-
-/// The scene in which each camera is nearest to failing, or fails most.
-fn hardest(clause: &ClauseAnswer, units: Units) -> Vec<String> {
-    let of_clause = clause.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
-    match &clause.found {
-        Found::Apart(apart) => {
-            let of = |camera: &CameraVerdict| {
-                format!(
-                    "{}{of_clause}: {}; margin {}",
-                    camera.name,
-                    scene_in_words(camera, clause, units),
-                    significant(camera.margin, 3)
-                )
-            };
-            apart.cameras.iter().map(of).collect()
-        }
-        Found::Measured(measured) => {
-            let of = |camera: &MeasuredVerdict| {
-                let scene = measured::measured_scene(&camera.limiting, units);
-                format!("{}{of_clause}: {scene}; margin {}", camera.name, significant(camera.margin, 3))
-            };
-            measured.cameras.iter().map(of).collect()
-        }
-    }
-}
-
-/// 'skin of 30 degC, 9 m away, lit by surroundings of 15 degC (V 0.8), against polycarbonate'.
-fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -> String {
-    let scene = &camera.limiting;
-    let mut out = format!("{} of {}", scene.target, units.temperature(scene.temperature_k));
-    match scene.distance_m {
-        Some(distance) if scene.distance_matters => out += &format!(", {} away", metres(distance, units)),
-        Some(_) => out += ", at any distance",
-        None => {}
-    }
-    let lit = scene.surroundings_k.iter().zip(&scene.lighting);
-    let lit: Vec<String> = lit
-        .map(|(kelvin, factor)| format!("{} (V {})", units.temperature(*kelvin), significant(*factor, 3)))
-        .collect();
-    if !lit.is_empty() {
-        out += &format!(", lit by surroundings of {}", lit.join(" and "));
-    }
-    let NearestState { temperature_k, lighting, .. } = &scene.nearest_state;
-    let mirrored: Vec<String> = lighting.iter().map(|factor| significant(*factor, 3)).collect();
-    let mirrored = if mirrored.is_empty() { String::new() } else { format!(", V {}", mirrored.join(" ")) };
-    out += &format!(
-        ", against {} that looks alike at {}{mirrored}",
-        scene.alternative,
-        units.temperature(*temperature_k)
-    );
-    if let Some(stop) = &clause.stop {
-        out += &format!(", from a vehicle at up to {}", units.speed(stop.fastest.speed_m_s));
-    }
-    out
 }
 
 /// That what must be told apart may be anything, where the rule does not narrow it.

@@ -1,0 +1,204 @@
+//! Several rules side by side: every camera before every rule, with what decides and the hardest scene.
+
+use super::{Row, hangs};
+use crate::figures::Plot;
+use crate::plot::{Axis, Figure, NamedSeries, NamedValues};
+use crate::table::{Table, number};
+use crate::text::columns::aligned;
+use crate::text::significant;
+use crate::words::several::{
+    BESIDES, IN_BRACKETS, LEAST_OR_SPOILED, NOT_ALL, SIDE_BY_SIDE, UNDECIDED, YES_IF, before_all, hardest,
+    not_the_same,
+};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// A camera before a rule.
+struct Cell<'a> {
+    verdict: &'static str,
+    meets: bool,
+    margin: f64,
+    clause: Option<&'a str>,
+    evidence: &'a str,
+    /// What it fails by where its margin does not say it, in codes.
+    spoiled: Vec<&'a str>,
+    /// The scene that decides, in words.
+    scene: Option<&'a str>,
+}
+
+/// A rule that was answered.
+struct Law<'a> {
+    name: &'a str,
+    answer: &'a Value,
+}
+
+impl<'a> Law<'a> {
+    fn cameras(&self) -> impl Iterator<Item = (&'a str, &'a Value)> {
+        let all = self.answer["cameras"].as_array().into_iter().flatten();
+        all.filter_map(|camera| Some((camera["name"].as_str()?, camera)))
+    }
+
+    fn before(&self, camera: &str) -> Option<Cell<'a>> {
+        let (_, own) = self.cameras().find(|(name, _)| *name == camera)?;
+        let conditional = hangs(&own["conditions"]);
+        let verdict = match own["verdict"].as_str() {
+            Some("meets") if self.idle() => BESIDES,
+            Some("meets") if conditional => YES_IF,
+            Some("meets") => "yes",
+            Some("undecided") => UNDECIDED,
+            _ => "no",
+        };
+        let margin = own["margin"].as_f64().unwrap_or(f64::NAN);
+        let spoils = verdict == "no" && margin >= 1.0;
+        // Where a picture is spoiled the least margin decides nothing: the first clause that fails does.
+        let clause = own["fails"][0].as_str().filter(|_| spoils).or(own["limiting_clause"].as_str());
+        let lines = self.answer["clauses"].as_array().into_iter().flatten();
+        let lines = lines.filter(|line| clause.is_none() || line["name"].as_str() == clause);
+        let line =
+            lines.filter_map(|line| line["cameras"].as_array()).flatten().find(|line| line["name"] == camera);
+        let by = line.and_then(|line| line["fails_by"].as_array()).into_iter().flatten();
+        let scene = self.answer["hardest"].as_array().into_iter().flatten().find(|scene| {
+            scene["camera"] == camera && (clause.is_none() || scene["clause"].as_str() == clause)
+        });
+        Some(Cell {
+            verdict,
+            meets: own["verdict"] == "meets" && !self.idle(),
+            margin,
+            clause,
+            spoiled: by.filter_map(Value::as_str).filter(|_| spoils).collect(),
+            evidence: own["evidence"].as_str().unwrap_or_default(),
+            scene: scene.and_then(|scene| scene["scene"].as_str()),
+        })
+    }
+
+    /// Whether it does not hold on the day that is asked about.
+    fn idle(&self) -> bool {
+        !self.answer["on"].is_null() && self.answer["in_force"] != true
+    }
+
+    /// What the rule says of a camera, its name and the words about it left out.
+    fn figures(&self, camera: &str) -> Option<Value> {
+        let at = self.cameras().position(|(name, _)| name == camera)?;
+        let mut own = self.answer["rule"]["camera"].get(at)?.clone();
+        own.as_object_mut().map(|own| own.remove("name"));
+        Some(own)
+    }
+}
+
+/// Whether two cameras have another value of the same figure; what only one of two rules needs is no difference.
+fn differ(one: &Value, other: &Value) -> bool {
+    let figures = one.as_object().into_iter().flatten();
+    figures.filter_map(|(key, value)| Some((value, other.get(key)?))).any(|(value, other)| value != other)
+}
+
+fn laws(rows: &[Row]) -> Vec<Law<'_>> {
+    rows.iter().filter_map(|row| Some(Law { name: &row.scenario, answer: row.answer.as_ref()? })).collect()
+}
+
+/// All cameras, in the order in which the rules name them.
+fn cameras<'a>(laws: &[Law<'a>]) -> Vec<&'a str> {
+    let mut known = BTreeSet::new();
+    laws.iter().flat_map(Law::cameras).map(|(name, _)| name).filter(|name| known.insert(*name)).collect()
+}
+
+/// Whether all rules name a camera and are met by it.
+fn meets_all(laws: &[Law<'_>], camera: &str) -> bool {
+    laws.iter().all(|law| law.before(camera).is_some_and(|cell| cell.meets))
+}
+
+/// Which cameras meet all rules, what comes of each by each, and the hardest scenes; `None` of fewer than two rules.
+pub(super) fn text(rows: &[Row]) -> Option<String> {
+    let laws = laws(rows);
+    let cameras = cameras(&laws);
+    if laws.len() < 2 || cameras.is_empty() {
+        return None;
+    }
+    let meet: Vec<&str> = cameras.iter().filter(|camera| meets_all(&laws, camera)).copied().collect();
+    let open = meet
+        .iter()
+        .any(|camera| laws.iter().any(|law| law.before(camera).is_some_and(|cell| cell.verdict == YES_IF)));
+    let mut out = before_all(&meet, open, cameras.len(), laws.len(), rows.len());
+    let mut lines = vec![
+        std::iter::once("camera".to_owned())
+            .chain(laws.iter().map(|law| law.name.to_owned()))
+            .collect::<Vec<_>>(),
+    ];
+    for camera in &cameras {
+        let cell = |law: &Law<'_>| match law.before(camera) {
+            Some(cell) => {
+                let why = match cell.spoiled.as_slice() {
+                    [] => significant(cell.margin, 3),
+                    codes => codes.join(", ").replace('-', " "),
+                };
+                let by = cell.clause.map_or_else(String::new, |clause| format!(", {clause}"));
+                format!("{} ({why}{by})", cell.verdict)
+            }
+            None => "-".into(),
+        };
+        lines.push(std::iter::once((*camera).to_owned()).chain(laws.iter().map(cell)).collect());
+    }
+    out += &aligned(&lines, &[]);
+    out += IN_BRACKETS;
+    let differing: Vec<&str> = cameras
+        .iter()
+        .filter(|camera| {
+            let all: Vec<Value> = laws.iter().filter_map(|law| law.figures(camera)).collect();
+            all.iter().any(|one| all.iter().any(|other| differ(one, other)))
+        })
+        .copied()
+        .collect();
+    if !differing.is_empty() {
+        out += &not_the_same(&differing);
+    }
+    for law in &laws {
+        let scenes = cameras.iter().filter_map(|camera| Some((*camera, law.before(camera)?.scene?)));
+        out += &hardest(law.name, &scenes.collect::<Vec<_>>());
+    }
+    Some(out)
+}
+
+/// The table of every camera before every rule, and their margins as a picture where all rules have the same cameras.
+pub(super) fn plot(rows: &[Row]) -> Option<Plot> {
+    let laws = laws(rows);
+    let cameras = cameras(&laws);
+    if laws.len() < 2 || cameras.is_empty() {
+        return None;
+    }
+    let mut table = Table::new([
+        "rule",
+        "camera",
+        "verdict",
+        "margin",
+        "evidence",
+        "clause",
+        "fails_by",
+        "hardest_scene",
+    ]);
+    let mut figure = NamedValues::new(
+        SIDE_BY_SIDE,
+        cameras.iter().map(|name| (*name).to_owned()).collect(),
+        Axis::log("margin: what is there over what is demanded"),
+    )
+    .subtitle(LEAST_OR_SPOILED)
+    .failing(cameras.iter().map(|camera| !meets_all(&laws, camera)).collect())
+    .below(NOT_ALL);
+    for law in &laws {
+        let cells: Vec<Option<Cell<'_>>> = cameras.iter().map(|camera| law.before(camera)).collect();
+        for (camera, cell) in cameras.iter().zip(&cells) {
+            let Some(cell) = cell else { continue };
+            table.push(vec![
+                law.name.to_owned(),
+                (*camera).to_owned(),
+                cell.verdict.to_owned(),
+                number(cell.margin),
+                cell.evidence.to_owned(),
+                cell.clause.unwrap_or_default().to_owned(),
+                cell.spoiled.join(" "),
+                cell.scene.unwrap_or_default().to_owned(),
+            ]);
+        }
+        let margins = cells.iter().map(|cell| cell.as_ref().map_or(f64::NAN, |cell| cell.margin)).collect();
+        figure = figure.series(NamedSeries::new(law.name, margins));
+    }
+    Some(Plot { name: "laws".into(), figure: Figure::from(figure.threshold(1.0, "demanded")), table })
+}
