@@ -37,6 +37,7 @@ use super::read::MINIMUM;
 use super::reader::file;
 use super::section::{Entry, Section};
 use hadar::error::{Error, Place, Result};
+use std::sync::Arc;
 use toml::value::Date;
 
 /// 95 % of a Gaussian.
@@ -173,7 +174,7 @@ impl Rule {
         let mut scenario = clause.scenario.clone();
         let Some(camera) = self.cameras.get(index) else { return scenario };
         scenario.camera = Some(camera.spec.clone());
-        let lines = &mut scenario.source.lines;
+        let lines = Arc::make_mut(&mut scenario.source.lines);
         let own: Vec<(String, usize)> = lines
             .iter()
             .filter_map(|(key, line)| {

@@ -32,9 +32,9 @@ pub struct Source {
     /// Its text.
     pub text: Arc<str>,
     /// Line of each key that was written, e.g. `target.material` or `environment[0].lighting`.
-    pub lines: BTreeMap<String, usize>,
+    pub lines: Arc<BTreeMap<String, usize>>,
     /// Short texts, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.
-    pub texts: BTreeMap<String, String>,
+    pub texts: Arc<BTreeMap<String, String>>,
     /// What stands in the place of its own values.
     pub settings: Vec<Setting>,
     /// Cameras of the user's own, which it may name.
@@ -121,8 +121,8 @@ impl Source {
 
     /// Notes the texts of a value that stands in the place of one of the file, whose lines and texts hold no more.
     pub(super) fn note_setting(&mut self, setting: &Setting) {
-        self.lines.retain(|key, _| !setting.covers(key));
-        self.texts.retain(|key, _| !setting.covers(key));
+        Arc::make_mut(&mut self.lines).retain(|key, _| !setting.covers(key));
+        Arc::make_mut(&mut self.texts).retain(|key, _| !setting.covers(key));
         self.note_value(None, &setting.key, &setting.toml());
     }
 
@@ -136,7 +136,7 @@ impl Source {
 
     fn note_line(&mut self, starts: Option<&LineStarts>, name: &str, offset: usize) {
         if let Some(starts) = starts {
-            self.lines.insert(name.to_owned(), starts.line(offset));
+            Arc::make_mut(&mut self.lines).insert(name.to_owned(), starts.line(offset));
         }
     }
 
@@ -144,7 +144,7 @@ impl Source {
         match value {
             _ if name.len() > LONGEST_NAME => {}
             DeValue::String(text) if text.len() <= LONGEST_TEXT => {
-                self.texts.insert(name.to_owned(), text.trim().to_owned());
+                Arc::make_mut(&mut self.texts).insert(name.to_owned(), text.trim().to_owned());
             }
             DeValue::Table(table) => self.note_table(starts, name, table),
             DeValue::Array(items) => {

@@ -10,6 +10,7 @@ mod between;
 mod cameras;
 mod clauses;
 mod depth;
+mod earlier;
 mod envelope;
 mod expected;
 mod guard;
@@ -214,10 +215,15 @@ impl RuleStudy {
         let all = self.clauses.iter().map(steps).sum();
         let mut before = 0;
         let mut clauses = Vec::with_capacity(self.clauses.len());
+        let mut earlier = Vec::new();
         for (kind, clause) in self.clauses.iter().zip(&self.rule.clauses) {
             let within = |done: usize| progress(before + done, all);
             let found = match kind {
-                Kind::Apart(apart) => Found::Apart(Box::new(apart.answer(asked, &within)?)),
+                Kind::Apart(apart) => {
+                    let (found, kept) = apart.answer(asked, &earlier, &within)?;
+                    earlier.push(kept);
+                    Found::Apart(Box::new(found))
+                }
                 Kind::Resolution(clause) => Found::Measured(clause.answer()?),
                 Kind::Temperature(clause) => Found::Measured(clause.answer(&within)?),
                 Kind::Depth(clause) => Found::Measured(clause.answer(&within)?),

@@ -22,6 +22,7 @@ use crate::section::{Entry, Section, without_repetition};
 use crate::{Envelope, MaterialRef, Reliability, Requirement, Scenario, Scope, Source, write};
 use hadar::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Tables of a scenario that a clause may have.
 const TABLES: &[&str] = &[
@@ -180,7 +181,7 @@ fn of_its_own(scenario: &mut Scenario, plain: &Section<'_>) {
 
 /// The source of a clause's scenario: its own tables stand where those of the rule stood.
 fn relaid(source: &Source, key: &str) -> Source {
-    fn lay<T: Clone>(of: &BTreeMap<String, T>, key: &str) -> BTreeMap<String, T> {
+    fn lay<T: Clone>(of: &BTreeMap<String, T>, key: &str) -> Arc<BTreeMap<String, T>> {
         let own: Vec<(String, T)> = of
             .iter()
             .filter_map(|(full, value)| {
@@ -190,7 +191,7 @@ fn relaid(source: &Source, key: &str) -> Source {
         let head = |full: &str| full.split(['.', '[']).next().unwrap_or_default().to_owned();
         let replaced: BTreeSet<String> = own.iter().map(|(full, _)| head(full)).collect();
         let kept = of.iter().filter(|(full, _)| !replaced.contains(&head(full)));
-        kept.map(|(full, value)| (full.clone(), value.clone())).chain(own).collect()
+        Arc::new(kept.map(|(full, value)| (full.clone(), value.clone())).chain(own).collect())
     }
     Source { lines: lay(&source.lines, key), texts: lay(&source.texts, key), ..source.clone() }
 }

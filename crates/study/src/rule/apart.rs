@@ -12,6 +12,7 @@ use super::approach::{Approach, Moving};
 use super::asked::{Extent, RuleAsked};
 use super::cameras::Named;
 use super::clauses::ApartAnswer;
+use super::earlier::{Earlier, Worst};
 use super::envelope::Sighted;
 use super::results::{CameraVerdict, EnvelopeResult, LimitingScene, Quotable, RuleRequirement, StopResult};
 use crate::companion::{Companion, Given, Told};
@@ -20,6 +21,7 @@ use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::material::Library;
+use hadar::parallel;
 use hadar_scenario::rule::{Clause, Demand, StopSpec};
 use hadar_scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 
@@ -147,23 +149,39 @@ impl TellApart {
         self.candidates.iter().map(Candidate::pairs).sum()
     }
 
-    /// What it says of every camera; `progress` is told how many pairs of materials before a camera are done.
-    pub(super) fn answer(&self, asked: &RuleAsked, progress: &dyn Fn(usize)) -> Result<ApartAnswer> {
+    /// What it says of every camera, and what a later clause may ask again; `progress` is told how many pairs of materials before a camera are
+    /// done.
+    pub(super) fn answer<'a>(
+        &'a self,
+        asked: &RuleAsked,
+        earlier: &[Earlier<'a>],
+        progress: &dyn Fn(usize),
+    ) -> Result<(ApartAnswer, Earlier<'a>)> {
         let alone = asked.extent == Extent::Verdicts && asked.skipping == Skipping::On;
-        let mut cameras = Vec::with_capacity(self.candidates.len());
+        let earlier = if asked.skipping == Skipping::On { earlier } else { &[] };
+        let mut judged = Vec::with_capacity(self.candidates.len());
         let mut before = 0;
-        for candidate in &self.candidates {
-            let pairs = candidate.pairs();
-            cameras.push(self.judged(candidate, alone, &|done| progress(before + done.min(pairs)))?);
-            before += pairs;
+        // As many at a time as there are threads, so that progress can be told between them.
+        for part in self.candidates.chunks(rayon::current_num_threads().max(1)) {
+            let first = judged.len();
+            if let [one] = part {
+                let within = |done: usize| progress(before + done.min(one.pairs()));
+                judged.push(self.judged(first, alone, earlier, &within)?);
+            } else {
+                let one = |index: usize| self.judged(first + index, alone, earlier, &|_| ());
+                judged.extend(parallel::booked(part.len(), one)?);
+            }
+            before += part.iter().map(Candidate::pairs).sum::<usize>();
             progress(before);
         }
-        let not_identifiable = if alone || asked.extent == Extent::Margins {
+        let (cameras, worst): (Vec<CameraVerdict>, Vec<(bool, Worst)>) = judged.into_iter().unzip();
+        let (not_identifiable, ideal) = if alone || asked.extent == Extent::Margins {
             demand::spared(Thing::Sections, Reason::NotAsked, 1);
-            None
+            (None, None)
         } else {
             demand::computed(Thing::Sections, 1);
-            Some(self.not_identifiable(asked.seed)?)
+            let (found, scenes) = self.not_identifiable(asked.seed, earlier)?;
+            (Some(found), Some(scenes))
         };
         let envelope = self.envelope_result();
         let requirement = self.requirement(&cameras, &envelope, alone);
@@ -177,7 +195,8 @@ impl TellApart {
         constants.dedup();
         let categories = &self.scenario.categories;
         let safety = super::safety::rows(categories, &envelope, &cameras, self.required, &constants);
-        Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety })
+        let answer = ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety };
+        Ok((answer, Earlier { apart: self, worst, ideal }))
     }
 
     /// What sizing practice says of the cameras, each at the distance of its limiting scene, if the rule says how large a target is.

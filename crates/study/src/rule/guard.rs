@@ -8,7 +8,9 @@ use super::uncertainty::{Anew, Errors, MarginUncertainty, SMALLER, Uncertain};
 use crate::Study;
 use crate::size::sensitivity::{linear, ripple::Ripple, scatter::Scatter};
 use hadar::error::{Place, Result};
+use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::Camera;
+use hadar::parallel;
 use hadar::policy::{Quantity, Solution};
 use hadar::scene::State;
 use rand::SeedableRng;
@@ -173,25 +175,24 @@ struct Scenes<'a> {
 
 impl Anew for Scenes<'_> {
     fn margin(&self, camera: &Camera, errors: Errors) -> Result<f64> {
-        let (clause, candidate) = (self.clause, self.candidate);
-        let mut least = f64::INFINITY;
         let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
-        for Scene { sighted, alternative, state } in known.iter() {
-            let distance_m = clause.seen_from_m(candidate, sighted, camera);
-            let sighted = sighted.before(camera, distance_m, &clause.envelope)?;
-            let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
-            let pair: [Vec<f64>; 2] = match (errors, &self.ripple) {
-                (Errors::Stream(stream), Some(ripple)) => {
-                    let mut random = ChaCha8Rng::seed_from_u64(SEED);
-                    random.set_stream(stream);
-                    pair.map(|surface| ripple.applied(&surface.emissivity, &mut random))
-                }
-                _ => pair.map(|surface| surface.emissivity.clone()),
+        let mut in_each = known.iter().map(|scene| self.in_scene(scene, camera, errors, None));
+        in_each.try_fold(f64::INFINITY, |least, margin| Ok(least.min(margin?)))
+    }
+
+    fn margins(&self, draws: &[Option<Camera>], random: bool, since: usize) -> Result<(Vec<f64>, usize)> {
+        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        let mut least = vec![f64::INFINITY; draws.len()];
+        for scene in known.iter().skip(since) {
+            let solver = || scene.sighted.solver();
+            let of = |solver: &mut NearestSolver<'_>, index: usize| match &draws[index] {
+                Some(camera) => self.in_scene(scene, camera, Errors::of_draw(index, random), Some(solver)),
+                None => Ok(f64::INFINITY),
             };
-            let found = sighted.solver().with_counting(&pair[0], &pair[1], state, &sighted.counting)?;
-            least = least.min(found.distance);
+            let found = parallel::try_map_with(draws.len(), solver, of)?;
+            least.iter_mut().zip(found).for_each(|(least, found)| *least = least.min(found));
         }
-        Ok(least / clause.required)
+        Ok((least, known.len()))
     }
 
     fn search(&self, camera: &Camera) -> Result<bool> {
@@ -205,6 +206,34 @@ impl Anew for Scenes<'_> {
 }
 
 impl Scenes<'_> {
+    /// The margin of a camera in one scene; `solver` is one of the scene as the camera that is stated sees it, which serves where the bands are
+    /// the same.
+    fn in_scene(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        errors: Errors,
+        solver: Option<&mut NearestSolver<'_>>,
+    ) -> Result<f64> {
+        let Scene { sighted: stated, alternative, state } = scene;
+        let distance_m = self.clause.seen_from_m(self.candidate, stated, camera);
+        let sighted = stated.before(camera, distance_m, &self.clause.envelope)?;
+        let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
+        let pair: [Vec<f64>; 2] = match (errors, &self.ripple) {
+            (Errors::Stream(stream), Some(ripple)) => {
+                let mut random = ChaCha8Rng::seed_from_u64(SEED);
+                random.set_stream(stream);
+                pair.map(|surface| ripple.applied(&surface.emissivity, &mut random))
+            }
+            _ => pair.map(|surface| surface.emissivity.clone()),
+        };
+        let found = match solver.filter(|_| sighted.study.bands == stated.study.bands) {
+            Some(solver) => solver.with_counting(&pair[0], &pair[1], state, &sighted.counting)?,
+            None => sighted.solver().with_counting(&pair[0], &pair[1], state, &sighted.counting)?,
+        };
+        Ok(found.distance / self.clause.required)
+    }
+
     /// Keeps a scene before a camera if it is a worse one; whether it is.
     fn learn(&self, found: Option<(Scene, f64)>, camera: &Camera) -> Result<bool> {
         let before = self.margin(camera, Errors::None)? * self.clause.required;

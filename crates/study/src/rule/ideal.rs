@@ -16,9 +16,10 @@
 use super::super::Study;
 use super::apart::TellApart;
 use super::approach::Moving;
+use super::earlier::Earlier;
 use super::envelope::{all, scene_at};
 use super::results::{EmissivityError, IdealCamera, LightTime, Neighbourhood, NotIdentifiable};
-use hadar::demand::{self, Thing};
+use hadar::demand::{self, Reason, Thing};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
@@ -41,63 +42,67 @@ const EMISSIVITY_ERROR: f64 = 1e-3;
 const MOST: f64 = 0.9;
 
 /// A scene before the ideal camera.
+#[derive(Debug, Clone)]
 struct Drawn {
     shift: usize,
-    told: bool,
+    distance: f64,
     within_error: bool,
     state: State,
 }
 
+/// Scenes before the ideal camera.
+#[derive(Debug, Clone)]
+pub(super) struct Scenes<'a> {
+    of: Vec<(&'a Study, Bands, Ranges)>,
+    counts_per_radiance: f64,
+    drawn: Vec<Drawn>,
+}
+
+impl Scenes<'_> {
+    fn are_of(&self, other: &[(&Study, Bands, Ranges)]) -> bool {
+        let same = |((one, bands, ranges), (other, other_bands, other_ranges)): (
+            &(&Study, Bands, Ranges),
+            &(&Study, Bands, Ranges),
+        )| bands == other_bands && ranges == other_ranges && one.asks_as(other);
+        self.of.len() == other.len() && self.of.iter().zip(other).all(same)
+    }
+}
+
 impl TellApart {
-    /// The share of the envelope in which an ideal camera does not tell the materials apart.
-    pub(super) fn not_identifiable(&self, seed: u64) -> Result<NotIdentifiable> {
+    /// The share of the envelope in which an ideal camera does not tell the materials apart, and its scenes; those of an earlier clause where
+    /// they are the same.
+    pub(super) fn not_identifiable<'a>(
+        &'a self,
+        seed: u64,
+        earlier: &[Earlier<'a>],
+    ) -> Result<(NotIdentifiable, Scenes<'a>)> {
         let cameras: Vec<&Camera> = self.cameras().collect();
         let pixel_m = cameras.iter().map(|camera| camera.pixel_m).fold(0.0, f64::max);
         let (time_s, why) = self.longest(&cameras);
         let near: &[Study] = self.candidates.first().map_or(&[], |candidate| &candidate.near);
         let etendue = std::f64::consts::PI * pixel_m * pixel_m / (4.0 * FASTEST_F_NUMBER * FASTEST_F_NUMBER);
         let pixels = near_pixels(near.iter().chain(self.candidates.iter().flat_map(|one| &one.near)));
-        let counting = Counting { counts_per_radiance: pixels * etendue * time_s, var_added: Vec::new() };
-        let pairs: Vec<(usize, usize)> = near
-            .iter()
-            .enumerate()
-            .flat_map(|(target, study)| (0..study.alternatives.len()).map(move |other| (target, other)))
-            .collect();
-        let scenes = near
+        let counts_per_radiance = pixels * etendue * time_s;
+        let of = near
             .iter()
             .map(|study| {
                 let (bands, _) = study.received(None, study.scenario.target.distance_m)?;
                 Ok((study, bands, study.ranges(&self.envelope)?))
             })
             .collect::<Result<Vec<(&Study, Bands, Ranges)>>>()?;
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let dimensions = scenes.first().map_or(0, |(_, _, ranges)| all(ranges).len());
-        let mut shifted = || GoldenLattice::new((0..dimensions).map(|_| random.random::<f64>()).collect());
-        let lattices: Vec<GoldenLattice> = (0..SHIFTS).map(|_| shifted()).collect();
-        let each = (SCENES / (SHIFTS * pairs.len().max(1))).max(4);
-        let jobs: Vec<(usize, usize)> =
-            (0..SHIFTS).flat_map(|shift| (0..pairs.len()).map(move |pair| (shift, pair))).collect();
-        let drawn = parallel::try_map(jobs.len(), |i| {
-            let (shift, pair) = jobs[i];
-            let (target, other) = pairs[pair];
-            let (study, bands, ranges) = &scenes[target];
-            let places = (0..each).map(|index| lattices[shift].point(index * pairs.len() + pair));
-            let states: Vec<State> = places.filter_map(|place| scene_at(ranges, &place)).collect();
-            let Study { surroundings, unknowns, range, .. } = study;
-            let mut solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
-            let mut drawn = Vec::with_capacity(states.len());
-            for state in states {
-                let (own, alternative) = (&study.target.emissivity, &study.alternatives[other].emissivity);
-                let found = solver.with_counting(own, alternative, &state, &counting)?;
-                let within_error = found.distance < error_distance(study, bands, &state, &counting);
-                drawn.push(Drawn { shift, told: found.distance >= self.required, within_error, state });
+        let known = earlier.iter().filter_map(|one| one.ideal.as_ref()).find(|one| one.are_of(&of));
+        let scenes = match known {
+            Some(known) => {
+                demand::spared(Thing::NearestSearches, Reason::Shared, known.drawn.len() as u64);
+                known.clone()
             }
-            Ok(drawn)
-        })?;
-        let drawn: Vec<Drawn> = drawn.into_iter().flatten().collect();
-        demand::computed(Thing::NearestSearches, drawn.len() as u64);
-        let (fraction, standard_error) = share(&drawn, |scene| !scene.told);
-        let (within, error_within) = share(&drawn, |scene| scene.within_error);
+            None => drawn(of, counts_per_radiance, seed)?,
+        };
+        let drawn = &scenes.drawn;
+        let grown = (counts_per_radiance / scenes.counts_per_radiance).sqrt();
+        let told = |scene: &Drawn| scene.distance * grown >= self.required;
+        let (fraction, standard_error) = share(drawn, |scene| !told(scene));
+        let (within, error_within) = share(drawn, |scene| scene.within_error);
         let definition = IdealCamera {
             f_number: FASTEST_F_NUMBER,
             pixel_m,
@@ -108,7 +113,7 @@ impl TellApart {
             pixels,
             units: self.scenario.units(),
         };
-        Ok(NotIdentifiable {
+        let found = NotIdentifiable {
             fraction,
             standard_error,
             definition,
@@ -116,8 +121,9 @@ impl TellApart {
             standard_error_within_emissivity_error: error_within,
             emissivity_error: EmissivityError(EMISSIVITY_ERROR),
             scenes: drawn.len(),
-            neighbourhood: neighbourhood(&drawn),
-        })
+            neighbourhood: neighbourhood(drawn, told),
+        };
+        Ok((found, scenes))
     }
 
     /// The cameras, looked up.
@@ -142,6 +148,43 @@ impl TellApart {
             }
         }
     }
+}
+
+/// The scenes of all pairs before a camera that counts so much.
+fn drawn(of: Vec<(&Study, Bands, Ranges)>, counts_per_radiance: f64, seed: u64) -> Result<Scenes<'_>> {
+    let counting = Counting { counts_per_radiance, var_added: Vec::new() };
+    let pairs: Vec<(usize, usize)> = of
+        .iter()
+        .enumerate()
+        .flat_map(|(target, (study, ..))| (0..study.alternatives.len()).map(move |other| (target, other)))
+        .collect();
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let dimensions = of.first().map_or(0, |(_, _, ranges)| all(ranges).len());
+    let mut shifted = || GoldenLattice::new((0..dimensions).map(|_| random.random::<f64>()).collect());
+    let lattices: Vec<GoldenLattice> = (0..SHIFTS).map(|_| shifted()).collect();
+    let each = (SCENES / (SHIFTS * pairs.len().max(1))).max(4);
+    let jobs: Vec<(usize, usize)> =
+        (0..SHIFTS).flat_map(|shift| (0..pairs.len()).map(move |pair| (shift, pair))).collect();
+    let drawn = parallel::try_map(jobs.len(), |i| {
+        let (shift, pair) = jobs[i];
+        let (target, other) = pairs[pair];
+        let (study, bands, ranges) = &of[target];
+        let places = (0..each).map(|index| lattices[shift].point(index * pairs.len() + pair));
+        let states: Vec<State> = places.filter_map(|place| scene_at(ranges, &place)).collect();
+        let Study { surroundings, unknowns, range, .. } = study;
+        let mut solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
+        let mut drawn = Vec::with_capacity(states.len());
+        for state in states {
+            let (own, alternative) = (&study.target.emissivity, &study.alternatives[other].emissivity);
+            let distance = solver.with_counting(own, alternative, &state, &counting)?.distance;
+            let within_error = distance < error_distance(study, bands, &state, &counting);
+            drawn.push(Drawn { shift, distance, within_error, state });
+        }
+        Ok(drawn)
+    })?;
+    let drawn: Vec<Drawn> = drawn.into_iter().flatten().collect();
+    demand::computed(Thing::NearestSearches, drawn.len() as u64);
+    Ok(Scenes { of, counts_per_radiance, drawn })
 }
 
 /// The most pixels that count together before any of the cameras.
@@ -184,11 +227,11 @@ fn share(drawn: &[Drawn], of: impl Fn(&Drawn) -> bool) -> (f64, f64) {
 }
 
 /// How near to equilibrium the scenes are in which no camera could do it; without surroundings there is none.
-fn neighbourhood(drawn: &[Drawn]) -> Option<Neighbourhood> {
+fn neighbourhood(drawn: &[Drawn], told: impl Fn(&Drawn) -> bool) -> Option<Neighbourhood> {
     if drawn.iter().all(|scene| scene.state.lighting.iter().all(|lighting| *lighting == 0.0)) {
         return None;
     }
-    let bad = || drawn.iter().filter(|scene| !scene.told).map(|scene| &scene.state);
+    let bad = || drawn.iter().filter(|scene| !told(scene)).map(|scene| &scene.state);
     let most = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
         values.get((MOST * (values.len().max(1) - 1) as f64).ceil() as usize).copied()

@@ -17,6 +17,7 @@ pub(super) const LOOSE: f64 = 0.1;
 const BOXES: u64 = 200_000;
 
 /// A pair's scene with what is known of it.
+#[derive(Debug, Clone)]
 pub(super) struct Searched {
     pub(super) pair: Estimate,
     /// Where it was found, if between the distances of the candidate.

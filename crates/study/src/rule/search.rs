@@ -7,6 +7,7 @@
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{is_timed, spoiled};
+use super::earlier::{Earlier, Worst};
 use super::envelope::{Estimate, SCENES as SCATTERED, Sighted, brightest, darkest, unlit};
 use super::pairs::Searched;
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, WithoutPlaceholders};
@@ -73,19 +74,30 @@ struct Noted {
 }
 
 impl TellApart {
-    /// The verdict on one camera; `alone` asks for no more than it. `progress` is told how many pairs are done.
+    /// The verdict on one camera, and the scene and the pairs that it rests on; `alone` asks for no more than it. `progress` is told how many
+    /// pairs are done.
     pub(super) fn judged(
         &self,
-        candidate: &Candidate,
+        index: usize,
         alone: bool,
+        earlier: &[Earlier<'_>],
         progress: &dyn Fn(usize),
-    ) -> Result<CameraVerdict> {
+    ) -> Result<(CameraVerdict, (bool, Worst))> {
+        let candidate = &self.candidates[index];
         let place = |key: &str| self.rule.camera_place(candidate.named.index, key);
         let uncertain = self.uncertain(candidate, &place)?;
         let alone = alone && uncertain.is_none();
-        let (worst, pairs) = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
-            Error::malformed("there is no pair of materials", "name one in alternatives.materials")
-        })?;
+        let known = earlier.iter().find_map(|clause| clause.worst(self, index, alone));
+        let (worst, pairs) = match known {
+            Some(known) => {
+                demand::spared(Thing::WorstCases, Reason::Shared, known.1.len() as u64);
+                known.clone()
+            }
+            None => self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
+                Error::malformed("there is no pair of materials", "name one in alternatives.materials")
+            })?,
+        };
+        let kept = (alone, (worst.clone(), pairs.clone()));
         let least = pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min);
         let near: Vec<Estimate> =
             pairs.iter().filter(|pair| pair.distance <= NEAR * least).cloned().collect();
@@ -147,7 +159,7 @@ impl TellApart {
             self.conditions(candidate, passes, &image, &Limit { at: &at, surface, lower_bound })?;
         let warnings = self.remarks(candidate, &Noted { unproved, noisier, fragile }, &at, surface);
         let bands = at.bands.len();
-        Ok(CameraVerdict {
+        let verdict = CameraVerdict {
             name: candidate.named.name.clone(),
             passes,
             fails_by,
@@ -173,7 +185,8 @@ impl TellApart {
             evidence: grade,
             conditions,
             warnings,
-        })
+        };
+        Ok((verdict, kept))
     }
 
     /// 'Can' is said of what is proved, and of few counts by their own law: between that and the worst scene found it is undecided.
@@ -457,7 +470,7 @@ impl TellApart {
     }
 
     /// What is to be proved where no more is asked for: the demand, whatever bunching that is left out would add to the variance.
-    fn decisive(&self, candidate: &Candidate) -> f64 {
+    pub(super) fn decisive(&self, candidate: &Candidate) -> f64 {
         let occupancy = candidate.near.first().map_or(0.0, |near| {
             let bright =
                 near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |all| brightest(&all));

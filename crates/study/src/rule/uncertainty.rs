@@ -32,6 +32,7 @@ use hadar::order;
 use hadar::parallel;
 use hadar_scenario::CameraSpec;
 use hadar_scenario::rule::{Known, Uncertainty, Verdict};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Draws of figures alone, which a lattice spreads evenly, and with errors of emissivities, which are random.
@@ -84,6 +85,16 @@ pub struct Drawn {
 pub(super) trait Anew: Sync {
     /// The margin of a camera in the scenes that are known.
     fn margin(&self, camera: &Camera, errors: Errors) -> Result<f64>;
+
+    /// Those of draws, each of a camera with errors of its own if they are `random`, in the scenes known from `since` on at least, and how many
+    /// are known; infinite where a draw is no camera.
+    fn margins(&self, draws: &[Option<Camera>], random: bool, _since: usize) -> Result<(Vec<f64>, usize)> {
+        let of = |index: usize| match &draws[index] {
+            Some(camera) => self.margin(camera, Errors::of_draw(index, random)),
+            None => Ok(f64::INFINITY),
+        };
+        Ok((parallel::try_map(draws.len(), of)?, 0))
+    }
 
     /// Searches all scenes before a camera; whether one is found in which its margin is smaller, which is known from then on.
     fn search(&self, camera: &Camera) -> Result<bool>;
@@ -169,6 +180,12 @@ pub(super) enum Errors {
     None,
     /// Those of a stream of random numbers.
     Stream(u64),
+}
+
+impl Errors {
+    pub(super) const fn of_draw(index: usize, random: bool) -> Self {
+        if random { Self::Stream(index as u64) } else { Self::None }
+    }
 }
 
 impl<'a> Uncertain<'a> {
@@ -337,43 +354,46 @@ impl<'a> Uncertain<'a> {
         let count = if random { RANDOM_DRAWS } else { DRAWS };
         let lattice = GoldenLattice::new(vec![0.5; self.errors]);
         // What no camera can be has no margin of its own; it counts as the least that was found.
-        let camera = |index: usize| {
+        let draw = |index: usize| {
             let point = lattice.point(index);
             let of = |figure: &Figure| figure.deviations(point[figure.error]);
             self.camera(&self.figures.iter().map(of).collect::<Vec<_>>()).ok()
         };
+        let draws: Vec<Option<Camera>> = parallel::map(count, draw);
+        let possible = draws.iter().flatten().count();
         let outside = detection::miss_probability(self.coverage_factor);
-        let mut margins: Vec<(f64, usize)> = Vec::new();
+        let (mut margins, mut known) = (vec![f64::INFINITY; count], 0);
+        let mut ordered: Vec<usize> = (0..count).collect();
+        let mut searched = BTreeSet::new();
         for _ in 0..ROUNDS {
-            let draw = |index: usize| {
-                let Some(camera) = camera(index) else { return Ok(None) };
-                let errors = if random { Errors::Stream(index as u64) } else { Errors::None };
-                anew.margin(&camera, errors).map(|margin| Some((margin, index)))
-            };
-            margins = parallel::try_map(count, draw)?.into_iter().flatten().collect();
-            order::ascending(&mut margins, |(margin, _)| *margin);
-            let mean = margins.len() as f64 * outside;
+            let (found, all) = anew.margins(&draws, random, known)?;
+            known = all;
+            margins.iter_mut().zip(found).for_each(|(margin, found)| *margin = margin.min(found));
+            order::ascending(&mut ordered, |index| margins[*index]);
+            let mean = possible as f64 * outside;
             // About the lower end, and the lowest of all.
             let ranks = [0.0, mean - 2.0 * mean.sqrt(), mean, mean + 2.0 * mean.sqrt()];
             let mut ranks = ranks.map(|rank| rank.max(0.0) as usize).to_vec();
             ranks.dedup();
             let mut found = false;
-            let near = |rank: usize| margins.get(rank).and_then(|(_, index)| camera(*index));
-            for camera in ranks.iter().filter_map(|rank| near(*rank)) {
-                found |= anew.search(&camera)?;
+            let near =
+                |rank: usize| ordered.get(rank).and_then(|index| Some((*index, draws[*index].as_ref()?)));
+            for (index, camera) in ranks.iter().filter_map(|rank| near(*rank)) {
+                // What a draw has to show is found once.
+                found |= searched.insert((index, false)) && anew.search(camera)?;
             }
-            if let (false, Some(camera)) = (found, near(mean as usize)) {
-                found = anew.search_thoroughly(&camera)?;
+            if let (false, Some((index, camera))) = (found, near(mean as usize)) {
+                found = searched.insert((index, true)) && anew.search_thoroughly(camera)?;
             }
             if !found {
                 break;
             }
         }
-        let impossible = count - margins.len();
-        let count = margins.len();
-        let least = margins.first().map(|(margin, _)| *margin);
-        let least = std::iter::repeat_n(least, impossible).flatten();
-        let margins: Vec<f64> = least.chain(margins.into_iter().map(|(margin, _)| margin)).collect();
+        let ordered = ordered.into_iter().filter(|index| draws[*index].is_some());
+        let margins: Vec<f64> = ordered.map(|index| margins[index]).collect();
+        let least = margins.first().copied();
+        let margins: Vec<f64> =
+            std::iter::repeat_n(least, count - possible).flatten().chain(margins).collect();
         let n = margins.len() as f64;
         let mean = margins.iter().sum::<f64>() / n.max(1.0);
         let squares: f64 = margins.iter().map(|margin| (margin - mean) * (margin - mean)).sum();
@@ -385,7 +405,7 @@ impl<'a> Uncertain<'a> {
         let surer = n * outside - scatter;
         let surely_above = margins.get(surer.max(0.0) as usize).copied().unwrap_or(f64::NAN);
         let interval = [at(outside), at(1.0 - outside)];
-        Ok(Drawn { count, mean, deviation, interval, surely_above: surely_above.min(interval[0]) })
+        Ok(Drawn { count: possible, mean, deviation, interval, surely_above: surely_above.min(interval[0]) })
     }
 }
 
