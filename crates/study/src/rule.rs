@@ -139,7 +139,7 @@ impl RuleStudy {
         let mut warnings: Vec<Warning> = Vec::new();
         for (index, clause) in rule.clauses.iter().enumerate() {
             let kind = match &clause.demand {
-                Demand::TellApart | Demand::FalseAlarm => {
+                Demand::TellApart | Demand::FalseAlarm | Demand::Contrast => {
                     let apart = TellApart::new(rule, clause, &cameras, library)?;
                     warnings.extend(
                         apart

@@ -33,6 +33,7 @@ mod identify_mistakes;
 mod identify_sections;
 mod identify_words;
 mod large_cubes;
+mod laws;
 mod library;
 mod messages;
 mod nearest;

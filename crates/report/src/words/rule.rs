@@ -292,6 +292,7 @@ pub(crate) fn in_words_of_kind(kind: &str) -> &str {
     match kind {
         "tell-apart" => "tells materials apart",
         "false-alarm" => "no false alarm",
+        "contrast" => "sees that something is there",
         "resolution" => "pixels on the target",
         "temperature-error" => "knows a temperature",
         "depth-error" => "knows a distance",

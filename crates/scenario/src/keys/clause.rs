@@ -52,8 +52,14 @@ const OBJECT: Key = Key::row(
 /// `[clause.requirement]` of a depth.
 pub(crate) static DEPTH: Table = Table::of("A distance that must be known.", &[&[OBJECT], DEPTH_KEYS]);
 
-const KIND: Value =
-    Value::Choice(&["tell-apart", "false-alarm", "resolution", "temperature-error", "depth-error"]);
+const KIND: Value = Value::Choice(&[
+    "tell-apart",
+    "false-alarm",
+    "contrast",
+    "resolution",
+    "temperature-error",
+    "depth-error",
+]);
 const CLAUSE_KEYS: &[Key] = &[
     Key::row(
         "name",
@@ -87,6 +93,14 @@ const THINGS: Key = Key::row(
     "[\"steel-rough\"]",
     "What must not be taken for the rule's target, of a clause of kind false-alarm.",
     "they are the target of this clause, and the rule's target its alternatives",
+);
+const BEHIND: Key = Key::row(
+    "behind",
+    MATERIALS,
+    Means("must be there in a clause of kind contrast"),
+    "[\"steel-rough\"]",
+    "What the target must stand out from, of a clause of kind contrast.",
+    "at any temperature of alternatives.temperature of the clause, which must be there",
 );
 const SCENE_OF_CLAUSE: Key = Key::row(
     "scene",
@@ -155,13 +169,16 @@ const WHAT: &str = "One demand, with the tables in which its scenes differ from 
 /// `[[clause]]`, whatever its kind.
 pub(crate) static CLAUSE: Table = Table::of(
     WHAT,
-    &[CLAUSE_KEYS, &[THINGS, SCENE_OF_CLAUSE, STEREO_OF_CLAUSE], REQUIREMENT_OF_ANY, OWN_KEYS],
+    &[CLAUSE_KEYS, &[THINGS, BEHIND, SCENE_OF_CLAUSE, STEREO_OF_CLAUSE], REQUIREMENT_OF_ANY, OWN_KEYS],
 );
 /// The same of a kind without keys of its own, which demands reliability.
 pub(crate) static CLAUSE_TELL_APART: Table = Table::of(WHAT, &[CLAUSE_KEYS, REQUIREMENT_OF_TASK, OWN_KEYS]);
 /// Of false alarms.
 pub(crate) static CLAUSE_FALSE_ALARM: Table =
     Table::of(WHAT, &[CLAUSE_KEYS, &[THINGS], REQUIREMENT_OF_TASK, OWN_KEYS]);
+/// Of something that is there.
+pub(crate) static CLAUSE_CONTRAST: Table =
+    Table::of(WHAT, &[CLAUSE_KEYS, &[BEHIND], REQUIREMENT_OF_TASK, OWN_KEYS]);
 /// Of pixels on a target.
 pub(crate) static CLAUSE_RESOLUTION: Table = Table::of(
     WHAT,

@@ -7,6 +7,8 @@
 //! * `tell-apart`: the target from its alternatives, as reliably as `[requirement]` says;
 //! * `false-alarm`: `things` that are not the rule's target must not be taken for it: they are the target of this clause, and the
 //!   materials of the rule's target are its alternatives;
+//! * `contrast`: something is there: the target stands out from what is `behind` it, surfaces of these materials at any temperature of
+//!   `[clause.alternatives]`, which must be stated;
 //! * `resolution`: `pixels` across a target of `size`;
 //! * `temperature-error`: the temperature of the target within `temperature_error`, at `coverage_factor` deviations;
 //! * `depth-error`: the distance of an `object` of `[clause.scene]` within `depth_error`, seen by `[clause.stereo]`.
@@ -59,6 +61,7 @@ pub struct Clause {
 enum Kind {
     TellApart,
     FalseAlarm,
+    Contrast,
     Resolution,
     TemperatureError,
     DepthError,
@@ -71,9 +74,10 @@ impl Kind {
     }
 }
 
-const KINDS: [(&str, Kind); 5] = [
+const KINDS: [(&str, Kind); 6] = [
     ("tell-apart", Kind::TellApart),
     ("false-alarm", Kind::FalseAlarm),
+    ("contrast", Kind::Contrast),
     ("resolution", Kind::Resolution),
     ("temperature-error", Kind::TemperatureError),
     ("depth-error", Kind::DepthError),
@@ -120,6 +124,7 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     let plain = item.section_of(match kind {
         Kind::TellApart => &keys::CLAUSE_TELL_APART,
         Kind::FalseAlarm => &keys::CLAUSE_FALSE_ALARM,
+        Kind::Contrast => &keys::CLAUSE_CONTRAST,
         Kind::Resolution => &keys::CLAUSE_RESOLUTION,
         Kind::TemperatureError => &keys::CLAUSE_TEMPERATURE,
         Kind::DepthError => &keys::CLAUSE_DEPTH,
@@ -140,6 +145,7 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     let (demand, mut scenario) = match kind {
         Kind::TellApart => (Demand::TellApart, of_root(&section, requirement)?),
         Kind::FalseAlarm => (Demand::FalseAlarm, false_alarm(&section, &plain, rule)?),
+        Kind::Contrast => (Demand::Contrast, contrast(&section, &plain)?),
         Kind::Resolution => (resolution(&plain)?, of_root(&section, silent)?),
         Kind::TemperatureError => (temperature_error(&plain)?, of_root(&section, silent)?),
         Kind::DepthError => (depth_error(&plain, stop.is_some())?, of_root(&section, silent)?),
@@ -196,19 +202,43 @@ fn relaid(source: &Source, key: &str) -> Source {
     Source { lines: lay(&source.lines, key), texts: lay(&source.texts, key), ..source.clone() }
 }
 
+/// Whether a table of the clause itself has a key.
+fn has_own(plain: &Section<'_>, table: &str, key: &str) -> bool {
+    plain.get(table).is_some_and(|entry| entry.table().is_ok_and(|own| own.has_own(key)))
+}
+
+/// Materials that a clause must name.
+fn materials(plain: &Section<'_>, key: &str) -> Result<Vec<MaterialRef>> {
+    let example = format!("{key} = [\"steel-rough\"]");
+    let named = plain.require(key)?;
+    let items = named.items(&example)?;
+    if items.is_empty() {
+        return Err(named.fail(Error::malformed("the list is empty", format!("write {example}"))));
+    }
+    without_repetition(&items, material)
+}
+
+/// The scenario of a target before a background whose temperature is within a range.
+fn contrast(section: &Section<'_>, plain: &Section<'_>) -> Result<Scenario> {
+    let behind = materials(plain, "behind")?;
+    let mut scenario = of_root(section, requirement)?;
+    if !has_own(plain, "alternatives", "temperature") {
+        let found = "nothing says how warm that may be which is behind the target";
+        let instead = "write temperature = [\"0 degC\", \"20 degC\"] in [clause.alternatives]";
+        return Err(plain.fail("alternatives.temperature", Error::malformed(found, instead)));
+    }
+    if has_own(plain, "alternatives", "materials") {
+        let instead = "leave them to `behind`";
+        let error = Error::malformed("materials beside `behind`", instead);
+        return Err(plain.fail("alternatives.materials", error));
+    }
+    scenario.alternatives.materials = Some(behind);
+    Ok(scenario)
+}
+
 /// The scenario of things that must not be taken for the rule's target.
 fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> Result<Scenario> {
-    let example = "[\"steel-rough\"]";
-    let things = plain.require("things")?;
-    let items = things.items(&format!("things = {example}"))?;
-    let things: Vec<MaterialRef> = match items.is_empty() {
-        true => {
-            return Err(
-                things.fail(Error::malformed("the list is empty", format!("write things = {example}")))
-            );
-        }
-        false => without_repetition(&items, material)?,
-    };
+    let things = materials(plain, "things")?;
     let mut scenario = of_root(section, requirement)?;
     if !matches!(scenario.requirement.reliability, Reliability::Rates { .. }) {
         let found = "nothing says how rare false alarms must be";
@@ -216,10 +246,7 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
             "write false_alarm_probability = 0.001 beside detection_probability in [clause.requirement]";
         return Err(plain.fail("requirement", Error::malformed(found, instead)));
     }
-    let own_temperature = plain.has_own("target")
-        || plain
-            .get("envelope")
-            .is_some_and(|entry| entry.table().is_ok_and(|own| own.has_own("temperature")));
+    let own_temperature = plain.has_own("target") || has_own(plain, "envelope", "temperature");
     if !own_temperature {
         let found = "nothing says how warm the things are";
         let instead = "write temperature = [\"0 degC\", \"60 degC\"] in [clause.envelope]";
@@ -233,10 +260,7 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
         let instead = "leave them to `things`";
         return Err(plain.fail("envelope.materials", Error::malformed("materials beside `things`", instead)));
     }
-    let own_alternatives = plain
-        .get("alternatives")
-        .is_some_and(|entry| entry.table().is_ok_and(|own| own.has_own("materials")));
-    if !own_alternatives {
+    if !has_own(plain, "alternatives", "materials") {
         scenario.alternatives.materials = Some(people);
     }
     if !plain.has_own("alternatives") {
@@ -335,6 +359,12 @@ impl Clause {
             own = own.put("things", things);
             scenario.target.material = rule.target.material.clone();
         }
+        if self.demand == Demand::Contrast
+            && let Some(behind) = scenario.alternatives.materials.take()
+        {
+            own =
+                own.put("behind", behind.iter().map(|material| paths.material(material)).collect::<Vec<_>>());
+        }
         let shared = rule.document(paths);
         let written =
             |name: &str, part: &Part| shared.0.iter().any(|(other, same)| *other == name && same == part);
@@ -343,7 +373,8 @@ impl Clause {
             .0
             .into_iter()
             .filter(|(name, part)| {
-                let needed = *name == "alternatives" && self.demand == Demand::FalseAlarm;
+                let needed =
+                    *name == "alternatives" && self.demand != Demand::TellApart && self.demand.tells_apart();
                 TABLES.contains(name) && *name != "requirement" && (needed || !written(name, part))
             })
             .collect();

@@ -18,6 +18,8 @@ pub enum Demand {
     TellApart,
     /// Things are not taken for the rule's target.
     FalseAlarm,
+    /// The target stands out from what is behind it.
+    Contrast,
     /// So many pixels across the target.
     Resolution {
         /// Pixels, not whole ones alone.
@@ -79,6 +81,7 @@ impl Demand {
         match self {
             Self::TellApart => "tell-apart",
             Self::FalseAlarm => "false-alarm",
+            Self::Contrast => "contrast",
             Self::Resolution { .. } => "resolution",
             Self::TemperatureError { .. } => "temperature-error",
             Self::DepthError(_) => "depth-error",
@@ -87,11 +90,17 @@ impl Demand {
 }
 
 impl Demand {
+    /// Whether materials are told apart, as `[requirement]` of the scenario says.
+    #[must_use]
+    pub const fn tells_apart(&self) -> bool {
+        matches!(self, Self::TellApart | Self::FalseAlarm | Self::Contrast)
+    }
+
     /// Its tables; `None` of what `[requirement]` of the scenario says.
     pub(super) fn written(&self, paths: Paths<'_>) -> Option<Document> {
         let requirement = |entries: Entries| Some(Document::default().put("requirement", entries));
         match self {
-            Self::TellApart | Self::FalseAlarm => None,
+            Self::TellApart | Self::FalseAlarm | Self::Contrast => None,
             Self::Resolution { pixels, size_m } => {
                 requirement(Entries::default().put("pixels", *pixels).put_quantity(
                     "size",

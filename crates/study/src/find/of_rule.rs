@@ -12,7 +12,7 @@ use crate::{CameraVerdict, Extent, LimitingScene, OwnCameras, RuleAsked, RuleStu
 use hadar::demand::{Ledger, Skipping};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar_scenario::rule::{Clause, Demand, RuleCamera, Verdict};
+use hadar_scenario::rule::{Clause, RuleCamera, Verdict};
 use hadar_scenario::{BandSource, MaterialRef, Rule, Scenario};
 use std::collections::BTreeMap;
 
@@ -103,7 +103,7 @@ pub fn find_for_rule(
 }
 
 fn is_apart(clause: &Clause) -> bool {
-    matches!(clause.demand, Demand::TellApart | Demand::FalseAlarm)
+    clause.demand.tells_apart()
 }
 
 /// The scene that a clause describes, from as far away as it holds.

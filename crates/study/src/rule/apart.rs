@@ -9,19 +9,14 @@
 //! searched is called so.
 
 use super::approach::{Approach, Moving};
-use super::asked::{Extent, RuleAsked};
 use super::cameras::Named;
-use super::clauses::ApartAnswer;
-use super::earlier::{Earlier, Worst};
 use super::envelope::Sighted;
 use super::results::{CameraVerdict, EnvelopeResult, LimitingScene, Quotable, RuleRequirement, StopResult};
 use crate::companion::{Companion, Given, Told};
 use crate::{ClassSide, Study, Warning};
-use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::material::Library;
-use hadar::parallel;
 use hadar_scenario::rule::{Clause, Demand, StopSpec};
 use hadar_scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 
@@ -51,7 +46,7 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// Pairs of materials that are searched, from every distance.
-    fn pairs(&self) -> usize {
+    pub(super) fn pairs(&self) -> usize {
         self.sighted.iter().map(|sighted| sighted.study.alternatives.len()).sum()
     }
 }
@@ -149,58 +144,8 @@ impl TellApart {
         self.candidates.iter().map(Candidate::pairs).sum()
     }
 
-    /// What it says of every camera, and what a later clause may ask again; `progress` is told how many pairs of materials before a camera are
-    /// done.
-    pub(super) fn answer<'a>(
-        &'a self,
-        asked: &RuleAsked,
-        earlier: &[Earlier<'a>],
-        progress: &dyn Fn(usize),
-    ) -> Result<(ApartAnswer, Earlier<'a>)> {
-        let alone = asked.extent == Extent::Verdicts && asked.skipping == Skipping::On;
-        let earlier = if asked.skipping == Skipping::On { earlier } else { &[] };
-        let mut judged = Vec::with_capacity(self.candidates.len());
-        let mut before = 0;
-        // As many at a time as there are threads, so that progress can be told between them.
-        for part in self.candidates.chunks(rayon::current_num_threads().max(1)) {
-            let first = judged.len();
-            if let [one] = part {
-                let within = |done: usize| progress(before + done.min(one.pairs()));
-                judged.push(self.judged(first, alone, earlier, &within)?);
-            } else {
-                let one = |index: usize| self.judged(first + index, alone, earlier, &|_| ());
-                judged.extend(parallel::booked(part.len(), one)?);
-            }
-            before += part.iter().map(Candidate::pairs).sum::<usize>();
-            progress(before);
-        }
-        let (cameras, worst): (Vec<CameraVerdict>, Vec<(bool, Worst)>) = judged.into_iter().unzip();
-        let (not_identifiable, ideal) = if alone || asked.extent == Extent::Margins {
-            demand::spared(Thing::Sections, Reason::NotAsked, 1);
-            (None, None)
-        } else {
-            demand::computed(Thing::Sections, 1);
-            let (found, scenes) = self.not_identifiable(asked.seed, earlier)?;
-            (Some(found), Some(scenes))
-        };
-        let envelope = self.envelope_result();
-        let requirement = self.requirement(&cameras, &envelope, alone);
-        let companions =
-            if asked.extent == Extent::Everything { self.companions(&cameras)? } else { Vec::new() };
-        let mut constants: Vec<String> = Vec::new();
-        for study in self.candidates.iter().flat_map(|candidate| &candidate.near) {
-            constants.extend(study.constants(|_| true));
-        }
-        constants.sort_unstable();
-        constants.dedup();
-        let categories = &self.scenario.categories;
-        let safety = super::safety::rows(categories, &envelope, &cameras, self.required, &constants);
-        let answer = ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety };
-        Ok((answer, Earlier { apart: self, worst, ideal }))
-    }
-
     /// What sizing practice says of the cameras, each at the distance of its limiting scene, if the rule says how large a target is.
-    fn companions(&self, cameras: &[CameraVerdict]) -> Result<Vec<Companion>> {
+    pub(super) fn companions(&self, cameras: &[CameraVerdict]) -> Result<Vec<Companion>> {
         let of_clause = self.rule.clauses.iter().find_map(|clause| match clause.demand {
             Demand::Resolution { size_m, .. } => Some(size_m),
             _ => None,
@@ -241,7 +186,7 @@ impl TellApart {
         stop.map(|one| one.speed_m_s.max(one.closing_m_s)).or(self.scenario.requirement.speed_m_s)
     }
 
-    fn envelope_result(&self) -> EnvelopeResult {
+    pub(super) fn envelope_result(&self) -> EnvelopeResult {
         let point = |value: f64| [value; 2];
         let scenario = &self.scenario;
         let objects = &scenario.environment;
@@ -279,7 +224,7 @@ impl TellApart {
         }
     }
 
-    fn requirement(
+    pub(super) fn requirement(
         &self,
         cameras: &[CameraVerdict],
         envelope: &EnvelopeResult,

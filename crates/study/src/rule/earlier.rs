@@ -1,14 +1,21 @@
-//! What clauses of a rule have in common: one that differs from an earlier one by speeds alone asks for the same worst scenes, and for the same
-//! scenes of the ideal camera.
+//! A clause that tells apart, answered beside the earlier ones of its rule: one that differs from another by speeds alone asks for the same worst
+//! scenes, and for the same scenes of the ideal camera.
 //!
 //! The same is what is bit by bit the same: bands, surroundings, spectra, what is unknown, ranges, counts and noise. Distances of the ideal
 //! camera, which has no noise but that of its photons, grow as √κ: those of one exposure are those of every other.
 
 use super::apart::{Candidate, TellApart};
+use super::asked::{Extent, RuleAsked};
+use super::clauses::ApartAnswer;
 use super::envelope::{Estimate, Sighted};
 use super::ideal::Scenes;
 use super::pairs::Searched;
+use super::results::CameraVerdict;
+use super::safety;
 use crate::Study;
+use hadar::demand::{self, Reason, Skipping, Thing};
+use hadar::error::Result;
+use hadar::parallel;
 
 /// The worst of all pairs, and what each has come to.
 pub(super) type Worst = (Searched, Vec<Estimate>);
@@ -35,6 +42,61 @@ impl Earlier<'_> {
             && candidate.sighted.len() == known.sighted.len()
             && candidate.sighted.iter().zip(&known.sighted).all(|(one, other)| one.sees_as(other));
         same.then_some(worst)
+    }
+}
+
+impl TellApart {
+    /// What it says of every camera, and what a later clause may ask again; `progress` is told how many pairs of materials before a camera are
+    /// done.
+    pub(super) fn answer<'a>(
+        &'a self,
+        asked: &RuleAsked,
+        earlier: &[Earlier<'a>],
+        progress: &dyn Fn(usize),
+    ) -> Result<(ApartAnswer, Earlier<'a>)> {
+        let alone = asked.extent == Extent::Verdicts && asked.skipping == Skipping::On;
+        let earlier = if asked.skipping == Skipping::On { earlier } else { &[] };
+        let mut judged = Vec::with_capacity(self.candidates.len());
+        let mut before = 0;
+        // As many at a time as there are threads, so that progress can be told between them.
+        for part in self.candidates.chunks(rayon::current_num_threads().max(1)) {
+            let first = judged.len();
+            if let [one] = part {
+                let within = |done: usize| progress(before + done.min(one.pairs()));
+                judged.push(self.judged(first, alone, earlier, &within)?);
+            } else {
+                let one = |index: usize| self.judged(first + index, alone, earlier, &|_| ());
+                judged.extend(parallel::booked(part.len(), one)?);
+            }
+            before += part.iter().map(Candidate::pairs).sum::<usize>();
+            progress(before);
+        }
+        let (cameras, worst): (Vec<CameraVerdict>, Vec<(bool, Worst)>) = judged.into_iter().unzip();
+        let (not_identifiable, ideal) = if alone || asked.extent == Extent::Margins {
+            demand::spared(Thing::Sections, Reason::NotAsked, 1);
+            (None, None)
+        } else {
+            demand::computed(Thing::Sections, 1);
+            let (found, scenes) = self.not_identifiable(
+                asked.seed,
+                &earlier.iter().filter_map(|one| one.ideal.as_ref()).collect::<Vec<_>>(),
+            )?;
+            (Some(found), Some(scenes))
+        };
+        let envelope = self.envelope_result();
+        let requirement = self.requirement(&cameras, &envelope, alone);
+        let companions =
+            if asked.extent == Extent::Everything { self.companions(&cameras)? } else { Vec::new() };
+        let mut constants: Vec<String> = Vec::new();
+        for study in self.candidates.iter().flat_map(|candidate| &candidate.near) {
+            constants.extend(study.constants(|_| true));
+        }
+        constants.sort_unstable();
+        constants.dedup();
+        let categories = &self.scenario.categories;
+        let safety = safety::rows(categories, &envelope, &cameras, self.required, &constants);
+        let answer = ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety };
+        Ok((answer, Earlier { apart: self, worst, ideal }))
     }
 }
 

@@ -16,7 +16,6 @@
 use super::super::Study;
 use super::apart::TellApart;
 use super::approach::Moving;
-use super::earlier::Earlier;
 use super::envelope::{all, scene_at};
 use super::results::{EmissivityError, IdealCamera, LightTime, Neighbourhood, NotIdentifiable};
 use hadar::demand::{self, Reason, Thing};
@@ -69,12 +68,12 @@ impl Scenes<'_> {
 }
 
 impl TellApart {
-    /// The share of the envelope in which an ideal camera does not tell the materials apart, and its scenes; those of an earlier clause where
-    /// they are the same.
+    /// The share of the envelope in which an ideal camera does not tell the materials apart, and its scenes; those that are `known`
+    /// where they are the same.
     pub(super) fn not_identifiable<'a>(
         &'a self,
         seed: u64,
-        earlier: &[Earlier<'a>],
+        known: &[&Scenes<'a>],
     ) -> Result<(NotIdentifiable, Scenes<'a>)> {
         let cameras: Vec<&Camera> = self.cameras().collect();
         let pixel_m = cameras.iter().map(|camera| camera.pixel_m).fold(0.0, f64::max);
@@ -90,11 +89,10 @@ impl TellApart {
                 Ok((study, bands, study.ranges(&self.envelope)?))
             })
             .collect::<Result<Vec<(&Study, Bands, Ranges)>>>()?;
-        let known = earlier.iter().filter_map(|one| one.ideal.as_ref()).find(|one| one.are_of(&of));
-        let scenes = match known {
+        let scenes = match known.iter().find(|one| one.are_of(&of)) {
             Some(known) => {
                 demand::spared(Thing::NearestSearches, Reason::Shared, known.drawn.len() as u64);
-                known.clone()
+                (*known).clone()
             }
             None => drawn(of, counts_per_radiance, seed)?,
         };

@@ -12,7 +12,7 @@ use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use crate::words::safety;
 use crate::words::shortfall::no;
-use hadar_scenario::rule::{Clause, Demand, Ground, Verdict};
+use hadar_scenario::rule::{Clause, Ground, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
     ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
@@ -220,7 +220,7 @@ fn in_a_word(verdict: Verdict, grade: Grade, conditions: &[Condition], fails_by:
 
 /// That what must be told apart may be anything, where the rule does not narrow it.
 fn look_alikes(rule: &Rule) -> Option<String> {
-    let tells = |clause: &&Clause| matches!(clause.demand, Demand::TellApart | Demand::FalseAlarm);
+    let tells = |clause: &&Clause| clause.demand.tells_apart();
     let mut silent = Vec::new();
     for clause in rule.clauses.iter().filter(tells) {
         let lines = &clause.scenario.source.lines;

@@ -1,0 +1,128 @@
+//! Rules beside each other, and what their clauses share.
+
+use crate::support::answers::same;
+use crate::support::folder::Folder;
+use crate::support::rules::{NIGHT, close};
+use serde_json::Value;
+
+/// Three clauses, of which the last two differ from the first by speed and by materials.
+fn three() -> String {
+    let clause = |name: &str, more: &str| format!("[[clause]]\nname = \"{name}\"\n{more}\n");
+    let fast = "[clause.stop]\nspeed = \"61 km/h\"\nlatency = \"0.5 s\"\ndeceleration = \"5 m/s^2\"\nstart = \"4.0 s\"";
+    let same = fast.replace("61", "60");
+    NIGHT.to_owned()
+        + &clause("own", "")
+        + &clause("same", &same)
+        + &clause("faster", fast)
+        + &clause("other", "[clause.alternatives]\nmaterials = [\"pmma\"]")
+}
+
+fn without_stats(mut answer: Value) -> Value {
+    answer.as_object_mut().unwrap().remove("stats");
+    answer
+}
+
+/// What clauses share is what each finds alone.
+#[test]
+fn what_clauses_share_changes_no_figure() {
+    let folder = Folder::with("");
+    folder.file("a.toml", &three());
+    let shared = folder.json(&["rule", "a.toml", "-q"]);
+    let each = folder.json(&["rule", "a.toml", "-q", "--no-skip"]);
+    assert!(shared["stats"]["worst_cases"]["spared"]["shared"] == 1, "{}", shared["stats"]);
+    same(&without_stats(shared.clone()), &without_stats(each), "");
+    let alone = |name: &str| {
+        let text = three();
+        let (head, clauses) = text.split_once("[[clause]]\n").unwrap();
+        let own = clauses.split("[[clause]]\n").find(|one| one.contains(name)).unwrap();
+        let file = format!("{name}.toml");
+        folder.file(&file, &format!("{head}[[clause]]\n{own}"));
+        folder.json(&["rule", &file, "-q"])["clauses"][0].clone()
+    };
+    for (index, name) in ["own", "same", "faster", "other"].into_iter().enumerate() {
+        let (together, alone) = (&shared["clauses"][index], alone(name));
+        assert_eq!(together["cameras"][0]["margin"], alone["cameras"][0]["margin"], "{name}");
+        let fraction = |clause: &Value| clause["not_identifiable"]["fraction"].as_f64().unwrap();
+        assert!(close(fraction(together), fraction(&alone), 1e-12), "{name}");
+    }
+}
+
+/// Every cell says what the rule alone says of the camera; none says 'yes' of a rule that is not in force or of a condition.
+#[test]
+fn rules_side_by_side_say_what_each_says_alone() {
+    let folder = Folder::with("");
+    let about = "[rule]\nname = \"R\"\nfrom = 2030-01-01\n[target]";
+    let ideal = NIGHT.replace("[\"flir-a325sc\"]", "[\"flir-a325sc\", \"ideal-pnrd\"]");
+    folder.file("a.toml", &ideal.replace("60 km/h", "6 km/h"));
+    folder.file("b.toml", &ideal.replace("[target]", about).replace("60 km/h", "6 km/h"));
+    folder.file("c.toml", &NIGHT.replace("\"aluminium\"", "\"pmma\""));
+    let asked = ["rule", "a.toml", "b.toml", "c.toml", "--on", "2026-11-29", "--out", "out"];
+    let both = folder.run(&asked);
+    assert_eq!(both.code, 0, "{}", both.stderr);
+    assert!(both.stdout.starts_with("None of 2 cameras meets all 3 rules."), "{}", both.stdout);
+    let table = std::fs::read_to_string(folder.path().join("out/laws.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.splitn(8, ',').collect()).collect();
+    assert_eq!(rows.len(), 5, "{table}");
+    for row in rows {
+        let alone = folder.json(&["rule", row[0], "--on", "2026-11-29", "-q"]);
+        let cameras = alone["cameras"].as_array().unwrap();
+        let own = cameras.iter().find(|camera| camera["name"] == row[1]).unwrap();
+        let open = own["conditions"].as_array().unwrap().iter().any(|one| one["favourable"] == true);
+        let expected = match (row[0], own["verdict"].as_str().unwrap(), open) {
+            ("b.toml", "meets", _) => "as if in force: yes",
+            (_, "meets", true) => "yes, if",
+            (_, "meets", false) => "yes",
+            (_, "undecided", _) => "undecided",
+            _ => "no",
+        };
+        assert_eq!(row[2], expected, "{row:?}");
+        assert!(close(row[3].parse().unwrap(), own["margin"].as_f64().unwrap(), 1e-12), "{row:?}");
+    }
+    // One camera before all, and what has no answer.
+    let judged = folder.run(&["rule", "a.toml", "c.toml", "--judge", "ideal-pnrd"]);
+    assert!(
+        judged.stdout.contains(" of 1 cameras") || judged.stdout.contains("alone of"),
+        "{}",
+        judged.stdout
+    );
+    assert!(!judged.stdout.contains("flir-a325sc"), "{}", judged.stdout);
+    assert!(folder.refusal(&["rule", "a.toml", "--judge", "flir-a325"]).contains("--judge cameras[0]: "));
+    let missing = folder.run(&["rule", "a.toml", "c.toml", "none.toml"]);
+    assert_eq!(missing.code, 1);
+    assert!(missing.stdout.contains("2 of 3 rules that have an answer"), "{}", missing.stdout);
+}
+
+/// A black target of 300.5 K before black walls of at most 299.5 K, seen with 50 mK of noise: a kelvin is ten times two deviations apart.
+#[test]
+fn contrast_is_the_kelvins_over_twice_the_noise() {
+    let text = |warmest: &str, more: &str| {
+        format!(
+            "[target]\nmaterial = \"black.csv\"\ntemperature = \"300.5 K\"\n[[environment]]\ntemperature = \"290 K\"\nlighting = 1.0\n\
+             [bands]\nranges = [[\"8 um\", \"12 um\"]]\n[[clause]]\nname = \"there\"\nkind = \"contrast\"\nbehind = [\"black.csv\"]\n{more}\
+             [clause.alternatives]\ntemperature = [\"280 K\", \"{warmest}\"]\n[[camera]]\nname = \"c\"\nspectral_range = [\"8 um\", \"12 um\"]\n\
+             pixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"18 mm\"\nnetd = \"50 mK\"\nnetd_temperature = \"300 K\"\nnetd_f_number = 1.0\n\
+             exposure = \"16 ms\"\n"
+        )
+    };
+    let black = "wavenumber_cm1,emissivity\n600,1\n1500,1\n";
+    let folder = Folder::with("");
+    folder.file("black.csv", black);
+    let distance = |warmest: &str| {
+        folder.file("a.toml", &text(warmest, ""));
+        let answer = folder.json(&["rule", "a.toml", "-q"]);
+        answer["clauses"][0]["cameras"][0]["statistical_distance"]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{answer}"))
+    };
+    assert!(close(distance("299.5 K"), 10.0, 0.01), "{}", distance("299.5 K"));
+    assert!(close(distance("297.5 K"), 30.0, 0.02));
+    // A wall as warm as the target hides it.
+    assert_eq!(distance("301 K"), 0.0);
+    folder.file(
+        "a.toml",
+        &text("299.5 K", "").replace("[clause.alternatives]\ntemperature = [\"280 K\", \"299.5 K\"]\n", ""),
+    );
+    assert!(folder.refusal(&["rule", "a.toml"]).contains("nothing says how warm that may be"));
+    folder.file("a.toml", &text("299.5 K", "").replace("behind = [\"black.csv\"]\n", ""));
+    assert!(folder.refusal(&["rule", "a.toml"]).contains("behind"));
+}
