@@ -93,8 +93,8 @@ pub use rule::{
     FiguresMoved, Fixes, Found, IdealCamera, LightTime, LimitingScene, Line, MarginUncertainty, Market,
     Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Moved, Neighbourhood, NotIdentifiable,
     NotInForce, NotPassed, Outcome, Proof, Quotable, Reformed, Reforms, RuleAnswer, RuleAsked,
-    RuleRequirement, RuleStudy, SafetyOfRule, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck,
-    TestResult, Told, WhoMeets, WithoutPlaceholders,
+    RuleRequirement, RuleStudy, SafetyOfRule, ShapesDrawn, StandIn, StandInAnswer, StandInScene, StopResult,
+    TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

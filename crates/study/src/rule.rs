@@ -45,7 +45,7 @@ pub use results::{
     StopResult, WhoMeets, WithoutPlaceholders,
 };
 pub use safety::SafetyOfRule;
-pub use stand_in::{StandIn, StandInAnswer, StandInScene};
+pub use stand_in::{ShapesDrawn, StandIn, StandInAnswer, StandInScene};
 pub use standing::{Outcome, Place as CameraBeforeClause, Reason as NotPassed};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
 

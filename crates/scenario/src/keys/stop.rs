@@ -1,7 +1,9 @@
 //! Tables of a rule about braking (`[stop]`) and about stand-ins for people (`[stand_in]`).
 
 use super::key::Silent::{Is, Means, Refused};
-use super::key::{KELVIN, Key, LENGTH, LENGTH_FROM_ZERO, MATERIALS, SPEED, TIME, Table, Value};
+use super::key::{
+    A_SHARE, KELVIN, Key, LENGTH, LENGTH_FROM_ZERO, MATERIALS, SPEED, TIME, Table, Value, WAVENUMBER,
+};
 use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::units::Dimension;
 
@@ -120,6 +122,22 @@ const STAND_IN_KEYS: &[Key] = &[
         "[0.0, 0.01, 0.02]",
         "Tolerances of its emissivity, for each of which the tolerance of its temperature is found.",
         "the distance stays below the demand for all errors within",
+    ),
+    Key::row(
+        "emissivity_error",
+        Value::Either(&[A_SHARE, Value::Text]),
+        Means("the very shape of its material"),
+        "\"0.005 absolute\"",
+        "Root mean square error of the shape of its spectrum, absolute: 0.005 of 1.",
+        "59 shapes are drawn; the least tolerance of all is one that 95 % of all shapes have",
+    ),
+    Key::row(
+        "correlation",
+        WAVENUMBER,
+        Means("10 cm^-1 beside emissivity_error"),
+        "\"50 cm^-1\"",
+        "Difference of wavenumbers over which these errors lose their correlation.",
+        "covariance s^2 exp(-|dnu|/l)",
     ),
 ];
 /// `[stand_in]`.

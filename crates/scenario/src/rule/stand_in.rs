@@ -1,12 +1,14 @@
 //! The `[stand_in]` of a rule: what is to pass for a person where cameras are tested, and how exactly its emissivity is known.
 //!
 //! `clause` names the one whose limit is turned round, where several tell people apart; `materials` it may be made of (silent: those of the rule's target), its `temperature` (silent: that of the target), and
-//! `emissivity`: tolerances, the same at all wavenumbers, for each of which the tolerance of its temperature is found.
+//! `emissivity`: tolerances, the same at all wavenumbers, for each of which the tolerance of its temperature is found. `emissivity_error` and
+//! `correlation` say how far the shape of its spectrum may be from the material's, as those of `[sensitivity]` do of what is measured.
 
-use crate::MaterialRef;
+use crate::emissivity_error;
 use crate::entries::Entries;
 use crate::paths::{Paths, material};
 use crate::section::{Entry, without_repetition};
+use crate::{MaterialRef, SensitivitySpec};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
@@ -26,11 +28,19 @@ pub struct StandInSpec {
     pub temperature_k: Option<f64>,
     /// Tolerances of its emissivity, in ascending order.
     pub emissivity: Vec<f64>,
+    /// How far the shape of its spectrum may be from that of its material; it has that very shape where `None`.
+    pub shape: Option<SensitivitySpec>,
 }
 
 impl Default for StandInSpec {
     fn default() -> Self {
-        Self { clause: None, materials: None, temperature_k: None, emissivity: EMISSIVITY.to_vec() }
+        Self {
+            clause: None,
+            materials: None,
+            temperature_k: None,
+            emissivity: EMISSIVITY.to_vec(),
+            shape: None,
+        }
     }
 }
 
@@ -60,9 +70,24 @@ impl StandInSpec {
             values.dedup();
             Ok(values)
         })?;
+        let error = emissivity_error::read(&section, emissivity_error::Of::Absolute)?;
+        let correlation_cm1 = section.quantity("correlation")?;
+        let shape = match (error, correlation_cm1) {
+            (None, None) => None,
+            (None, Some(_)) => {
+                let found = "how far errors of a shape reach, and not how large they are";
+                let error = Error::malformed(found, "write emissivity_error = \"0.005 absolute\" too");
+                return Err(section.fail("emissivity_error", error));
+            }
+            (Some(emissivity_error), correlation_cm1) => Some(SensitivitySpec {
+                emissivity_error,
+                correlation_cm1: correlation_cm1.unwrap_or(SensitivitySpec::default().correlation_cm1),
+            }),
+        };
         Ok(Self {
             clause,
             materials,
+            shape,
             temperature_k: section.quantity("temperature")?,
             emissivity: emissivity.unwrap_or_else(|| EMISSIVITY.to_vec()),
         })
@@ -77,5 +102,7 @@ impl StandInSpec {
             .put_if("materials", self.materials.as_ref().map(names))
             .put_quantity("temperature", Dimension::Temperature, self.temperature_k)
             .put("emissivity", self.emissivity.clone())
+            .put_if("emissivity_error", self.shape.map(|shape| shape.emissivity_error))
+            .put_quantity("correlation", Dimension::Wavenumber, self.shape.map(|shape| shape.correlation_cm1))
     }
 }

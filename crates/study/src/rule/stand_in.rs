@@ -10,6 +10,10 @@
 //! The person's lighting is within the envelope as the stand-in's is (of objects with ranges of their own: within what these have in common, or as the
 //! stand-in is lit), and its temperature where that is known: a stand-in outside is told.
 //!
+//! The shape of its spectrum is that of its material, or is off by errors of a deviation s and a correlation exp(−|Δν|/ℓ) (`emissivity_error`,
+//! `correlation`). Then so many shapes are drawn that the least tolerance of all is, with 95 % confidence, one that 95 % of all shapes
+//! have: 0.95^59 < 0.05 (Wilks, Ann. Math. Stat. 12, 91 (1941)). Nothing is proved of those.
+//!
 //! Proved is a ΔT a little smaller, at which the bound from above is no more than the demand. Cameras are taken from both ends of the
 //! distance, at one of which they count most, with the least noise of the envelope and with uncertain figures on all sides, as far as the
 //! rule guards them: what helps them to tell. Errors of emissivities (`[sensitivity]`) are not in it, and a warning says so. With air on the path, or
@@ -18,6 +22,7 @@
 use super::apart::{TellApart, steps};
 use super::uncertainty::Uncertain;
 use super::{Kind, NotInForce, RuleStudy};
+use crate::size::sensitivity::ripple::Ripple;
 use crate::{Study, Surface, Warning};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Nuisance, Unknowns};
@@ -30,13 +35,19 @@ use hadar::policy::stand_in::{Effort, Farthest, farthest};
 use hadar::root;
 use hadar::scene::State;
 use hadar_scenario::rule::{Demand, StandInSpec};
-use hadar_scenario::{Date, Envelope, MaterialRef, Scenario, Units};
+use hadar_scenario::{Date, Envelope, MaterialRef, Scenario, SensitivitySpec, Units};
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 
 /// Tolerances of the temperature are looked for up to here, K.
 const WIDEST_K: f64 = 40.0;
 /// Boxes whose corners a tolerance is solved with, and of a proof.
 const BOXES: usize = 17;
 const PROOF_BOXES: usize = 20_000;
+/// Shapes that are drawn, and the share of all shapes for which the least of them stands, with that confidence.
+const SHAPES: usize = 59;
+const SHARE: f64 = 0.95;
+const SEED: u64 = 1;
 /// Share of the demand up to which a tolerance is proved.
 const PROVED: f64 = 0.99;
 
@@ -56,6 +67,8 @@ pub struct StandInAnswer {
     pub temperature_k: f64,
     /// Every camera, person, material and tolerance of the emissivity.
     pub rows: Vec<StandIn>,
+    /// How far the shapes of its spectrum are off, where they are.
+    pub shape: Option<ShapesDrawn>,
     /// Whether all pixels of the object tell together, not one.
     pub of_object: bool,
     /// What the reader must know.
@@ -69,6 +82,22 @@ pub struct StandInAnswer {
     /// Units of the rule.
     #[serde(skip)]
     pub units: Units,
+}
+
+/// Shapes of spectra that were drawn.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+#[non_exhaustive]
+pub struct ShapesDrawn {
+    /// Root mean square error of the emissivity.
+    pub emissivity_error: f64,
+    /// Difference of wavenumbers over which the errors lose their correlation, cm⁻¹.
+    pub correlation_cm1: f64,
+    /// How many were drawn; a tolerance is the least of theirs.
+    pub count: usize,
+    /// Share of all such shapes that have at least the tolerance.
+    pub share: f64,
+    /// How sure that is.
+    pub confidence: f64,
 }
 
 /// One stand-in before one camera.
@@ -115,7 +144,8 @@ pub struct StandInScene {
 /// A camera before one person and one stand-in, from one distance.
 struct Before<'a> {
     study: &'a Study,
-    stand_in: &'a Surface,
+    /// Emissivities of the stand-in: its material's own, or shapes about it.
+    shapes: Vec<Vec<f64>>,
     counting: hadar::fisher::Counting,
     envelope: &'a Envelope,
     required: f64,
@@ -171,14 +201,14 @@ impl RuleStudy {
                 let (camera, ends, index, stand_in, tolerance) = &part[i];
                 let before = ends.iter().map(|study| {
                     let stand_in = &study.alternatives[*index];
-                    Before::new(study, stand_in, apart, person_k, temperature_k)
+                    Before::new(study, shapes(study, stand_in, spec.shape), apart, person_k, temperature_k)
                 });
                 let before = undominated(before.collect::<Result<Vec<_>>>()?);
                 // Between two ends of a plain sight nothing is counted more than at one of them.
                 let z = |study: &Study| study.scenario.target.distance_m;
                 let provable = plain(&apart.scenario) || ends.iter().all(|study| z(study) == z(&ends[0]));
                 let names = [camera.as_str(), &ends[0].target.name, &stand_in.name];
-                row(&before, names.map(str::to_owned), *tolerance, provable)
+                row(&before, names.map(str::to_owned), *tolerance, provable && spec.shape.is_none())
             })?;
             rows.extend(done);
             progress(rows.len(), all);
@@ -195,6 +225,13 @@ impl RuleStudy {
             detection_probability: detection::probability(apart.required),
             person_k,
             temperature_k,
+            shape: spec.shape.map(|shape| ShapesDrawn {
+                emissivity_error: shape.emissivity_error,
+                correlation_cm1: shape.correlation_cm1,
+                count: SHAPES,
+                share: SHARE,
+                confidence: 1.0 - SHARE.powi(SHAPES as i32),
+            }),
             of_object: apart.scenario.is_of_object(),
             rows,
             units: scenario.units(),
@@ -317,7 +354,7 @@ fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<V
 impl<'a> Before<'a> {
     fn new(
         study: &'a Study,
-        stand_in: &'a Surface,
+        shapes: Vec<Vec<f64>>,
         apart: &'a TellApart,
         person_k: [f64; 2],
         temperature_k: f64,
@@ -340,7 +377,7 @@ impl<'a> Before<'a> {
             lighting.fold(study.range.lighting, |[a, b], [low, high]| [a.max(*low), b.min(*high)]);
         // Without one a person is lit as the stand-in is.
         let person_lighting = Some(person_lighting).filter(|[low, high]| low <= high);
-        Ok(Self { study, stand_in, counting, envelope, required, person_k, person_lighting, temperature_k })
+        Ok(Self { study, shapes, counting, envelope, required, person_k, person_lighting, temperature_k })
     }
 
     /// How wide a tolerance of the temperature may be, K; below 0 where the stand-in is no person's temperature, and that is known.
@@ -353,10 +390,16 @@ impl<'a> Before<'a> {
         }
     }
 
-    /// The farthest within tolerances.
-    fn farthest(&self, emissivity: f64, temperature_k: f64, effort: &Effort) -> Result<Farthest> {
+    /// The farthest of a shape within tolerances.
+    fn farthest(
+        &self,
+        shape: usize,
+        [emissivity, temperature_k]: [f64; 2],
+        effort: &Effort,
+    ) -> Result<Farthest> {
         let study = self.study;
-        let own = self.stand_in.emissivity.iter().copied();
+        let shape = &self.shapes[shape];
+        let own = shape.iter().copied();
         let least = own.clone().fold(f64::INFINITY, f64::min);
         let most = own.fold(0.0, f64::max);
         // What no surface can be is not within a tolerance.
@@ -373,7 +416,7 @@ impl<'a> Before<'a> {
         let scene = EnvelopeScene {
             bands: &study.bands,
             surroundings: &study.surroundings,
-            emissivity: &self.stand_in.emissivity,
+            emissivity: shape,
             alternative: &study.target.emissivity,
             counting: &self.counting,
             unknowns: &unknowns,
@@ -388,6 +431,18 @@ fn widest_k(temperature_k: f64) -> f64 {
     WIDEST_K.min(0.5 * temperature_k)
 }
 
+/// Emissivities of a stand-in: its material's own, or so many shapes about it.
+fn shapes(study: &Study, stand_in: &Surface, error: Option<SensitivitySpec>) -> Vec<Vec<f64>> {
+    let Some(error) = error else { return vec![stand_in.emissivity.clone()] };
+    let ripple = Ripple::new(study.bands.nodes_cm1(), error.emissivity_error, error.correlation_cm1);
+    let drawn = |shape: usize| {
+        let mut random = ChaCha8Rng::seed_from_u64(SEED);
+        random.set_stream(shape as u64);
+        ripple.applied(&stand_in.emissivity, &mut random)
+    };
+    (0..SHAPES).map(drawn).collect()
+}
+
 fn row(
     ends: &[Before<'_>],
     [camera, person, material]: [String; 3],
@@ -396,10 +451,10 @@ fn row(
 ) -> Result<StandIn> {
     let required = ends.first().map_or(f64::NAN, |before| before.required);
     let widest_k = ends.first().map_or(0.0, Before::widest_k);
-    let of = |temperature_k: f64, effort: &Effort| -> Result<Farthest> {
+    let of = |shape: usize, temperature_k: f64, effort: &Effort| -> Result<Farthest> {
         let mut worst: Option<Farthest> = None;
         for before in ends {
-            let found = before.farthest(tolerance, temperature_k, effort)?;
+            let found = before.farthest(shape, [tolerance, temperature_k], effort)?;
             let upper_bound = worst.as_ref().map_or(0.0, |known| known.upper_bound).max(found.upper_bound);
             let farther = worst.as_ref().is_none_or(|known| found.distance > known.distance);
             worst = Some(if farther { found } else { worst.unwrap_or(found) });
@@ -410,28 +465,37 @@ fn row(
         worst.ok_or_else(|| Error::malformed("a stand-in before no camera", "report this as a bug"))
     };
     let search = Effort { relative_tolerance: 0.0, boxes: BOXES, enough: None };
-    let edge_of = |demanded: f64| -> Result<Option<f64>> {
-        let excess = |k: f64| Ok(of(k, &search)?.distance / demanded - 1.0);
-        if widest_k < 0.0 {
+    // The widest tolerance of a shape, no more than one that is wide enough.
+    let edge_of = |shape: usize, demanded: f64, enough_k: f64| -> Result<Option<f64>> {
+        let excess = |k: f64| Ok(of(shape, k, &search)?.distance / demanded - 1.0);
+        if enough_k < 0.0 {
             return Ok(None);
+        }
+        let widest = excess(enough_k)?;
+        if widest <= 0.0 {
+            return Ok(Some(enough_k));
         }
         let at_once = excess(0.0)?;
         if at_once >= 0.0 {
             return Ok(None);
         }
-        let widest = excess(widest_k)?;
-        if widest <= 0.0 {
-            return Ok(Some(widest_k));
-        }
-        root::crossing_between([0.0, at_once], [widest_k, widest], excess).map(Some)
+        root::crossing_between([0.0, at_once], [enough_k, widest], excess).map(Some)
     };
-    let edge = edge_of(required)?;
-    let at = of(edge.unwrap_or(0.0), &search)?;
+    // The least of all shapes.
+    let (mut edge, mut hardest) = (Some(widest_k), 0);
+    for shape in 0..ends.first().map_or(0, |before| before.shapes.len()) {
+        let Some(enough_k) = edge else { break };
+        let own = edge_of(shape, required, enough_k)?;
+        if own.is_none_or(|own| own < enough_k) {
+            (edge, hardest) = (own, shape);
+        }
+    }
+    let at = of(hardest, edge.unwrap_or(0.0), &search)?;
     let proof = Effort { relative_tolerance: 0.0, boxes: PROOF_BOXES, enough: Some(required) };
     let mut proved = None;
     if provable && edge.is_some() {
-        let inner = edge_of(PROVED * required)?;
-        let holds = |k: f64| Ok::<_, Error>(of(k, &proof)?.upper_bound <= required);
+        let inner = edge_of(hardest, PROVED * required, widest_k)?;
+        let holds = |k: f64| Ok::<_, Error>(of(hardest, k, &proof)?.upper_bound <= required);
         proved = match inner {
             Some(k) if holds(k)? => Some(k),
             _ => None,

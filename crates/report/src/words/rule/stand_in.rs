@@ -4,7 +4,7 @@ use super::text::idle;
 use crate::text::columns::aligned;
 use crate::text::footing::warnings;
 use crate::text::significant;
-use crate::words::probability::reliability;
+use crate::words::probability::{percent, reliability};
 use hadar_study::warning::Code;
 use hadar_study::{StandIn, StandInAnswer};
 use std::fmt::Write as _;
@@ -32,7 +32,10 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
             row.person.clone(),
             row.material.clone(),
             significant(row.emissivity_tolerance, 2),
-            tolerance(row.temperature_tolerance_k),
+            match (row.temperature_tolerance_k, answer.shape) {
+                (None, Some(_)) => "none".into(),
+                (kelvin, _) => tolerance(kelvin),
+            },
             match (row.temperature_tolerance_k, row.temperature_tolerance_proved_k) {
                 (None, _) => "-".into(),
                 (Some(_), None) => "no".into(),
@@ -48,12 +51,29 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
     let _ = write!(
         out,
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
-         as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \
-         by what {by} are other questions, and tell more\n"
+         as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  {}\n  \
+         by what {by} are other questions, and tell more\n",
+        shapes(answer)
     );
     let others = answer.warnings.iter().filter(|warning| warning.code() != Code::NotInForce);
     out.push_str(&warnings(&others.cloned().collect::<Vec<_>>()));
     out
+}
+
+/// What the shapes of the spectra are.
+fn shapes(answer: &StandInAnswer) -> String {
+    match answer.shape {
+        None => "the shape of its spectrum is exactly that of the material named; emissivity_error in [stand_in] takes one that is not".into(),
+        Some(shape) => format!(
+            "the shape of its spectrum is off by {} (rms), correlated over {} cm^-1: the least tolerance of {} shapes that were drawn, which {} of\n  \
+             all such shapes have (with {} confidence); nothing is proved of them",
+            significant(shape.emissivity_error, 3),
+            significant(shape.correlation_cm1, 3),
+            shape.count,
+            percent(shape.share),
+            percent(shape.confidence),
+        ),
+    }
 }
 
 /// What is asked of a stand-in, in a sentence.
@@ -63,17 +83,24 @@ fn sentence(answer: &StandInAnswer) -> String {
     let told: Vec<&StandIn> =
         answer.rows.iter().filter(|row| row.temperature_tolerance_k.is_none()).collect();
     let [passing, all] = [passes.len(), answer.rows.len()];
+    // Of drawn shapes some may be told where others pass.
+    let shapes = if answer.shape.is_some() { "95 % of the shapes of " } else { "" };
     match (passes.first(), told.first()) {
+        (None, _) if answer.shape.is_some() => {
+            "Of no stand-in do 95 % of the shapes surely pass for a person, even at its very temperature."
+                .into()
+        }
         (None, _) => "Every stand-in is told from a person, even at its very temperature.".into(),
         (Some(_), None) if answer.without_errors => format!(
-            "All {all} stand-ins pass for a person if spectra are exact and their temperatures are within the tolerances below; errors of \
+            "{shapes}All {all} stand-ins pass for a person if spectra are exact and their temperatures are within the tolerances below; errors of \
              the emissivities are not in it."
         ),
         (Some(_), None) => format!(
-            "No camera tells any of these {all} stand-ins from a person, if their temperatures are within the tolerances below."
+            "No camera tells {shapes}any of these {all} stand-ins from a person, if their temperatures are within the tolerances below."
         ),
         (Some(_), Some(_)) => format!(
-            "{passing} of {all} stand-ins pass for a person before their camera, within the tolerances below; the others are told."
+            "{shapes}{passing} of {all} stand-ins pass for a person before their camera, within the tolerances below; the others are told{}.",
+            if answer.shape.is_some() { ", or some of their shapes are" } else { "" }
         ),
     }
 }
