@@ -23,7 +23,7 @@ pub(crate) struct Pack {
     file: &'static str,
     /// What it is called.
     name: String,
-    /// Whether it is law, a draft, an example.
+    /// Whether it is law, a draft, postponed; empty where it does not say.
     status: String,
     /// The file.
     text: &'static str,
@@ -58,6 +58,6 @@ mod tests {
         }
         // The example is in another folder.
         assert_eq!(found + 1, PACKS.len());
-        assert!(all().unwrap().iter().all(|pack| !pack.status.is_empty() && !pack.name.contains(".toml")));
+        assert!(all().unwrap().iter().all(|pack| !pack.name.contains(".toml")));
     }
 }

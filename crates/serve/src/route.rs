@@ -108,8 +108,7 @@ pub(crate) enum Begun {
 
 /// Reads a question and looks up what its scenario or its rule names.
 pub(crate) fn begun(path: &str, body: &[u8], engine: &Engine) -> Begun {
-    let of_scenario =
-        |wanted| read(body).map(|ask: Ask| Asked::Scenario(wanted, engine.prepare(ask)));
+    let of_scenario = |wanted| read(body).map(|ask: Ask| Asked::Scenario(wanted, engine.prepare(ask)));
     let asked = match path {
         "/ask" => of_scenario(Wanted::Ask),
         "/json" => of_scenario(Wanted::Json),

@@ -13,7 +13,7 @@ use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::rule::{self, Output, rows};
 use hadar_scenario::rule::Reform;
 use hadar_scenario::{Date, Rule, Written, day};
-use hadar_study::{Reforms, RuleAnswer, RuleAsked, RuleStudy};
+use hadar_study::{ClauseAnswer, Reforms, RuleAnswer, RuleAsked, RuleStudy};
 use serde::{Deserialize, Serialize};
 
 /// What a rule of the page is called in its report.
@@ -79,8 +79,10 @@ struct Answered<T> {
 #[derive(Debug, Serialize)]
 struct Answer {
     shown: rows::Shown,
-    /// What each camera's verdict rests on; those that rest on nothing are left out.
+    /// What each camera's verdict on the whole rule rests on; those that rest on nothing are left out.
     conditions: Vec<RestsOn>,
+    /// Clause by clause and camera by camera, what its verdict rests on.
+    clauses_rest_on: Vec<Vec<Vec<Said>>>,
     warnings: Vec<Said>,
     /// Reforms that can be held beside the rule.
     reforms: Vec<Offered>,
@@ -204,6 +206,7 @@ impl Engine {
         Ok(Answer {
             shown: rows::of(&answer),
             conditions: rests_on(&answer),
+            clauses_rest_on: answer.clauses.iter().map(clause_rests_on).collect(),
             warnings: rows::warnings(&answer).iter().map(Said::from).collect(),
             reforms: study.rule().reforms.iter().map(offered).collect(),
             pictures: bundle.drawings()?,
@@ -233,7 +236,8 @@ impl Engine {
 /// The day of a question.
 fn asked_day(on: Option<&str>) -> Result<Option<Date>> {
     let Some(text) = on.map(str::trim).filter(|text| !text.is_empty()) else { return Ok(None) };
-    let wrong = || Error::malformed(format!("`{text}` is no day"), "write year, month and day, as in 2029-09-01");
+    let wrong =
+        || Error::malformed(format!("`{text}` is no day"), "write year, month and day, as in 2029-09-01");
     day(text).map(Some).ok_or_else(wrong)
 }
 
@@ -250,6 +254,10 @@ fn rests_on(answer: &RuleAnswer) -> Vec<RestsOn> {
         conditions: camera.conditions.iter().map(Said::from).collect(),
     });
     of_camera.filter(|one| !one.conditions.is_empty()).collect()
+}
+
+fn clause_rests_on(clause: &ClauseAnswer) -> Vec<Vec<Said>> {
+    clause.lines().iter().map(|line| line.conditions.iter().map(Said::from).collect()).collect()
 }
 
 fn offered(reform: &Reform) -> Offered {

@@ -96,7 +96,7 @@ function show(question, answer) {
   at("market").textContent = told.market ?? "";
   showClauses(told);
   showReforms(answer.reforms);
-  at("scenes").replaceChildren(...told.clauses.flatMap((clause) => scenesOf(clause, told.cameras)));
+  at("scenes").replaceChildren(...told.clauses.flatMap((clause, index) => scenesOf(clause, told.cameras, answer.clauses_rest_on[index])));
   at("pictures").replaceChildren(...answer.pictures.map(pictureOf));
   at("conditions").hidden = answer.conditions.length === 0;
   at("condition-rows").replaceChildren(...answer.conditions.flatMap(conditionsOf));
@@ -125,20 +125,21 @@ function showClauses(told) {
   at("clause-rows").replaceChildren(...rows);
 }
 
-function scenesOf(clause, cameras) {
-  const said = [clause.text, clause.sentence, clause.stop && `Stop: ${clause.stop}.`, `Demanded: ${clause.demanded}.`, ...clause.remarks];
-  const row = (one, index) => rowOf(cameras[index], [
-    element("td", { className: TOLD[one.verdict] ?? "" }, one.full), cell(one.margin, "number"), cell(one.evidence), cell(one.scene),
-    cell(one.would_do || "-"),
-  ]);
-  const heads = headed(["camera", "meets the clause", "margin", "evidence", "hardest scene", "what would do"]);
-  const name = `${clause.name} (${clause.kind})`;
-  const table = element("table", {}, element("caption", { className: "hidden" }, name), element("thead", {}, heads),
-    element("tbody", {}, ...clause.cells.map(row)));
+// A clause camera by camera: what comes of it, where it is hardest, and what would help.
+function scenesOf(clause, cameras, rests) {
+  const said = [clause.text, clause.demanded, clause.stop && `Stop: ${clause.stop}.`, clause.sentence, ...clause.remarks];
+  const folded = (name, ...content) => element("details", {}, element("summary", {}, name), ...content);
+  const ofCamera = (one, index) => element(
+    "div", { className: "scene" }, element("h4", {}, cameras[index]),
+    element("p", {}, element("strong", { className: TOLD[one.verdict] ?? "" }, one.full), ` (margin ${one.margin}, ${one.evidence})`),
+    element("p", {}, `Hardest scene: ${one.scene}.`),
+    ...(rests[index].length > 0 ? [folded(`What this rests on (${rests[index].length})`, element("ul", {}, ...rests[index].map(warningItem)))] : []),
+    ...(one.would_do ? [folded("What would do", element("p", {}, one.would_do))] : []),
+  );
   return [
-    element("h3", {}, name),
+    element("h3", {}, `${clause.name} (${clause.kind})`),
     ...said.filter(Boolean).map((sentence) => element("p", { className: "faint" }, sentence)),
-    element("div", { className: "wide", tabIndex: 0, role: "group", "aria-label": name }, table),
+    ...clause.cells.map(ofCamera),
   ];
 }
 
@@ -160,15 +161,15 @@ function showReforms(offered) {
 function switchOf(offered, index) {
   const id = `reform:${index}`;
   const box = element("input", { type: "checkbox", id, "aria-describedby": `${id}:says` });
-  box.addEventListener("change", () => turn(index, box));
+  box.addEventListener("change", () => turn(box));
   const from = offered.from ? `from ${offered.from}` : null;
   const about = [from, offered.status].filter(Boolean).join(", ");
   const says = element("p", { id: `${id}:says`, className: "faint" }, about);
-  const found = element("p", { id: `${id}:found`, hidden: true });
+  const found = element("p", { id: `${id}:found`, role: "status" });
   return element("div", { className: "switch" }, element("label", { htmlFor: id }, box, offered.name), says, found);
 }
 
-async function turn(index, box) {
+async function turn(box) {
   at("reforms-error").hidden = true;
   if (!box.checked) at("reforms-done").textContent = "The reform is switched off; the table is of the rule as it is.";
   else if (!reforms) at("reforms-done").textContent = "Computing every camera by every reform.";
@@ -181,7 +182,7 @@ async function turn(index, box) {
     if (found.error) return reformsFailed(found.error.message);
     reforms = found.answer;
   }
-  if (reforms) showSwitched(box.checked ? index : null);
+  if (reforms) showSwitched(box.checked);
 }
 
 function reformsFailed(message) {
@@ -191,18 +192,17 @@ function reformsFailed(message) {
   at("reforms-error").hidden = false;
 }
 
-function showSwitched(last) {
+function showSwitched(switchedOn) {
   const rows = [];
   reforms.reforms.forEach((reform, index) => {
     const on = at(`reform:${index}`).checked;
     const found = at(`reform:${index}:found`);
-    found.hidden = !on;
-    found.textContent = `${reform.changes} ${reform.sets}`;
+    found.textContent = on ? `${reform.changes} ${reform.sets}` : "";
     if (on) rows.push(rowOf(`by ${reform.name}, alone`, reform.cells.map(changeOf), "reform"));
   });
   at("reform-rows").replaceChildren(...rows);
   at("save-reforms").hidden = rows.length === 0;
-  if (last !== null) at("reforms-done").textContent = `${reforms.reforms[last].changes} ${reforms.beside}`;
+  if (switchedOn) at("reforms-done").textContent = reforms.beside;
 }
 
 const changeOf = (one) => element(

@@ -204,7 +204,12 @@ pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
 }
 
 /// A verdict in a cell.
-pub(super) fn in_a_word(verdict: Verdict, grade: Grade, conditions: &[Condition], fails_by: &[Shortfall]) -> String {
+pub(super) fn in_a_word(
+    verdict: Verdict,
+    grade: Grade,
+    conditions: &[Condition],
+    fails_by: &[Shortfall],
+) -> String {
     match verdict {
         Verdict::Meets => match Condition::open(conditions).count() {
             0 => format!("yes ({})", grade.name()),

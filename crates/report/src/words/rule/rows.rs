@@ -6,7 +6,6 @@ use super::reforms::verdict;
 use super::stop::decisions;
 use super::{in_words_of_kind, measured, sources, text};
 use crate::text::significant;
-use crate::words::probability::demanded;
 use crate::words::{Say, safety};
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
@@ -59,7 +58,7 @@ pub struct ClauseShown {
     pub text: Option<String>,
     /// Which cameras meet it.
     pub sentence: String,
-    /// What it demands.
+    /// What it demands, in a sentence that can be quoted.
     pub demanded: String,
     /// Where and when the decision must stand.
     pub stop: Option<String>,
@@ -137,12 +136,12 @@ fn of_clause(clause: &ClauseAnswer, units: Units) -> ClauseShown {
     let kind = in_words_of_kind(clause.kind).to_owned();
     let (demanded, remarks, cells) = match &clause.found {
         Found::Apart(apart) => (
-            demanded(apart.requirement.distance),
+            apart.requirement.quotable.say(),
             safety::of_rule(&apart.safety),
             apart.cameras.iter().map(|camera| of_apart(camera, clause, units)).collect(),
         ),
         Found::Measured(measured) => (
-            measured.definition.say(),
+            format!("Demanded: {}.", measured.definition.say()),
             Vec::new(),
             measured.cameras.iter().map(|camera| of_measured(camera, units)).collect(),
         ),

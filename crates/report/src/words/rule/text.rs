@@ -19,8 +19,8 @@ use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{
-    ApartAnswer, CameraAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce, RuleAnswer,
-    RuleStudy, Shortfall, Warning,
+    ApartAnswer, CameraAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce,
+    RuleAnswer, RuleStudy, Shortfall, Warning,
 };
 use std::fmt::Write as _;
 
