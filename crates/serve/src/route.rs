@@ -92,8 +92,8 @@ pub(crate) struct Question(Asked);
 
 #[derive(Debug)]
 enum Asked {
-    Scenario(Wanted, Prepared),
-    Rule(PreparedRule),
+    Scenario(Wanted, Box<Prepared>),
+    Rule(Box<PreparedRule>),
     Reforms(PreparedReforms),
 }
 
@@ -103,22 +103,23 @@ pub(crate) enum Begun {
     /// There is nothing to compute.
     Replied(Reply),
     /// There is.
-    Prepared(Box<Question>),
+    Prepared(Question),
 }
 
 /// Reads a question and looks up what its scenario or its rule names.
 pub(crate) fn begun(path: &str, body: &[u8], engine: &Engine) -> Begun {
-    let of_scenario = |wanted| read(body).map(|ask: Ask| Asked::Scenario(wanted, engine.prepare(ask)));
+    let of_scenario =
+        |wanted| read(body).map(|ask: Ask| Asked::Scenario(wanted, Box::new(engine.prepare(ask))));
     let asked = match path {
         "/ask" => of_scenario(Wanted::Ask),
         "/json" => of_scenario(Wanted::Json),
         "/report" => of_scenario(Wanted::Report),
-        "/rule" => read(body).map(|ask| Asked::Rule(engine.prepare_rule(ask))),
+        "/rule" => read(body).map(|ask| Asked::Rule(Box::new(engine.prepare_rule(ask)))),
         "/rule/reforms" => read(body).map(|ask| Asked::Reforms(engine.prepare_reforms(&ask))),
         _ => Err(NOT_HERE),
     };
     match asked {
-        Ok(asked) => Begun::Prepared(Box::new(Question(asked))),
+        Ok(asked) => Begun::Prepared(Question(asked)),
         Err(refusal) => Begun::Replied(Reply::refused(refusal)),
     }
 }
@@ -142,10 +143,10 @@ impl Question {
     /// Computes the answer.
     pub(crate) fn reply(self, engine: &Engine) -> Reply {
         match self.0 {
-            Asked::Scenario(Wanted::Ask, prepared) => Reply::answered(JSON, engine.answer(prepared)),
-            Asked::Scenario(Wanted::Json, prepared) => Reply::answered(JSON, engine.json(prepared)),
-            Asked::Scenario(Wanted::Report, prepared) => Reply::answered(HTML, engine.report(prepared)),
-            Asked::Rule(prepared) => Reply::answered(JSON, engine.rule_answer(prepared)),
+            Asked::Scenario(Wanted::Ask, prepared) => Reply::answered(JSON, engine.answer(*prepared)),
+            Asked::Scenario(Wanted::Json, prepared) => Reply::answered(JSON, engine.json(*prepared)),
+            Asked::Scenario(Wanted::Report, prepared) => Reply::answered(HTML, engine.report(*prepared)),
+            Asked::Rule(prepared) => Reply::answered(JSON, engine.rule_answer(*prepared)),
             Asked::Reforms(prepared) => Reply::answered(JSON, engine.reforms_answer(prepared)),
         }
     }

@@ -159,8 +159,7 @@ impl Engine {
         let looked_up = self.rule_study(&written).and_then(|law| {
             let reforms = &law.rule().reforms;
             // What one of them sets is told by its name when it is computed.
-            let each = reforms.iter().map(|reform| self.rule_study(&written.with(reform.set.clone())));
-            each.map(|study| study.map(drop)).collect::<Result<()>>()
+            reforms.iter().try_for_each(|reform| self.rule_study(&written.with(reform.set.clone())).map(drop))
         });
         PreparedReforms(looked_up.map(|()| written))
     }
