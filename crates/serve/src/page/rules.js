@@ -73,7 +73,7 @@ async function ask() {
 function failed({ message, line }) {
   shown = reforms = null;
   at("answer").hidden = true;
-  at("sentence").textContent = "No answer: the rule cannot be computed as it stands.";
+  at("sentence").textContent = "There is no answer.";
   at("error").textContent = message;
   at("error").hidden = false;
   if (line) at("rule").setAttribute("aria-invalid", "true");

@@ -25,7 +25,7 @@ pub struct ReformShown {
     pub cells: Vec<Change>,
 }
 
-/// A camera by the rule as it is and by a reform.
+/// A camera by the rule as it is and by a reform, as a page shows it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Change {

@@ -16,7 +16,7 @@ use hadar_study::{
 pub use super::certificate::WORDS;
 pub use super::reforms::{BESIDE, Change, ReformShown, shown as reforms};
 
-/// An answer in the words that it is shown in.
+/// The answer to a rule as a page shows it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Shown {
@@ -46,7 +46,7 @@ pub struct Shown {
     pub tests: Option<String>,
 }
 
-/// A clause before all cameras.
+/// A clause before all cameras, as a page shows it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ClauseShown {
@@ -68,7 +68,7 @@ pub struct ClauseShown {
     pub cells: Vec<Cell>,
 }
 
-/// A camera before a clause, or before all of them.
+/// A camera before a clause, or before all of them, as a page shows it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Cell {
