@@ -1,10 +1,10 @@
 //! The page as a client sees it, byte by byte: its own requests are answered as by the engine, all others are refused, and nothing
 //! that is sent brings it down.
 
-use crate::support::{SCENARIO, get, post, post_with, sent, server};
+use crate::support::{SCENARIO, get, paths_of_files, post, post_with, sent, server};
 use hadar::material::Library;
 use hadar_scenario::Scenario;
-use hadar_scenario::keys::{FILES, Table, Value};
+use hadar_scenario::keys::FILES;
 use hadar_serve::Engine;
 use hadar_study::Study;
 use serde_json::{Value as Json, json};
@@ -58,30 +58,6 @@ fn a_field_that_is_set_is_in_the_text_and_in_the_answer() {
         broken["answer"].is_null() && broken["form"].is_null() && broken["error"]["line"] == 1,
         "{broken}"
     );
-}
-
-/// The paths of all keys of a scenario at which a file may be named, with what to write there.
-fn paths_of_files(table: &Table, above: &str, found: &mut Vec<(String, bool)>) {
-    fn names_files(value: &Value) -> Option<bool> {
-        match value {
-            Value::File | Value::Material | Value::NumberOrFile(_) => Some(false),
-            Value::List(of) | Value::Pair(of) => names_files(of).map(|_| true),
-            Value::Either(kinds) => kinds.iter().find_map(names_files),
-            _ => None,
-        }
-    }
-    for key in table.keys() {
-        let path = format!("{above}{}", key.name);
-        if let Some(list) = names_files(&key.value) {
-            found.push((path.clone(), list));
-        }
-        match (key.value.table(), key.value) {
-            (Some(inner), Value::Tables(_)) => paths_of_files(inner, &format!("{path}[0]."), found),
-            (Some(inner), Value::Named(_)) => paths_of_files(inner, &format!("{path}.own."), found),
-            (Some(inner), _) => paths_of_files(inner, &format!("{path}."), found),
-            _ => {}
-        }
-    }
 }
 
 /// Whether a file is there or not, readable or not, cannot be told from outside: no key of a scenario reaches one.

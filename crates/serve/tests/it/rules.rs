@@ -1,10 +1,10 @@
 //! The page for rules: its answers are those of the engine, it says no 'yes' that the engine does not, and no rule of it reads a file.
 
-use crate::support::{get, post, post_with, server};
+use crate::support::{get, paths_of_files, post, post_with, server};
 use hadar::material::Library;
 use hadar_report::json::value;
 use hadar_report::rule::{self, Output};
-use hadar_scenario::keys::{FILES, Table, Value};
+use hadar_scenario::keys::FILES;
 use hadar_scenario::{Rule, Written, day};
 use hadar_study::{Reforms, RuleAnswer, RuleAsked, RuleStudy};
 use serde_json::{Value as Json, json};
@@ -170,30 +170,6 @@ fn what_is_wrong_is_one_message() {
         .collect();
     for large in [finer, BRIEF.to_owned() + &many] {
         wrong(&large, "", "more than this page computes; take fewer, or ask `hadar rule`");
-    }
-}
-
-/// The paths of all keys of a rule at which a file may be named, and whether in a list.
-fn paths_of_files(table: &Table, above: &str, found: &mut Vec<(String, bool)>) {
-    fn names_files(value: &Value) -> Option<bool> {
-        match value {
-            Value::File | Value::Material | Value::NumberOrFile(_) => Some(false),
-            Value::List(of) | Value::Pair(of) => names_files(of).map(|_| true),
-            Value::Either(kinds) => kinds.iter().find_map(names_files),
-            _ => None,
-        }
-    }
-    for key in table.keys() {
-        let path = format!("{above}{}", key.name);
-        if let Some(list) = names_files(&key.value) {
-            found.push((path.clone(), list));
-        }
-        match (key.value.table(), key.value) {
-            (Some(inner), Value::Tables(_)) => paths_of_files(inner, &format!("{path}[0]."), found),
-            (Some(inner), Value::Named(_)) => paths_of_files(inner, &format!("{path}.own."), found),
-            (Some(inner), _) => paths_of_files(inner, &format!("{path}."), found),
-            _ => {}
-        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! A server of the test program, and its clients, byte by byte.
 
 use hadar::material::Library;
+use hadar_scenario::keys::{Table, Value};
 use hadar_serve::Engine;
 use serde_json::Value as Json;
 use std::io::{Read, Write};
@@ -60,4 +61,28 @@ pub(crate) fn post_with(path: &str, headers: &str, body: &str) -> (u16, String) 
 pub(crate) fn post(path: &str, body: &Json) -> (u16, String) {
     let headers = format!("Host: {}\r\nContent-Type: application/json\r\n", server());
     post_with(path, &headers, &body.to_string())
+}
+
+/// The paths of all keys of a table at which a file may be named, with what to write there.
+pub(crate) fn paths_of_files(table: &Table, above: &str, found: &mut Vec<(String, bool)>) {
+    fn names_files(value: &Value) -> Option<bool> {
+        match value {
+            Value::File | Value::Material | Value::NumberOrFile(_) => Some(false),
+            Value::List(of) | Value::Pair(of) => names_files(of).map(|_| true),
+            Value::Either(kinds) => kinds.iter().find_map(names_files),
+            _ => None,
+        }
+    }
+    for key in table.keys() {
+        let path = format!("{above}{}", key.name);
+        if let Some(list) = names_files(&key.value) {
+            found.push((path.clone(), list));
+        }
+        match (key.value.table(), key.value) {
+            (Some(inner), Value::Tables(_)) => paths_of_files(inner, &format!("{path}[0]."), found),
+            (Some(inner), Value::Named(_)) => paths_of_files(inner, &format!("{path}.own."), found),
+            (Some(inner), _) => paths_of_files(inner, &format!("{path}."), found),
+            _ => {}
+        }
+    }
 }
