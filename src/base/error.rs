@@ -207,6 +207,8 @@ impl Error {
                 },
                 source,
             },
+            // A text from nowhere has no place to tell.
+            other if outer == Place::default() => other,
             other => Self::At { place: outer, source: Box::new(other) },
         }
     }

@@ -7,7 +7,7 @@ mod record;
 mod reforms;
 mod stand_in;
 
-pub use crate::words::rule::{check, figures_moved, reforms, sources, stand_in, tests, text};
+pub use crate::words::rule::{check, figures_moved, reforms, rows, sources, stand_in, tests, text};
 pub use moved::moved_bundle;
 pub(crate) use record::STATEMENT;
 pub use record::{agreement, parsed, record};

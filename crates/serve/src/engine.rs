@@ -2,8 +2,10 @@
 
 use crate::edit::{self, Edit};
 use crate::form::{self, Form};
+use crate::said::{Said, Told};
+use crate::size_limit::{self, Command};
 use hadar::demand::{Reason, Thing, Work};
-use hadar::error::{Error, Result};
+use hadar::error::Result;
 use hadar::inputs::{self, Inputs, inputs_of};
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
@@ -15,19 +17,14 @@ use hadar_report::size::{self, rows};
 use hadar_report::text::{between, photons_between, significant};
 use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
-use hadar_report::words::warnings::of_code;
 use hadar_scenario::{Scenario, Written};
 use hadar_study::budget::Limits;
 use hadar_study::warning::Warning;
-use hadar_study::{Condition, OwnCameras, PairResult, SizeAsked, Study, YesNo};
+use hadar_study::{OwnCameras, PairResult, SizeAsked, Study, YesNo};
 use serde::{Deserialize, Serialize};
 
-/// Bands times alternatives that are computed for a page: some seconds of work. Larger questions are for the command.
-const MOST_SPECTRAL_VALUES: usize = 100_000;
 /// Points of a trade-off while a slider moves; when it rests there are [`POINTS`].
 const MOVING_POINTS: usize = 11;
-/// Objects of the surroundings: the search over their lighting grows steeply with them.
-const MOST_SURROUNDINGS: usize = 8;
 /// Nodes of bands times alternatives, and objects of the surroundings, up to which a question without priors takes a part of a second.
 /// With priors the search for the closest state takes seconds whatever their number.
 const QUICK_SPECTRAL_VALUES: usize = 20_000;
@@ -102,14 +99,6 @@ struct Answered {
     error: Option<Told>,
 }
 
-/// What is wrong with a scenario, and where.
-#[derive(Debug, Serialize)]
-struct Told {
-    message: String,
-    line: Option<usize>,
-    key: Option<String>,
-}
-
 /// An answer as it is shown.
 #[derive(Debug, Serialize)]
 struct Answer {
@@ -142,14 +131,6 @@ struct Pair {
     statistical_distance: Option<String>,
     detection_probability: Option<String>,
     told: Option<&'static str>,
-}
-
-/// A warning or a condition as it is shown.
-#[derive(Debug, Serialize)]
-struct Said {
-    code: String,
-    message: String,
-    remedy: String,
 }
 
 impl Engine {
@@ -203,7 +184,7 @@ impl Engine {
     pub(crate) fn answer(&self, Prepared { ask, text: scenario, study, .. }: Prepared) -> Result<String> {
         let (answer, error) = match study.and_then(|study| shown(&study, &ask)) {
             Ok(answer) => (Some(answer), None),
-            Err(error) => (None, Some(told(&error))),
+            Err(error) => (None, Some(Told::from(&error))),
         };
         let presets: Vec<String> = self.presets()?.map(|camera| camera.name.clone()).collect();
         json::line(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
@@ -239,27 +220,17 @@ impl Engine {
     }
 
     fn study(&self, text: &str) -> Result<Study> {
-        let written =
-            Written::of(text, None).with_cameras(self.cameras.stated.clone().into()).refusing_files();
-        let scenario = Scenario::from_written(&written)?;
-        let too_large = |found: String| {
-            Error::malformed(found, "take fewer, or ask `hadar size` with the scenario of this page")
-        };
-        let surroundings = scenario.environment.len();
-        if surroundings > MOST_SURROUNDINGS {
-            return Err(too_large(format!(
-                "{surroundings} objects of the surroundings are more than this page computes"
-            )));
-        }
+        let scenario = Scenario::from_written(&self.written(text))?;
+        size_limit::surroundings(scenario.environment.len(), Command::Size)?;
         let study = Study::new(&scenario, &self.library)?;
-        let (bands, alternatives) = (study.bands().len(), study.alternatives().len());
-        if bands.saturating_mul(alternatives) > MOST_SPECTRAL_VALUES {
-            return Err(too_large(format!(
-                "{bands} bands of {alternatives} alternatives are more than this page computes"
-            )));
-        }
+        size_limit::bands(&study, Command::Size)?;
         self.limits.admit(study.takes(), rayon::current_num_threads())?;
         Ok(study)
+    }
+
+    /// A text of the page as it is to be read: it may name the cameras of the user's own, and no file.
+    pub(crate) fn written(&self, text: &str) -> Written {
+        Written::of(text, None).with_cameras(self.cameras.stated.clone().into()).refusing_files()
     }
 
     /// The cameras that a scenario may name.
@@ -267,7 +238,7 @@ impl Engine {
         Ok(presets::all()?.iter().chain(&self.cameras.presets))
     }
 
-    fn library_warnings(&self) -> Vec<Warning> {
+    pub(crate) fn library_warnings(&self) -> Vec<Warning> {
         self.library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
     }
 }
@@ -287,8 +258,8 @@ fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
         numbers: rows::of_camera(&result, study),
         solved: rows::solved(&result, study.units()),
         pairs: result.pairs.iter().map(pair_shown).collect(),
-        conditions: result.verdict.conditions.iter().map(rests_on).collect(),
-        warnings: result.warnings.iter().map(said).collect(),
+        conditions: result.verdict.conditions.iter().map(Said::from).collect(),
+        warnings: result.warnings.iter().map(Said::from).collect(),
         pictures: size::followed(study, &result, curve.as_ref())?.drawings()?,
         trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
         trade_off: pair.map(|pair| pair.1.key().to_owned()),
@@ -305,24 +276,4 @@ fn pair_shown(pair: &PairResult) -> Pair {
         detection_probability: pair.statistical_distance.map(|d| probability(d, 4)),
         told: pair.told.map(YesNo::name),
     }
-}
-
-fn said(warning: &Warning) -> Said {
-    let code = warning.code();
-    Said { code: code.name().into(), message: warning.say(), remedy: of_code(code).remedy.into() }
-}
-
-fn rests_on(condition: &Condition) -> Said {
-    let message =
-        if condition.favourable() { format!("only if {}", condition.say()) } else { condition.say() };
-    Said { code: condition.code(), message, remedy: condition.figure() }
-}
-
-/// An error with its place apart.
-fn told(error: &Error) -> Told {
-    let place = match error {
-        Error::At { place, .. } => place.clone(),
-        _ => Default::default(),
-    };
-    Told { message: error.to_string(), line: place.line, key: place.key }
 }

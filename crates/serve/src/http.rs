@@ -27,13 +27,11 @@ use tokio::time::timeout;
 const WAITING: usize = 256;
 /// Time for the head of a request, and for its body.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Time for an answer, where no other limit is given.
-const LONGEST_ANSWER: Duration = Duration::from_secs(60);
 /// Longest connection.
 const LONGEST: Duration = Duration::from_secs(600);
 /// Longest head of a request, bytes.
 const LONGEST_HEAD: usize = 16 << 10;
-/// Longest body of a request, bytes: a scenario and what is changed in it.
+/// Longest body of a request, bytes: a scenario and what is changed in it, or a rule.
 const LONGEST_BODY: usize = 256 << 10;
 
 /// What a connection is told for which there is no place.
@@ -151,7 +149,7 @@ async fn read(body: Incoming) -> std::result::Result<Bytes, Refusal> {
     match timeout(PATIENCE, Limited::new(body, LONGEST_BODY).collect()).await {
         Ok(Ok(body)) => Ok(body.to_bytes()),
         Ok(Err(error)) if error.is::<http_body_util::LengthLimitError>() => {
-            Err(Refusal(StatusCode::PAYLOAD_TOO_LARGE, "a scenario has at most 256 KiB here"))
+            Err(Refusal(StatusCode::PAYLOAD_TOO_LARGE, "a scenario or a rule has at most 256 KiB here"))
         }
         Ok(Err(_)) => Err(Refusal(StatusCode::BAD_REQUEST, "the request broke off")),
         Err(_) => Err(Refusal(StatusCode::REQUEST_TIMEOUT, "the request took too long")),
@@ -170,13 +168,10 @@ async fn compute(shared: Arc<Shared>, path: String, body: Bytes) -> Reply {
             Begun::Prepared(question) => question.reply(&shared.engine),
         };
     }
-    let longest = shared.engine.limits.time.unwrap_or(LONGEST_ANSWER);
-    timeout(longest, turns::taken(Arc::clone(&shared.turns), Arc::clone(&shared.engine), path, body)).await.unwrap_or_else(|_| {
-        Reply::refused(Refusal(
-            StatusCode::SERVICE_UNAVAILABLE,
-            "this question takes longer than a page waits; ask `hadar size` with the scenario of this page",
-        ))
-    })
+    let (longest, command) = route::longest(&path);
+    let longest = shared.engine.limits.time.unwrap_or(longest);
+    let taken = turns::taken(Arc::clone(&shared.turns), Arc::clone(&shared.engine), path, body);
+    timeout(longest, taken).await.unwrap_or_else(|_| Reply::refused(command.takes_too_long()))
 }
 
 /// A reply with what keeps browsers from doing more with it than showing it here.

@@ -1,8 +1,10 @@
-//! `hadar` as a page in the browser: a form and the text of a scenario, two views of one thing, and what the engine says of it.
+//! `hadar` as two pages in the browser: a form and the text of a scenario, two views of one thing, and a rule with its cameras, each with
+//! what the engine says of it.
 //!
 //! Nothing leaves this machine and nothing of it is read: the page listens on a loopback address, takes requests of its own page
 //! alone (`guard`), bounds their size and number (`http`), and reads scenarios that name no files
-//! ([`Written::refusing_files`](hadar_scenario::Written::refusing_files)). The answers are those of `hadar size`.
+//! ([`Written::refusing_files`](hadar_scenario::Written::refusing_files)). The answers are those of `hadar size` and
+//! of `hadar rule`.
 //!
 //! | file | what is there |
 //! |---|---|
@@ -12,6 +14,10 @@
 //! | `guard` | who may ask |
 //! | `route` | which question is asked where |
 //! | `engine` | the answer to a scenario |
+//! | `rules` | the answer to a rule |
+//! | `packs` | rules that the page offers |
+//! | `said` | warnings, conditions and mistakes as they are shown |
+//! | `size_limit` | what is larger than a page computes |
 //! | `form` | a scenario as fields |
 //! | `place` | paths of a scenario, and what may stand there |
 //! | `slider` | the range about a number |
@@ -25,9 +31,13 @@ mod form;
 mod guard;
 mod http;
 mod meaning;
+mod packs;
 mod place;
 mod room;
 mod route;
+mod rules;
+mod said;
+mod size_limit;
 mod slider;
 mod turns;
 

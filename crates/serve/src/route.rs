@@ -3,11 +3,22 @@
 use crate::engine::{Ask, Engine, Prepared};
 use crate::guard::Refusal;
 use crate::meaning;
+use crate::rules::{PreparedReforms, PreparedRule};
+use crate::size_limit::Command;
 use hadar::error::Error;
 use hyper::StatusCode;
 use hyper::body::Bytes;
+use serde::de::DeserializeOwned;
+use std::time::Duration;
+
+/// Time for an answer, where no other limit is given.
+const LONGEST_ANSWER: Duration = Duration::from_secs(60);
+/// The same for an answer about a rule: every camera before every clause, in all scenes.
+const LONGEST_RULE: Duration = Duration::from_secs(240);
 
 const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const STYLE: &str = "text/css; charset=utf-8";
 const JSON: &str = "application/json";
 const TEXT: &str = "text/plain; charset=utf-8";
 
@@ -47,9 +58,14 @@ const NOT_HERE: Refusal = Refusal(StatusCode::NOT_FOUND, "there is nothing here"
 pub(crate) fn get(path: &str, engine: &Engine) -> Reply {
     match path {
         "/" => Reply::of(HTML, include_str!("page/index.html")),
-        "/page.css" => Reply::of("text/css; charset=utf-8", include_str!("page/page.css")),
-        "/page.js" => Reply::of("text/javascript; charset=utf-8", include_str!("page/page.js")),
+        "/page.css" => Reply::of(STYLE, include_str!("page/page.css")),
+        "/shared.js" => Reply::of(SCRIPT, include_str!("page/shared.js")),
+        "/page.js" => Reply::of(SCRIPT, include_str!("page/page.js")),
         "/start" => Reply::answered(JSON, engine.start()),
+        "/rules" => Reply::of(HTML, include_str!("page/rules.html")),
+        "/rules.css" => Reply::of(STYLE, include_str!("page/rules.css")),
+        "/rules.js" => Reply::of(SCRIPT, include_str!("page/rules.js")),
+        "/rules/start" => Reply::answered(JSON, engine.rules()),
         _ => match path.strip_prefix("/explain/").and_then(meaning::page) {
             Some(page) => Reply::of(HTML, page),
             None => Reply::refused(NOT_HERE),
@@ -57,7 +73,12 @@ pub(crate) fn get(path: &str, engine: &Engine) -> Reply {
     }
 }
 
-/// What is asked to be computed.
+/// How long an answer there may take where no other limit is given, and who gives those that take longer.
+pub(crate) fn longest(path: &str) -> (Duration, Command) {
+    if path.starts_with("/rule") { (LONGEST_RULE, Command::Rule) } else { (LONGEST_ANSWER, Command::Size) }
+}
+
+/// What is asked to be computed of a scenario.
 #[derive(Debug, Clone, Copy)]
 enum Wanted {
     Ask,
@@ -65,11 +86,15 @@ enum Wanted {
     Report,
 }
 
-/// A question with its scenario looked up.
+/// A question with its scenario or its rule looked up.
 #[derive(Debug)]
-pub(crate) struct Question {
-    wanted: Wanted,
-    prepared: Prepared,
+pub(crate) struct Question(Asked);
+
+#[derive(Debug)]
+enum Asked {
+    Scenario(Wanted, Box<Prepared>),
+    Rule(Box<PreparedRule>),
+    Reforms(PreparedReforms),
 }
 
 /// What comes of the beginning of a question.
@@ -78,38 +103,51 @@ pub(crate) enum Begun {
     /// There is nothing to compute.
     Replied(Reply),
     /// There is.
-    Prepared(Box<Question>),
+    Prepared(Question),
 }
 
-/// Reads a question and looks up what its scenario names.
+/// Reads a question and looks up what its scenario or its rule names.
 pub(crate) fn begun(path: &str, body: &[u8], engine: &Engine) -> Begun {
-    let wanted = match path {
-        "/ask" => Wanted::Ask,
-        "/json" => Wanted::Json,
-        "/report" => Wanted::Report,
-        _ => return Begun::Replied(Reply::refused(NOT_HERE)),
+    let of_scenario =
+        |wanted| read(body).map(|ask: Ask| Asked::Scenario(wanted, Box::new(engine.prepare(ask))));
+    let asked = match path {
+        "/ask" => of_scenario(Wanted::Ask),
+        "/json" => of_scenario(Wanted::Json),
+        "/report" => of_scenario(Wanted::Report),
+        "/rule" => read(body).map(|ask| Asked::Rule(Box::new(engine.prepare_rule(ask)))),
+        "/rule/reforms" => read(body).map(|ask| Asked::Reforms(engine.prepare_reforms(&ask))),
+        _ => Err(NOT_HERE),
     };
-    match serde_json::from_slice::<Ask>(body) {
-        Ok(ask) => Begun::Prepared(Box::new(Question { wanted, prepared: engine.prepare(ask) })),
-        Err(_) => {
-            let refusal = Refusal(StatusCode::BAD_REQUEST, "this is no question of the page");
-            Begun::Replied(Reply::refused(refusal))
-        }
+    match asked {
+        Ok(asked) => Begun::Prepared(Question(asked)),
+        Err(refusal) => Begun::Replied(Reply::refused(refusal)),
     }
+}
+
+fn read<T: DeserializeOwned>(body: &[u8]) -> Result<T, Refusal> {
+    let refusal = Refusal(StatusCode::BAD_REQUEST, "this is no question of the page");
+    serde_json::from_slice(body).map_err(|_| refusal)
 }
 
 impl Question {
     /// Whether it takes a part of a second. A report takes longer than its answer.
     pub(crate) fn is_quick(&self) -> bool {
-        !matches!(self.wanted, Wanted::Report) && self.prepared.is_quick()
+        match &self.0 {
+            Asked::Scenario(Wanted::Report, _) => false,
+            Asked::Scenario(_, prepared) => prepared.is_quick(),
+            Asked::Rule(prepared) => prepared.is_quick(),
+            Asked::Reforms(prepared) => prepared.is_quick(),
+        }
     }
 
     /// Computes the answer.
     pub(crate) fn reply(self, engine: &Engine) -> Reply {
-        match self.wanted {
-            Wanted::Ask => Reply::answered(JSON, engine.answer(self.prepared)),
-            Wanted::Json => Reply::answered(JSON, engine.json(self.prepared)),
-            Wanted::Report => Reply::answered(HTML, engine.report(self.prepared)),
+        match self.0 {
+            Asked::Scenario(Wanted::Ask, prepared) => Reply::answered(JSON, engine.answer(*prepared)),
+            Asked::Scenario(Wanted::Json, prepared) => Reply::answered(JSON, engine.json(*prepared)),
+            Asked::Scenario(Wanted::Report, prepared) => Reply::answered(HTML, engine.report(*prepared)),
+            Asked::Rule(prepared) => Reply::answered(JSON, engine.rule_answer(*prepared)),
+            Asked::Reforms(prepared) => Reply::answered(JSON, engine.reforms_answer(prepared)),
         }
     }
 }

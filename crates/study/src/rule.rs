@@ -87,11 +87,16 @@ impl RuleStudy {
     /// What it takes at least.
     #[must_use]
     pub fn takes(&self) -> Takes {
+        self.studies().map(Study::takes).sum()
+    }
+
+    /// Of every clause that tells materials apart, every camera before every material, from the least distance.
+    pub fn studies(&self) -> impl Iterator<Item = &Study> {
         let apart = self.clauses.iter().filter_map(|clause| match clause {
             Kind::Apart(apart) => Some(apart),
             _ => None,
         });
-        apart.flat_map(|apart| &apart.candidates).flat_map(|one| &one.near).map(Study::takes).sum()
+        apart.flat_map(|apart| &apart.candidates).flat_map(|one| &one.near)
     }
 
     /// Looks up everything that `rule` names, materials in `library`.

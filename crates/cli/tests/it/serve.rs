@@ -78,6 +78,28 @@ fn the_page_gives_the_json_of_the_command() {
     assert_eq!(page, command);
 }
 
+#[test]
+fn the_page_for_rules_gives_the_json_of_the_command() {
+    let folder = Folder::with(SCENARIO);
+    let served = Served::with(&folder, &[]);
+    let start: Value = serde_json::from_str(&served.asked("GET", "/rules/start", "")).unwrap();
+    let packs = start["packs"].as_array().unwrap();
+    let text = |file: &str| packs.iter().find(|one| one["file"] == file).unwrap()["text"].as_str().unwrap();
+    for (file, on) in [("fever_screening.toml", "2030-01-01"), ("un_r152_pedestrian.toml", "1990-01-01")] {
+        let question = json!({ "rule": text(file), "on": on }).to_string();
+        let page: Value = serde_json::from_str(&served.asked("POST", "/rule", &question)).unwrap();
+        let command = folder.fed(text(file), &["rule", "-", "--json", "--on", on]);
+        assert_eq!(command.code, 0, "{}", command.stderr);
+        let mut page: Value = serde_json::from_str(page["answer"]["json"].as_str().unwrap()).unwrap();
+        let mut command: Value = serde_json::from_str(&command.stdout).unwrap();
+        // Standard input has another name, and the page keeps its library.
+        for json in [&mut page, &mut command] {
+            assert!(!json["stats"].take().is_null() && !json["inputs"][0]["path"].take().is_null());
+        }
+        assert_eq!(page, command, "{file}");
+    }
+}
+
 /// Questions come from threads that are none of the pool's: it has to work for them, even if it is of one thread, or if there is no
 /// thread but the first (a stack that no machine has is a thread that cannot be started).
 #[test]

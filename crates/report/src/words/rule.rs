@@ -7,6 +7,7 @@ mod market;
 mod measured;
 mod moved;
 mod reforms;
+pub mod rows;
 mod sources;
 mod stand_in;
 mod stop;

@@ -1,11 +1,9 @@
 // The page of `hadar serve`. The text of the scenario is the only state: the form shows it, and changes it by its keys.
 "use strict";
 
-const at = (id) => document.getElementById(id);
 const STEPS = 200;
 const REST_MS = 250;
 const PATIENCE_MS = 300;
-const LONGEST_MS = 150000;
 const OWN_CAMERA =
   'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n' +
   'netd_f_number = 1.0\nnetd_pixel = "12 um"\nnoise_exposure = "10 ms"\n';
@@ -26,20 +24,7 @@ let refocus = null;
 let signature = "";
 const ranges = new Map();
 
-const element = (name, attributes = {}, ...children) => {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) {
-    if (key in made && key !== "list") made[key] = value;
-    else made.setAttribute(key, value);
-  }
-  made.append(...children);
-  return made;
-};
-
 // Asking: one question at a time, the newest state next.
-
-const post = (path, body) =>
-  fetch(path, { method: "POST", signal: AbortSignal.timeout(LONGEST_MS), headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
 
 function change(...edits) {
   for (const edit of edits) {
@@ -161,9 +146,6 @@ function show({ scenario, form, answer, error }, { scenario: before, edits, full
   at("text").textContent = full ? answer.text : "";
 }
 
-const cell = (value, className = "") => element("td", { className }, value ?? "-");
-const means = (word, label, hint = "") =>
-  element("a", { href: `/explain/${word}`, target: "_blank", rel: "noopener", title: hint }, label);
 const row = (one, cells) =>
   element("tr", {}, element("th", { scope: "row" }, one.label ? means(one.key, one.label) : ""), ...cells);
 
@@ -183,18 +165,8 @@ function pairRow(pair) {
   );
 }
 
-const warningItem = (warning) =>
-  element("li", {}, means(warning.code, `[${warning.code}]`), ` ${warning.message} `, element("small", {}, `(${warning.remedy})`));
-
 function showPictures(answer) {
-  const drawn = answer.pictures.map(([name, svg]) => {
-    const parsed = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
-    const title = parsed.querySelector("title")?.textContent ?? name;
-    parsed.setAttribute("role", "img");
-    parsed.setAttribute("aria-label", title);
-    return element("figure", { className: "picture" }, document.importNode(parsed, true));
-  });
-  at("pictures").replaceChildren(...drawn);
+  at("pictures").replaceChildren(...answer.pictures.map(pictureOf));
   at("pick").hidden = answer.trade_offs.length < 2;
   const known = [...at("trade-off").options].map((option) => option.value).join();
   if (known !== answer.trade_offs.join()) {
@@ -264,12 +236,6 @@ function cameraPicker(section) {
   const pick = element("div", { className: "pick" }, select, take);
   return element("div", { className: "field" }, element("label", { htmlFor: id }, "a known camera"), pick);
 }
-
-const button = (label, pressed, attributes = {}) => {
-  const made = element("button", { type: "button", ...attributes }, label);
-  made.addEventListener("click", pressed);
-  return made;
-};
 
 // Shows a value, which may be none of the known ones.
 function chosen(select, value) {
@@ -450,13 +416,6 @@ function open(otherwise) {
   const scenario = restored();
   if (scenario === undefined) failed("This link is broken or cut off; ask for it again, or begin again below.");
   else take(scenario ?? otherwise);
-}
-
-function save(name, kind, content) {
-  const url = URL.createObjectURL(new Blob([content], { type: kind }));
-  element("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
-  at("done").textContent = `${name} is in your downloads.`;
 }
 
 async function fetched(path, name, kind) {

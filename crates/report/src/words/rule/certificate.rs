@@ -81,7 +81,7 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
 }
 
 /// What the page is, and what it is not.
-fn what_it_is(rule: &Rule) -> String {
+pub(super) fn what_it_is(rule: &Rule) -> String {
     let figures = rule.figures();
     let of_choice = |key: &str| {
         let behind = rule.sources.iter().filter(|citation| citation.covers(key));
@@ -98,7 +98,7 @@ fn what_it_is(rule: &Rule) -> String {
 }
 
 /// Words of the page, each with its meaning.
-const WORDS: [[&str; 2]; 12] = [
+pub const WORDS: [[&str; 2]; 12] = [
     [
         "PASSED",
         "every camera of the list meets every clause, proved, under no open condition, on a stated day on which the rule holds; FAILED: one does not; WARNED: neither",
@@ -143,7 +143,7 @@ const WORDS: [[&str; 2]; 12] = [
 ];
 
 /// Whether the rule is passed, in a sentence.
-fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
+pub(super) fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
     match outcome {
         Outcome::Passed => "Result: PASSED. Every camera meets every clause, proved, under no condition but those that are accepted, on a day on which the rule holds.".into(),
         _ => format!("Result: {}. {}", outcome.word(), if reasons.len() == 1 { "The reason:" } else { "The reasons:" }),
@@ -151,7 +151,7 @@ fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
 }
 
 /// Reasons in words, those of a kind together.
-fn said(reasons: &[NotPassed]) -> Vec<String> {
+pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
     let of = |place: &CameraBeforeClause| match &place.clause {
         Some(clause) => format!("{} ({clause})", place.camera),
         None => place.camera.clone(),
@@ -205,7 +205,12 @@ fn said(reasons: &[NotPassed]) -> Vec<String> {
 }
 
 /// A verdict in a cell.
-fn in_a_word(verdict: Verdict, grade: Grade, conditions: &[Condition], fails_by: &[Shortfall]) -> String {
+pub(super) fn in_a_word(
+    verdict: Verdict,
+    grade: Grade,
+    conditions: &[Condition],
+    fails_by: &[Shortfall],
+) -> String {
     match verdict {
         Verdict::Meets => match Condition::open(conditions).count() {
             0 => format!("yes ({})", grade.name()),
@@ -255,7 +260,7 @@ fn numbers_of(rule: &Rule) -> Vec<[String; 3]> {
 }
 
 /// When a rule holds.
-fn in_force(rule: &Rule) -> Option<String> {
+pub(super) fn in_force(rule: &Rule) -> Option<String> {
     match (rule.about.from, rule.about.until) {
         (Some(from), Some(until)) => Some(format!("from {from} until {until}")),
         (Some(from), None) => Some(format!("from {from}")),

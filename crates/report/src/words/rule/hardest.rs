@@ -55,7 +55,7 @@ fn of_clause(clause: &ClauseAnswer, units: Units) -> Vec<HardestScene> {
 }
 
 /// 'skin of 30 degC, 9 m away, lit by surroundings of 15 degC (V 0.8), against polycarbonate'.
-fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -> String {
+pub(super) fn scene_in_words(camera: &CameraVerdict, clause: &ClauseAnswer, units: Units) -> String {
     let scene = &camera.limiting;
     let mut out = format!("{} of {}", scene.target, units.temperature(scene.temperature_k));
     match scene.distance_m {

@@ -5,35 +5,66 @@ use super::sources::from_where;
 use crate::text::columns::aligned;
 use crate::text::significant;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{BeforeLaw, Reforms};
+use hadar_study::{BeforeLaw, Reformed, Reforms};
 use std::fmt::Write as _;
+
+/// What reforms are held beside the rule for.
+pub const BESIDE: &str = "This holds proposals beside the rule: it changes no certificate.";
+
+/// A reform beside the rule, as a page shows it.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ReformShown {
+    /// What it is called.
+    pub name: String,
+    /// What it changes, in a sentence.
+    pub changes: String,
+    /// What it sets, and who says so, in a sentence.
+    pub sets: String,
+    /// Every camera, in the order of the rule.
+    pub cells: Vec<Change>,
+}
+
+/// A camera by the rule as it is and by a reform, as a page shows it.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct Change {
+    /// By the rule as it is: `yes`, `yes, if`, `undecided` or `no`, with the least margin and its clause.
+    pub before: String,
+    /// By the reform.
+    pub after: String,
+    /// Whether it is another verdict.
+    pub changed: bool,
+}
+
+/// Every reform as a page shows it.
+#[must_use]
+pub fn shown(found: &Reforms) -> Vec<ReformShown> {
+    let change = |law: &BeforeLaw, own: &BeforeLaw| Change {
+        before: cell(law),
+        after: cell(own),
+        changed: law.differs_from(own),
+    };
+    let one = |reform: &Reformed| ReformShown {
+        name: reform.name.clone(),
+        changes: changes(&found.law, reform),
+        sets: what_it_sets(reform),
+        cells: found.law.iter().zip(&reform.cameras).map(|(law, own)| change(law, own)).collect(),
+    };
+    found.reforms.iter().map(one).collect()
+}
 
 /// What each reform changes, then every camera by the law and by each.
 #[must_use]
 pub fn reforms(found: &Reforms) -> String {
     let mut out = String::new();
     for reform in &found.reforms {
-        let when = reform.from.as_ref().map(|day| format!("from {day}"));
-        let about: Vec<String> = when.into_iter().chain(reform.status.clone()).collect();
-        let about = if about.is_empty() { String::new() } else { format!(" ({})", about.join(", ")) };
-        let changes: Vec<String> = found
-            .law
-            .iter()
-            .zip(&reform.cameras)
-            .filter(|(law, own)| law.differs_from(own))
-            .map(|(law, own)| format!("{} from {} to {}", law.camera, verdict(law), verdict(own)))
-            .collect();
-        let changes = if changes.is_empty() { "no verdict".to_owned() } else { changes.join("; ") };
-        let _ = writeln!(out, "{}{about} changes {changes}.", reform.name);
+        let _ = writeln!(out, "{}", changes(&found.law, reform));
     }
     out.push('\n');
     let heads = found.reforms.iter().map(|reform| reform.name.clone());
     let head: Vec<String> =
         ["camera".to_owned(), "the rule as it is".to_owned()].into_iter().chain(heads).collect();
-    let cell = |one: &BeforeLaw| {
-        let by = one.limiting_clause.as_ref().map_or_else(String::new, |clause| format!(", {clause}"));
-        format!("{} ({}{by})", verdict(one), significant(one.margin, 3))
-    };
     let mut rows = vec![head];
     for (index, law) in found.law.iter().enumerate() {
         let by_reform = found.reforms.iter().filter_map(|reform| reform.cameras.get(index)).map(cell);
@@ -49,16 +80,43 @@ pub fn reforms(found: &Reforms) -> String {
         }
     }
     for reform in &found.reforms {
-        let set: Vec<String> = reform.set.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
-        let _ = writeln!(out, "{} sets {}: {}", reform.name, set.join("; "), from_where(&reform.ground));
+        let _ = writeln!(out, "{}", what_it_sets(reform));
     }
-    out += "This holds proposals beside the rule: it changes no certificate.\n";
+    let _ = writeln!(out, "{BESIDE}");
     out
 }
 
-/// A verdict in a word or two.
-fn verdict(one: &BeforeLaw) -> &'static str {
-    match (one.verdict, one.conditions.is_empty()) {
+/// Which verdicts a reform changes.
+fn changes(law: &[BeforeLaw], reform: &Reformed) -> String {
+    let when = reform.from.as_ref().map(|day| format!("from {day}"));
+    let about: Vec<String> = when.into_iter().chain(reform.status.clone()).collect();
+    let about = if about.is_empty() { String::new() } else { format!(" ({})", about.join(", ")) };
+    let other = law.iter().zip(&reform.cameras).filter(|(law, own)| law.differs_from(own));
+    let changes: Vec<String> =
+        other.map(|(law, own)| format!("{} from {} to {}", law.camera, of(law), of(own))).collect();
+    let changes = if changes.is_empty() { "no verdict".to_owned() } else { changes.join("; ") };
+    format!("{}{about} changes {changes}.", reform.name)
+}
+
+/// What a reform sets, and who says so.
+fn what_it_sets(reform: &Reformed) -> String {
+    let set: Vec<String> = reform.set.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
+    format!("{} sets {}: {}", reform.name, set.join("; "), from_where(&reform.ground))
+}
+
+/// A verdict with its margin and the clause of that.
+fn cell(one: &BeforeLaw) -> String {
+    let by = one.limiting_clause.as_ref().map_or_else(String::new, |clause| format!(", {clause}"));
+    format!("{} ({}{by})", of(one), significant(one.margin, 3))
+}
+
+fn of(one: &BeforeLaw) -> &'static str {
+    verdict(one.verdict, one.conditions.is_empty())
+}
+
+/// A verdict in a word or two, a 'meets' with or without open conditions.
+pub(super) const fn verdict(of: Verdict, unconditional: bool) -> &'static str {
+    match (of, unconditional) {
         (Verdict::Meets, true) => "yes",
         (Verdict::Meets, false) => "yes, if",
         (Verdict::Undecided, _) => "undecided",

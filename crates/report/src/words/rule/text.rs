@@ -19,8 +19,8 @@ use hadar::words::share;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{
-    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce, RuleAnswer,
-    RuleStudy, Shortfall, Warning,
+    ApartAnswer, CameraAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, NotInForce,
+    RuleAnswer, RuleStudy, Shortfall, Warning,
 };
 use std::fmt::Write as _;
 
@@ -82,20 +82,24 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
 fn overview(answer: &RuleAnswer) -> String {
     let mut rows = vec![["camera", "margin", "limited by", "evidence", "meets the rule"].map(str::to_owned)];
     rows.extend(answer.cameras.iter().map(|camera| {
-        let verdict = match camera.verdict {
-            Verdict::Meets => conditions::yes(&camera.conditions),
-            Verdict::Undecided => format!("undecided: {}", camera.undecided.join(", ")),
-            Verdict::Fails => format!("no: {}", camera.fails.join(", ")),
-        };
         [
             camera.name.clone(),
             significant(camera.margin, 3),
             camera.limiting_clause.clone().unwrap_or_default(),
             camera.grade.name().to_owned(),
-            verdict,
+            meets_all(camera),
         ]
     }));
     aligned(&rows, &[1]) + "\n"
+}
+
+/// Yes, no or undecided of all clauses, and which do not let it be a yes.
+pub(super) fn meets_all(camera: &CameraAnswer) -> String {
+    match camera.verdict {
+        Verdict::Meets => conditions::yes(&camera.conditions),
+        Verdict::Undecided => format!("undecided: {}", camera.undecided.join(", ")),
+        Verdict::Fails => format!("no: {}", camera.fails.join(", ")),
+    }
 }
 
 /// A clause that tells materials apart: a table, then each camera.
