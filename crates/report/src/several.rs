@@ -79,7 +79,7 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         .as_array()
         .map_or_else(Vec::new, |cameras| cameras.iter().map(|camera| camera["passes"] == true).collect());
     let hang =
-        answer["cameras"].as_array().is_some_and(|all| all.iter().any(|one| hangs(&one["conditions"])));
+        answer["cameras"].as_array().is_some_and(|all| all.iter().any(|one| laws::hangs(&one["conditions"])));
     // A rule without a camera, or on a day on which it does not hold, is met by none.
     let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
@@ -94,11 +94,13 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         }
         // A 'yes' that hangs on something is none by itself.
         (Question::Identify, "verdict")
-            if found(paths) == Some(true.into()) && hangs(&answer["conditions"]) =>
+            if found(paths) == Some(true.into()) && laws::hangs(&answer["conditions"]) =>
         {
             YES_IF.into()
         }
-        (_, "verdict") if answer["verdict"]["answer"] == "yes" && hangs(&answer["verdict"]["conditions"]) => {
+        (_, "verdict")
+            if answer["verdict"]["answer"] == "yes" && laws::hangs(&answer["verdict"]["conditions"]) =>
+        {
             YES_IF.into()
         }
         (_, "verdict") if answer["verdict"]["answer"] == "undecided" => UNDECIDED.into(),
@@ -108,9 +110,9 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
     columns(question).iter().map(of).collect()
 }
 
-/// Whether one of some conditions is favourable.
-fn hangs(conditions: &Value) -> bool {
-    conditions.as_array().is_some_and(|all| all.iter().any(|one| one["favourable"] == true))
+/// The answers that there are, with what they are called.
+fn answers(rows: &[Row]) -> Vec<(&str, &Value)> {
+    rows.iter().filter_map(|row| Some((row.scenario.as_str(), row.answer.as_ref()?))).collect()
 }
 
 /// Codes of the favourable ones, hardest first.
@@ -173,7 +175,7 @@ pub fn text(question: Question, rows: &[Row]) -> String {
         }
         lines.push(line);
     }
-    let side_by_side = if question == Question::Rule { laws::text(rows) } else { None };
+    let side_by_side = if question == Question::Rule { laws::text(&answers(rows), rows.len()) } else { None };
     let mut out = side_by_side.map_or_else(String::new, |text| text + "\n") + &aligned(&lines, &[]);
     if !rests_on.is_empty() {
         let _ = write!(out, "\n{rests_on}");
@@ -207,7 +209,7 @@ pub fn bundle(question: Question, rows: &[Row]) -> Result<Bundle> {
     }
     let mut bundle = Bundle::about(Some(&format!("{} of {} scenarios", question.name(), rows.len())));
     bundle.add_table("scenarios.csv", table)?;
-    if let Some(plot) = laws::plot(rows).filter(|_| question == Question::Rule) {
+    if let Some(plot) = laws::plot(&answers(rows)).filter(|_| question == Question::Rule) {
         bundle.add_plots(&[plot])?;
     }
     Ok(bundle)

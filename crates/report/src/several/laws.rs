@@ -1,6 +1,5 @@
 //! Several rules side by side: every camera before every rule, with what decides and the hardest scene.
 
-use super::{Row, hangs};
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, NamedSeries, NamedValues};
 use crate::table::{Table, number};
@@ -91,8 +90,13 @@ fn differ(one: &Value, other: &Value) -> bool {
     figures.filter_map(|(key, value)| Some((value, other.get(key)?))).any(|(value, other)| value != other)
 }
 
-fn laws(rows: &[Row]) -> Vec<Law<'_>> {
-    rows.iter().filter_map(|row| Some(Law { name: &row.scenario, answer: row.answer.as_ref()? })).collect()
+fn laws<'a>(answers: &[(&'a str, &'a Value)]) -> Vec<Law<'a>> {
+    answers.iter().map(|(name, answer)| Law { name, answer }).collect()
+}
+
+/// Whether one of some conditions is favourable.
+pub(super) fn hangs(conditions: &Value) -> bool {
+    conditions.as_array().is_some_and(|all| all.iter().any(|one| one["favourable"] == true))
 }
 
 /// All cameras, in the order in which the rules name them.
@@ -107,8 +111,8 @@ fn meets_all(laws: &[Law<'_>], camera: &str) -> bool {
 }
 
 /// Which cameras meet all rules, what comes of each by each, and the hardest scenes; `None` of fewer than two rules.
-pub(super) fn text(rows: &[Row]) -> Option<String> {
-    let laws = laws(rows);
+pub(super) fn text(answers: &[(&str, &Value)], asked: usize) -> Option<String> {
+    let laws = laws(answers);
     let cameras = cameras(&laws);
     if laws.len() < 2 || cameras.is_empty() {
         return None;
@@ -117,7 +121,7 @@ pub(super) fn text(rows: &[Row]) -> Option<String> {
     let open = meet
         .iter()
         .any(|camera| laws.iter().any(|law| law.before(camera).is_some_and(|cell| cell.verdict == YES_IF)));
-    let mut out = before_all(&meet, open, cameras.len(), laws.len(), rows.len());
+    let mut out = before_all(&meet, open, cameras.len(), laws.len(), asked);
     let mut lines = vec![
         std::iter::once("camera".to_owned())
             .chain(laws.iter().map(|law| law.name.to_owned()))
@@ -158,8 +162,8 @@ pub(super) fn text(rows: &[Row]) -> Option<String> {
 }
 
 /// The table of every camera before every rule, and their margins as a picture where all rules have the same cameras.
-pub(super) fn plot(rows: &[Row]) -> Option<Plot> {
-    let laws = laws(rows);
+pub(super) fn plot(answers: &[(&str, &Value)]) -> Option<Plot> {
+    let laws = laws(answers);
     let cameras = cameras(&laws);
     if laws.len() < 2 || cameras.is_empty() {
         return None;

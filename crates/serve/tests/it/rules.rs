@@ -55,7 +55,7 @@ fn the_answer_is_that_of_the_engine() {
         let page = asked("/rule", &json!({ "rule": text, "on": on }))["answer"].take();
         let (own, printed) = of_engine(text, on);
         let of_page: Json = serde_json::from_str(page["json"].as_str().unwrap()).unwrap();
-        let of_engine = value(&Output { answer: &own, inputs: &[] }).unwrap();
+        let of_engine = value(&Output::of(&own, &[])).unwrap();
         assert_eq!(bare(of_page), bare(of_engine.clone()));
         assert_eq!(page["text"], printed);
         let shown = &page["shown"];
