@@ -93,12 +93,12 @@ fn rules_and_ranging_scenarios_keep_their_units_too() {
     let own =
         "[[camera]]\nname = \"a\"\npixel = \"0.012 mm\"\n[[camera]]\nname = \"b\"\npixel = \"17000 nm\"\n";
     let rule = Rule::from_toml(&format!("cameras = [\"flir-a325sc\"]\n{SCENARIO}{own}"), None).unwrap();
-    all_there(rule.scenario.source.texts.clone().into_values(), &rule.to_toml());
+    all_there(rule.scenario.source.texts.values().cloned(), &rule.to_toml());
     assert!(rule.to_toml().contains("name = \"b\"\npixel = \"17000 nm\""), "{}", rule.to_toml());
     let text = "[scene]\nperson_temperature = \"98.6 degF\"\ncar_distance = \"60 ft\"\n[camera]\npreset = \"flir-a325sc\"\n\
                 [stereo]\nbaseline = \"8 in\"\n[requirement]\ndepth_error = \"1 ft\"\n";
     let range = RangeScenario::from_toml(text, None).unwrap();
-    all_there(range.source.texts.clone().into_values(), &range.to_toml());
+    all_there(range.source.texts.values().cloned(), &range.to_toml());
 }
 
 #[test]
