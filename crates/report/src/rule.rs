@@ -16,7 +16,7 @@ pub use stand_in::stand_in_bundle;
 
 use super::bundle::Bundle;
 use super::figures::Plot;
-use super::manifest::{Input, Provenance};
+use super::manifest::{Input, Provenance, sha256};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, joined, number, optional, yes_no};
 use super::tables;
@@ -45,6 +45,8 @@ pub struct Output<'a> {
     pub answer: &'a RuleAnswer,
     /// The scene in which every camera is nearest to failing each clause, or fails it most.
     hardest: Vec<HardestScene>,
+    /// A digest of all figures of each camera, in their order: the same of the same camera in any rule.
+    camera_digests: Vec<String>,
     /// All that it rests on, by its content.
     pub inputs: &'a [Input],
 }
@@ -53,7 +55,8 @@ impl<'a> Output<'a> {
     /// That of an answer, which rests on `inputs`.
     #[must_use]
     pub fn of(answer: &'a RuleAnswer, inputs: &'a [Input]) -> Self {
-        Self { answer, hardest: hardest_scenes(answer), inputs }
+        let camera_digests = answer.camera_figures.iter().map(|figures| sha256(figures.as_bytes())).collect();
+        Self { answer, hardest: hardest_scenes(answer), camera_digests, inputs }
     }
 }
 

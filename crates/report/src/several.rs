@@ -82,12 +82,17 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         answer["cameras"].as_array().is_some_and(|all| all.iter().any(|one| laws::hangs(&one["conditions"])));
     // A rule without a camera, or on a day on which it does not hold, is met by none.
     let met = !meets.is_empty() && meets.iter().all(|meets| *meets);
+    let all = answer["cameras"].as_array().into_iter().flatten();
+    let (fails, undecided) = all.fold((false, false), |(fails, undecided), camera| {
+        (fails || camera["verdict"] == "fails", undecided || camera["verdict"] == "undecided")
+    });
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
         // Where a day was asked about, the answer says whether the rule holds on it.
         (Question::Rule, "verdict") if !answer["on"].is_null() && answer["in_force"] != true => {
             NOT_IN_FORCE.into()
         }
         (Question::Rule, "verdict") if met && hang => YES_IF.into(),
+        (Question::Rule, "verdict") if !met && !fails && undecided => UNDECIDED.into(),
         (Question::Rule, "verdict") => met.into(),
         (Question::Rule, "meet it") => {
             format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
@@ -118,7 +123,8 @@ fn answers(rows: &[Row]) -> Vec<(&str, &Value)> {
 /// Codes of the favourable ones, hardest first.
 fn codes(conditions: &Value) -> Value {
     let codes = conditions.as_array().into_iter().flatten().filter(|one| one["favourable"] == true);
-    let codes: Vec<&str> = codes.filter_map(|one| one["code"].as_str()).collect();
+    let mut codes: Vec<&str> = codes.filter_map(|one| one["code"].as_str()).collect();
+    codes.dedup();
     if codes.is_empty() { Value::Null } else { codes.join(" ").into() }
 }
 

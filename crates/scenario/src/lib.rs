@@ -252,6 +252,8 @@ pub struct Alternatives {
     pub extrapolate: Option<Extrapolation>,
     /// Whether materials that do not cover the bands are left out, with a warning, instead of refused.
     pub skip_uncovered: bool,
+    /// Whether the target's own material is one of them where it is named: what is behind it may be of that too.
+    pub own_too: bool,
 }
 
 /// What is not known beforehand (`[unknown]`).

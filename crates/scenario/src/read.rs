@@ -171,6 +171,7 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
         })?,
         extrapolate: extrapolation(&section)?,
         skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
+        own_too: false,
     })
 }
 

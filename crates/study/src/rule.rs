@@ -71,6 +71,8 @@ pub struct RuleStudy {
     warnings: Vec<Warning>,
     /// Materials that mean another thing than in this program.
     replaced: Vec<String>,
+    /// All figures of every camera.
+    camera_figures: Vec<String>,
     looked_up: Work,
 }
 
@@ -179,7 +181,9 @@ impl RuleStudy {
             clauses.push(kind);
         }
         let replaced = library.replaced().to_vec();
-        Ok(Self { rule: filled, clauses, warnings, replaced, looked_up: library.work() })
+        let figures = |one: &cameras::Named| format!("{:?} {:?}", one.camera, one.uncertainty);
+        let camera_figures = cameras.iter().map(figures).collect();
+        Ok(Self { rule: filled, clauses, warnings, replaced, camera_figures, looked_up: library.work() })
     }
 
     /// The rule with its defaults filled in.
@@ -247,6 +251,7 @@ impl RuleStudy {
             rule,
             on: asked.on,
             replaced: self.replaced.clone(),
+            camera_figures: self.camera_figures.clone(),
             accepted,
             sentence,
             cameras,

@@ -53,8 +53,8 @@ pub(super) struct RuleArgs {
     /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
     accept: Vec<String>,
-    /// Cameras to be judged in the place of the rule's own, by name: the program's, or those of --cameras
-    #[arg(long, value_name = "NAME", num_args = 1.., value_delimiter = ',', conflicts_with_all = ["verify", "sources"])]
+    /// Cameras to be judged in the place of the rule's own, by name: the program's, or those of --cameras; may be given several times
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["verify", "sources", "test"])]
     judge: Vec<String>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
@@ -101,7 +101,15 @@ fn judged(names: &[String]) -> Vec<Setting> {
 }
 
 fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
-    let written = global.written(file)?.with(judged(&args.judge));
+    let written = global.written(file)?;
+    let judged = judged(&args.judge);
+    if let Some(twice) =
+        judged.iter().find(|own| written.settings.iter().any(|other| other.key.starts_with(&own.key)))
+    {
+        let found = Error::malformed("--judge says which cameras there are", "leave out one of the two");
+        return Err(found.for_key(format!("--set {}", twice.key)));
+    }
+    let written = written.with(judged);
     if args.reforms {
         return reforms(&written, global);
     }

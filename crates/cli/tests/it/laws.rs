@@ -69,7 +69,8 @@ fn rules_side_by_side_say_what_each_says_alone() {
         let own = cameras.iter().find(|camera| camera["name"] == row[1]).unwrap();
         let open = own["conditions"].as_array().unwrap().iter().any(|one| one["favourable"] == true);
         let expected = match (row[0], own["verdict"].as_str().unwrap(), open) {
-            ("b.toml", "meets", _) => "as if in force: yes",
+            ("b.toml", "meets", true) => "as if in force: yes, if",
+            ("b.toml", "meets", false) => "as if in force: yes",
             (_, "meets", true) => "yes, if",
             (_, "meets", false) => "yes",
             (_, "undecided", _) => "undecided",
@@ -77,6 +78,7 @@ fn rules_side_by_side_say_what_each_says_alone() {
         };
         assert_eq!(row[2], expected, "{row:?}");
         assert!(close(row[3].parse().unwrap(), own["margin"].as_f64().unwrap(), 1e-12), "{row:?}");
+        assert_eq!(row[4], own["grade"].as_str().unwrap());
     }
     // One camera before all, and what has no answer.
     let judged = folder.run(&["rule", "a.toml", "c.toml", "--judge", "ideal-pnrd"]);
@@ -87,9 +89,63 @@ fn rules_side_by_side_say_what_each_says_alone() {
     );
     assert!(!judged.stdout.contains("flir-a325sc"), "{}", judged.stdout);
     assert!(folder.refusal(&["rule", "a.toml", "--judge", "flir-a325"]).contains("--judge cameras[0]: "));
+    assert!(
+        folder
+            .refusal(&["rule", "a.toml", "--judge", "ideal-pnrd", "--set", "cameras=[\"flir-a325sc\"]"])
+            .contains("--judge")
+    );
+    // One name, two cameras: neither meets both.
+    let own = |figure: &str| {
+        NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "").replace("60 km/h", "6 km/h")
+            + &format!("[[camera]]\nname = \"B\"\npreset = \"ideal-pnrd\"\n{figure}\n")
+    };
+    folder.file("d.toml", &own(""));
+    folder.file("e.toml", &own("flicker_fraction = 0.4"));
+    let twice = folder.run(&["rule", "d.toml", "e.toml"]);
+    assert!(twice.stdout.starts_with("None of 2 cameras meets all 2 rules."), "{}", twice.stdout);
+    assert!(
+        twice.stdout.contains("B (of d.toml)") && twice.stdout.contains("B (of e.toml)"),
+        "{}",
+        twice.stdout
+    );
     let missing = folder.run(&["rule", "a.toml", "c.toml", "none.toml"]);
     assert_eq!(missing.code, 1);
     assert!(missing.stdout.contains("2 of 3 rules that have an answer"), "{}", missing.stdout);
+}
+
+/// A thing of what people are made of is taken for one, whatever else people are made of; a target that is left out of its alternatives is a condition.
+#[test]
+fn the_same_material_is_never_told_in_silence() {
+    let things = NIGHT.replace(
+        "[stop]",
+        "[[clause]]\nname = \"things\"\nkind = \"false-alarm\"\nthings = [\"fabric\"]\n[clause.envelope]\nmaterials_\n\
+         temperature = [\"30 degC\", \"35 degC\"]\n[clause.requirement]\ndetection_probability = 0.9\nfalse_alarm_probability = 0.1\n[clause.stop]",
+    );
+    let things = things
+        .replace("materials_\n", "")
+        .replace("[envelope]\n", "[envelope]\nmaterials = [\"skin\", \"fabric\"]\n");
+    let folder = Folder::with("");
+    for nuisances in ["[]", "[\"temperature\", \"lighting\"]"] {
+        folder.file(
+            "a.toml",
+            &things.replace("[envelope]\nm", &format!("[unknown]\nnuisances = {nuisances}\n[envelope]\nm")),
+        );
+        let camera = folder.json(&["rule", "a.toml", "-q"])["clauses"][0]["cameras"][0].clone();
+        assert_eq!(
+            (&camera["verdict"], camera["margin"].as_f64()),
+            (&"fails".into(), Some(0.0)),
+            "{nuisances}"
+        );
+    }
+    let with =
+        NIGHT.replace("[\"aluminium\"]", "[\"skin\", \"aluminium\"]").replace("flir-a325sc", "ideal-pnrd");
+    folder.file("b.toml", &with.replace("60 km/h", "6 km/h"));
+    let camera = folder.json(&["rule", "b.toml", "-q"])["cameras"][0].clone();
+    let codes = camera["conditions"].as_array().unwrap().iter().map(|one| one["code"].as_str().unwrap());
+    assert!(
+        camera["verdict"] != "meets" || codes.clone().any(|code| code == "materials-left-out"),
+        "{camera}"
+    );
 }
 
 /// A black target of 300.5 K before black walls of at most 299.5 K, seen with 50 mK of noise: a kelvin is ten times two deviations apart.
@@ -123,6 +179,13 @@ fn contrast_is_the_kelvins_over_twice_the_noise() {
         &text("299.5 K", "").replace("[clause.alternatives]\ntemperature = [\"280 K\", \"299.5 K\"]\n", ""),
     );
     assert!(folder.refusal(&["rule", "a.toml"]).contains("nothing says how warm that may be"));
+    // What is behind may be of the target's own material, in company too, and is then no warmer than its range.
+    folder.file("white.csv", "wavenumber_cm1,emissivity\n600,0.5\n1500,0.5\n");
+    let both = text("299.5 K", "").replace("behind = [", "behind = [\"white.csv\", ");
+    folder.file("a.toml", &both.replace("299.5 K", "301 K"));
+    assert_eq!(folder.json(&["rule", "a.toml", "-q"])["clauses"][0]["cameras"][0]["verdict"], "fails");
+    folder.file("a.toml", &both.replace("[[clause]]", "[unknown]\nnuisances = [\"lighting\"]\n[[clause]]"));
+    assert!(folder.refusal(&["rule", "a.toml"]).contains("taken as known, and is not"));
     folder.file("a.toml", &text("299.5 K", "").replace("behind = [\"black.csv\"]\n", ""));
     assert!(folder.refusal(&["rule", "a.toml"]).contains("behind"));
 }

@@ -6,11 +6,10 @@ use crate::table::{Table, number};
 use crate::text::columns::aligned;
 use crate::text::significant;
 use crate::words::several::{
-    BESIDES, IN_BRACKETS, LEAST_OR_SPOILED, NOT_ALL, SIDE_BY_SIDE, UNDECIDED, YES_IF, before_all, hardest,
-    not_the_same,
+    BESIDES, BESIDES_IF, IN_BRACKETS, LEAST_OR_SPOILED, NOT_ALL, NOT_THE_SAME, SIDE_BY_SIDE, UNDECIDED,
+    YES_IF, before_all, hardest, of_rule,
 };
 use serde_json::Value;
-use std::collections::BTreeSet;
 
 /// A camera before a rule.
 struct Cell<'a> {
@@ -25,6 +24,13 @@ struct Cell<'a> {
     scene: Option<&'a str>,
 }
 
+/// A camera of some of the rules: what has the same name and other figures is another one.
+#[derive(PartialEq)]
+struct Camera<'a> {
+    name: &'a str,
+    digest: &'a str,
+}
+
 /// A rule that was answered.
 struct Law<'a> {
     name: &'a str,
@@ -32,15 +38,20 @@ struct Law<'a> {
 }
 
 impl<'a> Law<'a> {
-    fn cameras(&self) -> impl Iterator<Item = (&'a str, &'a Value)> {
-        let all = self.answer["cameras"].as_array().into_iter().flatten();
-        all.filter_map(|camera| Some((camera["name"].as_str()?, camera)))
+    fn cameras(&self) -> impl Iterator<Item = (Camera<'a>, &'a Value)> {
+        let all = self.answer["cameras"].as_array().into_iter().flatten().enumerate();
+        all.filter_map(|(index, own)| {
+            let digest = self.answer["camera_digests"][index].as_str().unwrap_or_default();
+            Some((Camera { name: own["name"].as_str()?, digest }, own))
+        })
     }
 
-    fn before(&self, camera: &str) -> Option<Cell<'a>> {
-        let (_, own) = self.cameras().find(|(name, _)| *name == camera)?;
+    fn before(&self, camera: &Camera<'_>) -> Option<Cell<'a>> {
+        let (_, own) = self.cameras().find(|(known, _)| known == camera)?;
+        let name = camera.name;
         let conditional = hangs(&own["conditions"]);
         let verdict = match own["verdict"].as_str() {
+            Some("meets") if self.idle() && conditional => BESIDES_IF,
             Some("meets") if self.idle() => BESIDES,
             Some("meets") if conditional => YES_IF,
             Some("meets") => "yes",
@@ -54,10 +65,10 @@ impl<'a> Law<'a> {
         let lines = self.answer["clauses"].as_array().into_iter().flatten();
         let lines = lines.filter(|line| clause.is_none() || line["name"].as_str() == clause);
         let line =
-            lines.filter_map(|line| line["cameras"].as_array()).flatten().find(|line| line["name"] == camera);
-        let by = line.and_then(|line| line["fails_by"].as_array()).into_iter().flatten();
+            lines.filter_map(|line| line["cameras"].as_array()).flatten().find(|line| line["name"] == name);
+        let by = own["fails_by"].as_array().or_else(|| line?["fails_by"].as_array()).into_iter().flatten();
         let scene = self.answer["hardest"].as_array().into_iter().flatten().find(|scene| {
-            scene["camera"] == camera && (clause.is_none() || scene["clause"].as_str() == clause)
+            scene["camera"] == name && (clause.is_none() || scene["clause"].as_str() == clause)
         });
         Some(Cell {
             verdict,
@@ -65,7 +76,7 @@ impl<'a> Law<'a> {
             margin,
             clause,
             spoiled: by.filter_map(Value::as_str).filter(|_| spoils).collect(),
-            evidence: own["evidence"].as_str().unwrap_or_default(),
+            evidence: own["grade"].as_str().unwrap_or_default(),
             scene: scene.and_then(|scene| scene["scene"].as_str()),
         })
     }
@@ -74,20 +85,6 @@ impl<'a> Law<'a> {
     fn idle(&self) -> bool {
         !self.answer["on"].is_null() && self.answer["in_force"] != true
     }
-
-    /// What the rule says of a camera, its name and the words about it left out.
-    fn figures(&self, camera: &str) -> Option<Value> {
-        let at = self.cameras().position(|(name, _)| name == camera)?;
-        let mut own = self.answer["rule"]["camera"].get(at)?.clone();
-        own.as_object_mut().map(|own| own.remove("name"));
-        Some(own)
-    }
-}
-
-/// Whether two cameras have another value of the same figure; what only one of two rules needs is no difference.
-fn differ(one: &Value, other: &Value) -> bool {
-    let figures = one.as_object().into_iter().flatten();
-    figures.filter_map(|(key, value)| Some((value, other.get(key)?))).any(|(value, other)| value != other)
 }
 
 fn laws<'a>(answers: &[(&'a str, &'a Value)]) -> Vec<Law<'a>> {
@@ -99,14 +96,26 @@ pub(super) fn hangs(conditions: &Value) -> bool {
     conditions.as_array().is_some_and(|all| all.iter().any(|one| one["favourable"] == true))
 }
 
-/// All cameras, in the order in which the rules name them.
-fn cameras<'a>(laws: &[Law<'a>]) -> Vec<&'a str> {
-    let mut known = BTreeSet::new();
-    laws.iter().flat_map(Law::cameras).map(|(name, _)| name).filter(|name| known.insert(*name)).collect()
+/// All cameras, in the order in which the rules name them, each with what it is called: of several of one name by its rule too.
+fn cameras<'a>(laws: &[Law<'a>]) -> Vec<(Camera<'a>, String)> {
+    let mut found: Vec<(Camera<'a>, &'a str)> = Vec::new();
+    for law in laws {
+        for (camera, _) in law.cameras() {
+            if !found.iter().any(|(known, _)| *known == camera) {
+                found.push((camera, law.name));
+            }
+        }
+    }
+    let alone = |name: &str| found.iter().filter(|(camera, _)| camera.name == name).count() == 1;
+    let called: Vec<String> = found
+        .iter()
+        .map(|(Camera { name, .. }, law)| if alone(name) { (*name).to_owned() } else { of_rule(name, law) })
+        .collect();
+    found.into_iter().map(|(camera, _)| camera).zip(called).collect()
 }
 
 /// Whether all rules name a camera and are met by it.
-fn meets_all(laws: &[Law<'_>], camera: &str) -> bool {
+fn meets_all(laws: &[Law<'_>], camera: &Camera<'_>) -> bool {
     laws.iter().all(|law| law.before(camera).is_some_and(|cell| cell.meets))
 }
 
@@ -117,17 +126,20 @@ pub(super) fn text(answers: &[(&str, &Value)], asked: usize) -> Option<String> {
     if laws.len() < 2 || cameras.is_empty() {
         return None;
     }
-    let meet: Vec<&str> = cameras.iter().filter(|camera| meets_all(&laws, camera)).copied().collect();
-    let open = meet
-        .iter()
-        .any(|camera| laws.iter().any(|law| law.before(camera).is_some_and(|cell| cell.verdict == YES_IF)));
-    let mut out = before_all(&meet, open, cameras.len(), laws.len(), asked);
+    let all = cameras.iter().filter(|(camera, _)| meets_all(&laws, camera));
+    let meet: Vec<&(Camera<'_>, String)> = all.collect();
+    let is_open = |camera: &Camera<'_>| {
+        laws.iter().any(|law| law.before(camera).is_some_and(|cell| cell.verdict == YES_IF))
+    };
+    let open = meet.iter().any(|(camera, _)| is_open(camera));
+    let names: Vec<&str> = meet.iter().map(|(_, called)| called.as_str()).collect();
+    let mut out = before_all(&names, open, cameras.len(), laws.len(), asked);
     let mut lines = vec![
         std::iter::once("camera".to_owned())
             .chain(laws.iter().map(|law| law.name.to_owned()))
             .collect::<Vec<_>>(),
     ];
-    for camera in &cameras {
+    for (camera, called) in &cameras {
         let cell = |law: &Law<'_>| match law.before(camera) {
             Some(cell) => {
                 let why = match cell.spoiled.as_slice() {
@@ -139,23 +151,16 @@ pub(super) fn text(answers: &[(&str, &Value)], asked: usize) -> Option<String> {
             }
             None => "-".into(),
         };
-        lines.push(std::iter::once((*camera).to_owned()).chain(laws.iter().map(cell)).collect());
+        lines.push(std::iter::once(called.clone()).chain(laws.iter().map(cell)).collect());
     }
     out += &aligned(&lines, &[]);
     out += IN_BRACKETS;
-    let differing: Vec<&str> = cameras
-        .iter()
-        .filter(|camera| {
-            let all: Vec<Value> = laws.iter().filter_map(|law| law.figures(camera)).collect();
-            all.iter().any(|one| all.iter().any(|other| differ(one, other)))
-        })
-        .copied()
-        .collect();
-    if !differing.is_empty() {
-        out += &not_the_same(&differing);
+    if cameras.iter().any(|(camera, called)| camera.name != called) {
+        out += NOT_THE_SAME;
     }
     for law in &laws {
-        let scenes = cameras.iter().filter_map(|camera| Some((*camera, law.before(camera)?.scene?)));
+        let scenes =
+            cameras.iter().filter_map(|(camera, called)| Some((called.as_str(), law.before(camera)?.scene?)));
         out += &hardest(law.name, &scenes.collect::<Vec<_>>());
     }
     Some(out)
@@ -180,19 +185,19 @@ pub(super) fn plot(answers: &[(&str, &Value)]) -> Option<Plot> {
     ]);
     let mut figure = NamedValues::new(
         SIDE_BY_SIDE,
-        cameras.iter().map(|name| (*name).to_owned()).collect(),
+        cameras.iter().map(|(_, called)| called.clone()).collect(),
         Axis::log("margin: what is there over what is demanded"),
     )
     .subtitle(LEAST_OR_SPOILED)
-    .failing(cameras.iter().map(|camera| !meets_all(&laws, camera)).collect())
+    .failing(cameras.iter().map(|(camera, _)| !meets_all(&laws, camera)).collect())
     .below(NOT_ALL);
     for law in &laws {
-        let cells: Vec<Option<Cell<'_>>> = cameras.iter().map(|camera| law.before(camera)).collect();
-        for (camera, cell) in cameras.iter().zip(&cells) {
+        let cells: Vec<Option<Cell<'_>>> = cameras.iter().map(|(camera, _)| law.before(camera)).collect();
+        for ((_, called), cell) in cameras.iter().zip(&cells) {
             let Some(cell) = cell else { continue };
             table.push(vec![
                 law.name.to_owned(),
-                (*camera).to_owned(),
+                called.clone(),
                 cell.verdict.to_owned(),
                 number(cell.margin),
                 cell.evidence.to_owned(),

@@ -102,11 +102,13 @@ fn which(who: &WhoMeets) -> String {
 impl Say for Quotable {
     fn say(&self) -> String {
         let mut out = format!(
-            "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
+            "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {}{} with {} reliability \
              (statistical distance d of at least {})",
             ranges(&self.envelope, self.stop.as_ref(), self.units),
             either(&with_spectra(&self.envelope, &self.envelope.materials)),
             either(&with_spectra(&self.envelope, &self.envelope.alternatives)),
+            self.alternatives_k
+                .map_or_else(String::new, |kelvin| format!(" of {}", self.units.temperatures(kelvin))),
             demanded(self.required),
             significant(self.required, 4),
         );

@@ -22,6 +22,9 @@ pub(crate) fn unanswered(failed: usize, all: usize) -> String {
 /// A verdict on a camera by a rule that does not hold on the day.
 pub(crate) const BESIDES: &str = "as if in force: yes";
 
+/// The same where it hangs on something.
+pub(crate) const BESIDES_IF: &str = "as if in force: yes, if";
+
 /// The title of rules side by side.
 pub(crate) const SIDE_BY_SIDE: &str = "Rules side by side";
 
@@ -56,11 +59,11 @@ pub(crate) fn before_all(
 }
 
 /// That one name stands for several cameras.
-pub(crate) fn not_the_same(cameras: &[&str]) -> String {
-    format!(
-        "  not the same figures in every rule: {}; `--judge` holds the same camera against all\n",
-        cameras.join(", ")
-    )
+pub(crate) const NOT_THE_SAME: &str = "  cameras of one name with other figures are others, each of the rule in brackets; `--judge` holds the same camera against all\n";
+
+/// A camera of a name that one of another rule has too.
+pub(crate) fn of_rule(camera: &str, law: &str) -> String {
+    format!("{camera} (of {law})")
 }
 
 /// The scenes that decide by a rule.

@@ -23,6 +23,7 @@ use crate::read::{of_root, requirement};
 use crate::section::{Entry, Section, without_repetition};
 use crate::{Envelope, MaterialRef, Reliability, Requirement, Scenario, Scope, Source, write};
 use hadar::error::{Error, Result};
+use hadar::fisher::Nuisance;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -232,7 +233,12 @@ fn contrast(section: &Section<'_>, plain: &Section<'_>) -> Result<Scenario> {
         let error = Error::malformed("materials beside `behind`", instead);
         return Err(plain.fail("alternatives.materials", error));
     }
-    scenario.alternatives.materials = Some(behind);
+    if !scenario.unknown.nuisances.contains(&Nuisance::Temperature) {
+        let found = "the temperature of what is behind the target is taken as known, and is not";
+        let instead = "write nuisances = [\"temperature\", \"lighting\"] in [clause.unknown]";
+        return Err(plain.fail("unknown.nuisances", Error::malformed(found, instead)));
+    }
+    (scenario.alternatives.materials, scenario.alternatives.own_too) = (Some(behind), true);
     Ok(scenario)
 }
 
@@ -263,6 +269,8 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
     if !has_own(plain, "alternatives", "materials") {
         scenario.alternatives.materials = Some(people);
     }
+    // A thing of what people are made of may be taken for one.
+    scenario.alternatives.own_too = true;
     if !plain.has_own("alternatives") {
         // What robots may be like says nothing of people: these may be as they like, which is the hardest.
         (scenario.alternatives.temperature_range_k, scenario.alternatives.lighting_range) = (None, None);

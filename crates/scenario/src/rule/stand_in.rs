@@ -72,7 +72,8 @@ impl StandInSpec {
         })?;
         let error = emissivity_error::read(&section, emissivity_error::Of::Absolute)?;
         let correlation_cm1 = section.quantity("correlation")?;
-        let shape = match (error, correlation_cm1) {
+        let shape = match (error.filter(|error| *error > 0.0), correlation_cm1) {
+            (None, _) if error.is_some() => None,
             (None, None) => None,
             (None, Some(_)) => {
                 let found = "how far errors of a shape reach, and not how large they are";

@@ -191,9 +191,11 @@ impl<'a> Finder<'a> {
                 let own = materials.iter().position(|material| *material == self.scenario.target.material);
                 if let Some(own) = own
                     && found.len() > 1
+                    && !wanted.own_too
                 {
                     found.remove(own);
                     let target = target.name.clone();
+                    self.left_out.push(target.clone());
                     self.warnings.push(Warning::TargetAmongAlternatives { target });
                 }
                 found

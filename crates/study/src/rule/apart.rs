@@ -224,6 +224,12 @@ impl TellApart {
         }
     }
 
+    /// Temperatures that alternatives may have, where the clause says so.
+    fn stated_alternatives_k(&self) -> Option<[f64; 2]> {
+        let stated = self.scenario.source.lines.contains_key("alternatives.temperature");
+        self.scenario.alternatives.temperature_range_k.filter(|_| stated)
+    }
+
     pub(super) fn requirement(
         &self,
         cameras: &[CameraVerdict],
@@ -240,6 +246,7 @@ impl TellApart {
             && !self.scenario.is_of_object();
         let quotable = Quotable {
             envelope: envelope.clone(),
+            alternatives_k: self.stated_alternatives_k(),
             required: self.required,
             speed_m_s,
             stop: self.stop.as_ref().map(StopResult::of),

@@ -28,6 +28,8 @@ pub struct RuleAnswer {
     pub on: Option<Date>,
     /// Materials by a name of this program that are others here.
     pub replaced: Vec<String>,
+    /// All figures of every camera, looked up: the same of the same camera in any rule. Not in the JSON.
+    pub camera_figures: Vec<String>,
     /// Codes of conditions that whoever asks accepts.
     pub accepted: Vec<String>,
     /// Which cameras do, in JSON a sentence.

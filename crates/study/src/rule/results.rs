@@ -69,6 +69,8 @@ pub struct RuleRequirement {
 pub struct Quotable {
     /// Where it is demanded.
     pub envelope: EnvelopeResult,
+    /// Temperatures that the alternatives may have, K; any where `None`.
+    pub alternatives_k: Option<[f64; 2]>,
     /// Statistical distance demanded.
     pub required: f64,
     /// Speed of a vehicle that drives forward, m s⁻¹.

@@ -334,6 +334,11 @@ fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<V
             for distance_m in distances {
                 scenario.target.distance_m = distance_m;
                 let mut study = Study::new(&scenario, library)?;
+                if let Some(class) = study.members[1].iter().find(|members| members.spec.is_some()) {
+                    let found = format!("`{}` is a class, and a stand-in is one material", class.name);
+                    let error = Error::malformed(found, "name its members, each a stand-in of its own");
+                    return Err(error.at(apart.scenario.place("stand_in.materials")));
+                }
                 if others.is_empty() {
                     study.alternatives.clear();
                 }
@@ -490,7 +495,12 @@ fn row(
             (edge, hardest) = (own, shape);
         }
     }
-    let at = of(hardest, edge.unwrap_or(0.0), &search)?;
+    let mut at = of(hardest, edge.unwrap_or(0.0), &search)?;
+    // Where none passes the farthest of all shapes is told, at the very temperature.
+    for shape in 0..ends.first().filter(|_| edge.is_none()).map_or(0, |before| before.shapes.len()) {
+        let other = of(shape, 0.0, &search)?;
+        at = if other.distance > at.distance { other } else { at };
+    }
     let proof = Effort { relative_tolerance: 0.0, boxes: PROOF_BOXES, enough: Some(required) };
     let mut proved = None;
     if provable && edge.is_some() {

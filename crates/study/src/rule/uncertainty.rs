@@ -345,7 +345,8 @@ impl<'a> Uncertain<'a> {
         order::descending(&mut budget, |b| b.share);
         let (k, first_order) = (self.coverage_factor, var.sqrt());
         let (low, high) = (margin - k * first_order, margin + k * first_order);
-        let (low, high) = (low.min(drawn.surely_above), high.max(drawn.interval[1]));
+        // No margin is below 0.
+        let (low, high) = (low.min(drawn.surely_above).max(0.0), high.max(drawn.interval[1]));
         Ok(MarginUncertainty { coverage_factor: k, low, high, first_order, draws: Some(drawn), budget })
     }
 

@@ -516,6 +516,7 @@ prop_compose! {
                 lighting_range,
                 extrapolate,
                 skip_uncovered,
+                own_too: false,
             },
             atmosphere,
             bands,
