@@ -6,7 +6,7 @@ use crate::bundle::Bundle;
 use crate::table::{Table, number};
 use crate::text::columns::aligned;
 use crate::text::significant;
-use crate::words::several::{NOT_IN_FORCE, UNDECIDED, YES_IF, only_if, unanswered};
+use crate::words::several::{NOT_IN_FORCE, UNDECIDED, YES_IF, of_best, only_if, unanswered};
 use hadar::error::Result;
 use hadar::order;
 use hadar_study::sweep::Question;
@@ -168,11 +168,17 @@ pub fn text(question: Question, rows: &[Row]) -> String {
         let mut line = vec![row.scenario.clone()];
         match (&row.answer, &row.error) {
             (Some(answer), _) => {
-                for ((head, _), cell) in columns(question).iter().zip(cells(question, answer)) {
+                let found = cells(question, answer);
+                // Of a rule the conditions are those of its best camera, and of one that is not in force nothing is said.
+                let best = columns(question).iter().position(|(head, _)| *head == "best");
+                let of = best
+                    .map_or_else(|| row.scenario.clone(), |at| of_best(&row.scenario, &shown(&found[at])));
+                let idle = found.first() == Some(&NOT_IN_FORCE.into());
+                for ((head, _), cell) in columns(question).iter().zip(found) {
                     let whole = shown(&cell);
                     let is_folded = *head == "if" && whole.contains(' ');
-                    if is_folded {
-                        let _ = writeln!(rests_on, "{}", only_if(&row.scenario, &whole));
+                    if is_folded && !idle {
+                        let _ = writeln!(rests_on, "{}", only_if(&of, &whole));
                     }
                     line.push(if is_folded { folded(&whole) } else { whole });
                 }

@@ -186,6 +186,8 @@ fn contrast_is_the_kelvins_over_twice_the_noise() {
     assert_eq!(folder.json(&["rule", "a.toml", "-q"])["clauses"][0]["cameras"][0]["verdict"], "fails");
     folder.file("a.toml", &both.replace("[[clause]]", "[unknown]\nnuisances = [\"lighting\"]\n[[clause]]"));
     assert!(folder.refusal(&["rule", "a.toml"]).contains("taken as known, and is not"));
+    folder.file("a.toml", &both.replace("[[clause]]", "[unknown.priors]\ntemperature = \"1 K\"\n[[clause]]"));
+    assert!(folder.refusal(&["rule", "a.toml"]).contains("unknown.priors.temperature: a prior says"));
     folder.file("a.toml", &text("299.5 K", "").replace("behind = [\"black.csv\"]\n", ""));
     assert!(folder.refusal(&["rule", "a.toml"]).contains("behind"));
 }

@@ -9,6 +9,11 @@ pub(crate) const UNDECIDED: &str = "undecided";
 /// The verdict of a rule that does not hold on the day.
 pub(crate) const NOT_IN_FORCE: &str = "no, not in force";
 
+/// The best camera of a rule.
+pub(crate) fn of_best(rule: &str, camera: &str) -> String {
+    format!("{rule}, {camera}")
+}
+
 /// What the 'yes' of a scenario rests on, by all of its codes.
 pub(crate) fn only_if(scenario: &str, codes: &str) -> String {
     format!("{scenario}: yes only if {codes}")

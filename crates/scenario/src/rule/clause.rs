@@ -238,6 +238,11 @@ fn contrast(section: &Section<'_>, plain: &Section<'_>) -> Result<Scenario> {
         let instead = "write nuisances = [\"temperature\", \"lighting\"] in [clause.unknown]";
         return Err(plain.fail("unknown.nuisances", Error::malformed(found, instead)));
     }
+    if scenario.unknown.priors.contains_key(&Nuisance::Temperature) {
+        let found = "a prior says that what is behind the target is about as warm as the target, and alternatives.temperature how warm it is";
+        let error = Error::malformed(found, "leave it out of [clause.unknown]");
+        return Err(plain.fail("unknown.priors.temperature", error));
+    }
     (scenario.alternatives.materials, scenario.alternatives.own_too) = (Some(behind), true);
     Ok(scenario)
 }

@@ -87,16 +87,7 @@ impl TellApart {
         let place = |key: &str| self.rule.camera_place(candidate.named.index, key);
         let uncertain = self.uncertain(candidate, &place)?;
         let alone = alone && uncertain.is_none();
-        let known = earlier.iter().find_map(|clause| clause.worst(self, index, alone));
-        let (worst, pairs) = match known {
-            Some(known) => {
-                demand::spared(Thing::WorstCases, Reason::Shared, known.1.len() as u64);
-                known.clone()
-            }
-            None => self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
-                Error::malformed("there is no pair of materials", "name one in alternatives.materials")
-            })?,
-        };
+        let (worst, pairs) = self.worst_or_known(index, alone, earlier, progress)?;
         let kept = (alone, (worst.clone(), pairs.clone()));
         let least = pairs.iter().map(|pair| pair.distance).fold(f64::INFINITY, f64::min);
         let near: Vec<Estimate> =
@@ -187,6 +178,24 @@ impl TellApart {
             warnings,
         };
         Ok((verdict, kept))
+    }
+
+    /// The worst of all pairs before a camera: what an earlier clause found, if that is the same question.
+    fn worst_or_known(
+        &self,
+        index: usize,
+        alone: bool,
+        earlier: &[Earlier<'_>],
+        progress: &dyn Fn(usize),
+    ) -> Result<Worst> {
+        if let Some(known) = earlier.iter().find_map(|clause| clause.worst(self, index, alone)) {
+            demand::spared(Thing::WorstCases, Reason::Shared, known.1.len() as u64);
+            return Ok(known.clone());
+        }
+        let found = self.worst(&self.candidates[index], alone, &|_, _| true, progress)?;
+        found.ok_or_else(|| {
+            Error::malformed("there is no pair of materials", "name one in alternatives.materials")
+        })
     }
 
     /// 'Can' is said of what is proved, and of few counts by their own law: between that and the worst scene found it is undecided.

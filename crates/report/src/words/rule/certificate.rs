@@ -30,12 +30,7 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     let mut out = Document::default();
     out.heading(1, &title(answer));
     out.quote(&what_it_is(&answer.rule));
-    let stated = [("Authority", &about.authority), ("Version", &about.version), ("Status", &about.status)];
-    let mut fields: Vec<(&'static str, String)> =
-        stated.into_iter().filter_map(|(label, value)| Some((label, value.clone()?))).collect();
-    fields.extend(in_force(&answer.rule).map(|dates| ("Holds", dates)));
-    let day = answer.on.map_or_else(|| "none was stated".to_owned(), |day| day.to_string());
-    fields.push(("Day that is asked about", day));
+    let mut fields = about_the_rule(answer);
     fields.push(("Checked with", format!("hadar {VERSION}, commit {}", provenance.commit)));
     fields.push(("Command", format!("{}, seed {}", provenance.command_line(), provenance.seed)));
     out.fields(fields);
@@ -78,6 +73,18 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     out.heading(2, "What the words mean");
     out.items(WORDS.map(|[word, meaning]| (Some(word.to_owned()), meaning.to_owned())));
     out
+}
+
+/// What the rule says of itself, and the day that is asked about.
+pub(super) fn about_the_rule(answer: &RuleAnswer) -> Vec<(&'static str, String)> {
+    let about = &answer.rule.about;
+    let stated = [("Authority", &about.authority), ("Version", &about.version), ("Status", &about.status)];
+    let mut fields: Vec<(&'static str, String)> =
+        stated.into_iter().filter_map(|(label, value)| Some((label, value.clone()?))).collect();
+    fields.extend(in_force(&answer.rule).map(|dates| ("Holds", dates)));
+    let day = answer.on.map_or_else(|| "none was stated".to_owned(), |day| day.to_string());
+    fields.push(("Day that is asked about", day));
+    fields
 }
 
 /// What the page is, and what it is not.
@@ -150,41 +157,52 @@ pub(super) fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
     }
 }
 
-/// Reasons in words, those of a kind together.
+const FAILS: &str = "does not meet it";
+const IS_UNDECIDED: &str = "undecided";
+const IS_UNPROVED: &str = "met, and not proved";
+const RESTS: &str = "rests on conditions that nobody accepted (--accept)";
+
+/// A reason that is of a camera: under which heading, where, and what else is said of it.
+fn of_a_camera(reason: &NotPassed) -> Option<(&'static str, &CameraBeforeClause, String)> {
+    match reason {
+        NotPassed::Fails(place) => Some((FAILS, place, String::new())),
+        NotPassed::Undecided(place) => Some((IS_UNDECIDED, place, String::new())),
+        NotPassed::NotProved(place, grade) => Some((IS_UNPROVED, place, format!(", {}", grade.name()))),
+        NotPassed::RestsOn(place, codes) => Some((RESTS, place, format!(": {}", codes.join(", ")))),
+        _ => None,
+    }
+}
+
+/// Reasons in words, those of a kind together, and of those the ones of a camera.
 pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
-    let of = |place: &CameraBeforeClause| match &place.clause {
-        Some(clause) => format!("{} ({clause})", place.camera),
-        None => place.camera.clone(),
-    };
-    let all = |wanted: &dyn Fn(&NotPassed) -> Option<String>| -> Vec<String> {
-        reasons.iter().filter_map(wanted).collect()
-    };
     let mut out = Vec::new();
-    let mut one = |names: Vec<String>, what: &str| {
-        if !names.is_empty() {
-            out.push(format!("{what}: {}", names.join("; ")));
+    for heading in [FAILS, IS_UNDECIDED, IS_UNPROVED, RESTS] {
+        let of_heading = reasons.iter().filter_map(of_a_camera).filter(|(own, ..)| *own == heading);
+        let mut groups: Vec<(&str, String, Vec<&str>)> = Vec::new();
+        for (_, place, what) in of_heading {
+            match groups.iter_mut().find(|(camera, own, _)| *camera == place.camera && *own == what) {
+                Some((.., clauses)) => clauses.extend(place.clause.as_deref()),
+                None => groups.push((&place.camera, what, place.clause.as_deref().into_iter().collect())),
+            }
         }
-    };
-    one(
-        all(&|one| if let NotPassed::Fails(place) = one { Some(of(place)) } else { None }),
-        "does not meet it",
-    );
-    one(all(&|one| if let NotPassed::Undecided(place) = one { Some(of(place)) } else { None }), "undecided");
-    let unproved = |one: &NotPassed| match one {
-        NotPassed::NotProved(place, grade) => Some(format!("{} ({})", of(place), grade.name())),
-        _ => None,
-    };
-    one(all(&unproved), "met, and not proved");
-    let rests = |one: &NotPassed| match one {
-        NotPassed::RestsOn(place, codes) => Some(format!("{}: {}", of(place), codes.join(", "))),
-        _ => None,
-    };
-    one(all(&rests), "rests on conditions that nobody accepted (--accept)");
+        let said = |(camera, what, clauses): (&str, String, Vec<&str>)| match clauses.as_slice() {
+            [] => format!("{camera}{what}"),
+            some => format!("{camera} ({}){what}", some.join(", ")),
+        };
+        let cameras: Vec<String> = groups.into_iter().map(said).collect();
+        if !cameras.is_empty() {
+            out.push(format!("{heading}: {}", cameras.join("; ")));
+        }
+    }
     let changed = |one: &NotPassed| match one {
         NotPassed::Changed { key, value } => Some(format!("{key} = {value}")),
         _ => None,
     };
-    one(all(&changed), "values stand in the place of the rule's own, so that this is another rule");
+    let changed: Vec<String> = reasons.iter().filter_map(changed).collect();
+    if !changed.is_empty() {
+        let what = "values stand in the place of the rule's own, so that this is another rule";
+        out.push(format!("{what}: {}", changed.join("; ")));
+    }
     for reason in reasons {
         match reason {
             NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),

@@ -1,6 +1,6 @@
 //! The answer to a rule cell by cell, for a page that sets tables of its own. Every word of it is that of the certificate or of the text.
 
-use super::certificate::{in_a_word, in_force, passed, said, title, what_it_is};
+use super::certificate::{about_the_rule, in_a_word, passed, said, title, what_it_is};
 use super::hardest::scene_in_words;
 use super::market::of_market;
 use super::reforms::verdict;
@@ -93,12 +93,7 @@ pub struct Cell {
 #[must_use]
 pub fn of(answer: &RuleAnswer) -> Shown {
     let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
-    let stated = [("Authority", &about.authority), ("Version", &about.version), ("Status", &about.status)];
-    let mut fields: Vec<(&'static str, String)> =
-        stated.into_iter().filter_map(|(label, value)| Some((label, value.clone()?))).collect();
-    fields.extend(in_force(&answer.rule).map(|dates| ("Holds", dates)));
-    let day = answer.on.map_or_else(|| "none was stated".to_owned(), |day| day.to_string());
-    fields.push(("Day that is asked about", day));
+    let mut fields = about_the_rule(answer);
     fields.extend(about.text.clone().map(|text| ("Wording", text)));
     let (result, reasons) = answer.outcome();
     let whole = answer.cameras.iter().map(|camera| Cell {
