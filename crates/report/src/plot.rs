@@ -72,7 +72,7 @@ pub fn number(value: f64) -> String {
 /// Anything that can be drawn.
 #[derive(Debug, Clone)]
 pub enum Figure {
-    /// Curves and points over one or two panels.
+    /// Curves and points over one or several panels.
     Line(LineFigure),
     /// A quantity over a plane, in colours.
     HeatMap(HeatMap),

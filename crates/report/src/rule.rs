@@ -2,6 +2,7 @@
 //!
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
+mod course;
 mod moved;
 mod record;
 mod reforms;
@@ -94,6 +95,7 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
     bundle.add_conditions(&rests_on.collect::<Vec<_>>())?;
     bundle.add_warnings(&warnings(answer))?;
     bundle.add_plots(&[margins(answer)])?;
+    bundle.add_plots(&course::plots(&study.courses(answer)?, study.rule().scenario.units()))?;
     Ok(bundle)
 }
 

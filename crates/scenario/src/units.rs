@@ -87,8 +87,19 @@ impl Units {
     /// A speed in m s⁻¹.
     #[must_use]
     pub fn speed(self, m_s: f64) -> String {
-        let number = Dimension::Speed.in_unit(m_s, self.speed).unwrap_or(m_s);
-        format!("{} {}", significant(number, 3), self.speed)
+        format!("{} {}", significant(self.speed_number(m_s), 3), self.speed)
+    }
+
+    /// The number of a speed in m s⁻¹.
+    #[must_use]
+    pub fn speed_number(self, m_s: f64) -> f64 {
+        Dimension::Speed.in_unit(m_s, self.speed).unwrap_or(m_s)
+    }
+
+    /// Unit of speeds, as it was written.
+    #[must_use]
+    pub const fn speed_unit(self) -> &'static str {
+        self.speed
     }
 
     /// A range of temperatures in K, with the digits it was written with.

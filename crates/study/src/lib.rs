@@ -89,12 +89,12 @@ pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
     ApartAnswer, ApproachResult, BeforeLaw, BudgetLine, CameraAnswer, CameraBeforeClause, CameraVerdict,
-    Certified, ClauseAnswer, CrossingResult, Definition, Drawn, EmissivityError, EnvelopeResult, Extent,
-    FiguresMoved, Fixes, Found, IdealCamera, LightTime, LimitingScene, Line, MarginUncertainty, Market,
-    Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Moved, Neighbourhood, NotIdentifiable,
-    NotInForce, NotPassed, Outcome, Proof, Quotable, Reformed, Reforms, RuleAnswer, RuleAsked,
-    RuleRequirement, RuleStudy, SafetyOfRule, ShapesDrawn, StandIn, StandInAnswer, StandInScene, StopResult,
-    TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+    Certified, ClauseAnswer, Course, CourseOfCamera, CrossingResult, Definition, Drawn, EmissivityError,
+    EnvelopeResult, Extent, FiguresMoved, Fixes, Found, IdealCamera, LightTime, LimitingScene, Line,
+    MarginUncertainty, Market, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Moment, Moved,
+    Neighbourhood, NotIdentifiable, NotInForce, NotPassed, Outcome, Proof, Quotable, Reformed, Reforms,
+    RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, SafetyOfRule, ShapesDrawn, StandIn, StandInAnswer,
+    StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

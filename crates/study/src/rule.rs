@@ -9,6 +9,7 @@ mod asked;
 mod between;
 mod cameras;
 mod clauses;
+mod course;
 mod depth;
 mod earlier;
 mod envelope;
@@ -34,6 +35,7 @@ pub use clauses::{
     ApartAnswer, CameraAnswer, ClauseAnswer, Definition, Found, Line, Measure, MeasuredAnswer, MeasuredScene,
     MeasuredVerdict, RuleAnswer,
 };
+pub use course::{Course, CourseOfCamera, Moment};
 pub use expected::{TestCheck, TestResult, Told};
 pub use market::Market;
 pub use moved::{FiguresMoved, Moved};

@@ -151,12 +151,15 @@ impl Encounter {
     /// How many pixels the target moves in a second, at most, and where.
     #[must_use]
     pub fn pixels_per_s(&self, camera: &Camera) -> (f64, Decision) {
-        let of = |decision: &Decision| {
-            let [finest, _] = camera.pixel_angles_rad();
-            let along = Motion::within(camera, decision.distance_m, self.bearing_rad(decision));
-            along.blur_pixels(decision.closing_m_s, 1.0) + self.crossing_m_s / (finest * decision.distance_m)
-        };
-        self.most(of)
+        self.most(|decision| self.pixels_per_s_at(camera, decision))
+    }
+
+    /// The same at one speed, the target as far as a decision says.
+    #[must_use]
+    pub fn pixels_per_s_at(&self, camera: &Camera, decision: &Decision) -> f64 {
+        let [finest, _] = camera.pixel_angles_rad();
+        let along = Motion::within(camera, decision.distance_m, self.bearing_rad(decision));
+        along.blur_pixels(decision.closing_m_s, 1.0) + self.crossing_m_s / (finest * decision.distance_m)
     }
 
     /// How far the target moves across the line of sight in a second, at most, m.

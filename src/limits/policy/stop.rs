@@ -76,6 +76,14 @@ pub struct StopFigures {
     pub start: Option<Start>,
 }
 
+impl Decision {
+    /// The same with the decision elsewhere.
+    #[must_use]
+    pub fn at_distance(self, distance_m: f64) -> Self {
+        Self { distance_m, ..self }
+    }
+}
+
 impl Stop {
     /// Checks and takes the figures.
     ///
@@ -161,8 +169,40 @@ impl Stop {
         self.at(turn.clamp(slowest, fastest))
     }
 
-    /// At a speed between the ends.
-    pub(super) fn at(&self, speed_m_s: f64) -> Decision {
+    /// How fast both close in when they touch, the decision of one speed standing no sooner than `decided_m` before, m s⁻¹; 0 where the
+    /// vehicle stands by then, or no longer closes in.
+    ///
+    /// ```
+    /// use hadar::policy::stop::{Stop, StopFigures};
+    /// let stop = Stop::new(StopFigures {
+    ///     speeds_m_s: [10.0; 2],
+    ///     target_m_s: 0.0,
+    ///     latency_s: 0.5,
+    ///     deceleration_m_s2: 5.0,
+    ///     margin_m: 0.0,
+    ///     start: None,
+    /// })?;
+    /// let [decision, _] = stop.decisions();
+    /// // 15 m are needed. Of 11.4 m the latency takes 5, and 100 − 2 · 5 · 6.4 = 36 = 6².
+    /// assert_eq!(stop.impact_m_s(&decision, 15.0), 0.0);
+    /// assert!((stop.impact_m_s(&decision, 11.4) - 6.0).abs() < 1e-12);
+    /// assert_eq!(stop.impact_m_s(&decision, 5.0), 10.0);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    #[must_use]
+    pub fn impact_m_s(&self, decision: &Decision, decided_m: f64) -> f64 {
+        let closing = decision.closing_m_s;
+        let gap_m = (decided_m - closing * self.latency_s).max(0.0);
+        let squared = closing * closing - 2.0 * self.deceleration_m_s2 * gap_m;
+        // A target that comes nearer may reach a vehicle that stands by then.
+        let standing = (-self.target_m_s).max(0.0);
+        let rounding = 1e-12 * closing * closing;
+        if squared <= standing * standing + rounding { 0.0 } else { squared.sqrt() }
+    }
+
+    /// At a speed of the range; of others as if they were in it.
+    #[must_use]
+    pub fn at(&self, speed_m_s: f64) -> Decision {
         let closing_m_s = speed_m_s - self.target_m_s;
         let brake_s = speed_m_s.min(closing_m_s) / self.deceleration_m_s2;
         // Of the braking, the mean of the closing speeds at its begin and its end.
@@ -232,6 +272,29 @@ mod tests {
                     v -= if time > 0.5 { 5.0 * step } else { 0.0 };
                 }
                 assert!((gap - 1.5).abs() < 2e-3, "{target_m_s} {decision:?} leaves {gap}");
+            }
+        }
+    }
+
+    /// The motion itself, step by step, from anywhere nearer.
+    #[test]
+    fn a_vehicle_that_decides_later_touches_as_fast_as_said() {
+        for target_m_s in [0.0, 1.4, -1.4, -6.0] {
+            let stop = Stop::new(StopFigures { target_m_s, speeds_m_s: [12.0; 2], ..NIGHT }).unwrap();
+            let decision = stop.decisions()[0];
+            for share in [0.05, 0.2, 0.45, 0.7, 0.95, 1.05] {
+                let (mut gap, mut v, mut time, step) = (share * decision.distance_m, 12.0, 0.0, 1e-5);
+                while gap > 0.0 && v > target_m_s.max(0.0) {
+                    gap -= (v - target_m_s) * step;
+                    time += step;
+                    v -= if time > 0.5 { 5.0 * step } else { 0.0 };
+                }
+                let touched = if gap > 0.0 { 0.0 } else { v - target_m_s };
+                let said = stop.impact_m_s(&decision, share * decision.distance_m);
+                assert!(
+                    (said - touched).abs() < 2e-3 * (1.0 + touched),
+                    "{target_m_s} {share} {said} {touched}"
+                );
             }
         }
     }

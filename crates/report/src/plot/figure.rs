@@ -226,7 +226,7 @@ impl Panel {
     }
 }
 
-/// Curves over one panel, or over two that share the horizontal axis.
+/// Curves over panels that share the horizontal axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineFigure {
     /// One line that says what is shown; wraps when long.
@@ -237,14 +237,21 @@ pub struct LineFigure {
     pub x: Axis,
     /// The panel.
     pub panel: Panel,
-    /// A lower panel of less height, e.g. for the difference of two nearly identical curves.
-    pub lower: Option<Panel>,
+    /// Lower panels: a single one of less height, e.g. for the difference of two nearly identical curves.
+    pub lower: Vec<Panel>,
 }
 
 impl LineFigure {
     /// An empty figure.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self { title: title.into(), subtitle: String::new(), x, panel: Panel::new(y), lower: None }
+        Self { title: title.into(), subtitle: String::new(), x, panel: Panel::new(y), lower: Vec::new() }
+    }
+
+    /// A figure of panels over each other; of none an empty one.
+    pub fn over(title: impl Into<String>, x: Axis, panels: Vec<Panel>) -> Self {
+        let mut panels = panels.into_iter();
+        let panel = panels.next().unwrap_or_else(|| Panel::new(Axis::linear("")));
+        Self { title: title.into(), subtitle: String::new(), x, panel, lower: panels.collect() }
     }
 
     /// Sets the small print under the title.
@@ -285,7 +292,7 @@ impl LineFigure {
     /// Adds a lower panel that shares the horizontal axis.
     #[must_use]
     pub fn lower(mut self, panel: Panel) -> Self {
-        self.lower = Some(panel);
+        self.lower.push(panel);
         self
     }
 }

@@ -14,6 +14,7 @@ use hadar::Result;
 const HEIGHT: f64 = 345.0;
 const UPPER_HEIGHT: f64 = 270.0;
 const LOWER_HEIGHT: f64 = 135.0;
+const EVEN_HEIGHT: f64 = 150.0;
 const SOLID: &[f64] = &[];
 const DASHES: [&[f64]; 5] = [SOLID, &[7.0, 4.0], &[0.5, 3.8], &[9.0, 3.5, 0.5, 3.5], &[3.5, 3.0]];
 
@@ -31,14 +32,16 @@ struct Part<'a> {
 }
 
 pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
-    let upper = &figure.panel;
-    let mut parts = match &figure.lower {
-        Some(lower) => vec![
-            Part { panel: upper, height: UPPER_HEIGHT, colours_from: 0 },
-            Part { panel: lower, height: LOWER_HEIGHT, colours_from: upper.series.len() },
-        ],
-        None => vec![Part { panel: upper, height: HEIGHT, colours_from: 0 }],
+    let heights = match figure.lower.as_slice() {
+        [] => (HEIGHT, 0.0),
+        [_] => (UPPER_HEIGHT, LOWER_HEIGHT),
+        _ => (EVEN_HEIGHT, EVEN_HEIGHT),
     };
+    let mut parts = vec![Part { panel: &figure.panel, height: heights.0, colours_from: 0 }];
+    for panel in &figure.lower {
+        let colours_from = parts.iter().map(|part| part.panel.series.len()).sum();
+        parts.push(Part { panel, height: heights.1, colours_from });
+    }
     parts.iter().try_for_each(|part| part.panel.check())?;
 
     let entries = entries(&parts);
@@ -157,7 +160,7 @@ fn symbol(index: usize, series: &Series) -> Symbol {
     Symbol { shape: Shape::series(index), colour, open: series.open }
 }
 
-/// Curves first, then bands; what appears in both panels under one name is listed once.
+/// Curves first, then bands; what appears in several panels under one name is listed once.
 fn entries(parts: &[Part]) -> Vec<Entry> {
     let series = parts.iter().flat_map(|part| {
         part.panel.series.iter().enumerate().map(|(i, series)| {

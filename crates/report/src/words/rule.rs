@@ -2,6 +2,7 @@
 
 pub(crate) mod certificate;
 mod check;
+pub(crate) mod course;
 mod hardest;
 mod market;
 mod measured;

@@ -61,6 +61,19 @@ impl Moving {
         Some(self.pixels_per_s(camera)? * camera.sweep_s(bands))
     }
 
+    /// The same of one speed, the target as far as a decision says.
+    pub(super) fn blur_pixels_at(self, here: &Decision, camera: &Camera, bands: usize) -> f64 {
+        let per_s = match self.encounter {
+            Some(encounter) => encounter.pixels_per_s_at(camera, here),
+            None => {
+                let pace_m_s = here.speed_m_s.max(here.closing_m_s);
+                Motion::of(camera, Some(here.distance_m))
+                    .map_or(0.0, |motion| motion.blur_pixels(pace_m_s, 1.0))
+            }
+        };
+        per_s * camera.sweep_s(bands)
+    }
+
     /// How long the picture moves by less than a pixel, s.
     pub(super) fn sharp_s(self, camera: &Camera) -> Option<f64> {
         self.pixels_per_s(camera).map(f64::recip)

@@ -108,6 +108,11 @@ impl DepthClause {
         Ok(Self { demand: demand.clone(), cameras, set: rule.scenario.source.settings.clone() })
     }
 
+    /// Every camera, with the number of bands that it reads.
+    pub(super) fn looking(&self) -> Vec<(&Named, usize)> {
+        self.cameras.iter().map(|one| (&one.named, one.bands)).collect()
+    }
+
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
         let mut verdicts = Vec::with_capacity(self.cameras.len());
         for (done, camera) in self.cameras.iter().enumerate() {

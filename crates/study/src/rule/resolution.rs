@@ -68,6 +68,11 @@ impl Resolution {
         Ok(MeasuredAnswer { quantity: Measure::Pixels, demanded: self.pixels, definition, cameras })
     }
 
+    /// Every camera, with the number of bands that it reads.
+    pub(super) fn looking(&self) -> Vec<(&Named, usize)> {
+        self.cameras.iter().map(|(named, bands)| (named, bands.len())).collect()
+    }
+
     fn approach(&self, camera: &Camera, bands: usize) -> Option<Approach> {
         self.stop.map(|spec| Approach::of(&spec, camera, bands))
     }

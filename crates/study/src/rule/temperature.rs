@@ -100,6 +100,12 @@ impl TemperatureClause {
         self.cameras.first()?.sighted.first().map(|sighted| &sighted.study)
     }
 
+    /// Every camera, with the number of bands that it reads.
+    pub(super) fn looking(&self) -> Vec<(&Named, usize)> {
+        let bands = |one: &Before| one.sighted.first().map_or(1, |sighted| sighted.study.bands.len());
+        self.cameras.iter().map(|one| (&one.named, bands(one))).collect()
+    }
+
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
         let mut verdicts = Vec::with_capacity(self.cameras.len());
         for (done, camera) in self.cameras.iter().enumerate() {

@@ -5,6 +5,7 @@ mod bands;
 mod camera_bands;
 mod companion;
 mod conditions;
+mod course;
 mod find;
 mod fuzz_readers;
 mod keys;
