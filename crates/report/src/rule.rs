@@ -3,12 +3,16 @@
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
 mod course;
+mod grid;
 mod moved;
 mod record;
 mod reforms;
 mod stand_in;
 
-pub use crate::words::rule::{check, figures_moved, reforms, rows, sources, stand_in, tests, text};
+pub use crate::words::rule::{
+    cell_by_cell, check, figures_moved, reforms, rows, sources, stand_in, tests, text,
+};
+pub use grid::grid_bundle;
 pub use moved::moved_bundle;
 pub(crate) use record::STATEMENT;
 pub use record::{agreement, parsed, record};

@@ -33,18 +33,9 @@ impl Envelope {
     pub(super) fn read(entry: &Entry<'_>, objects: usize) -> Result<Self> {
         let section = entry.section()?;
         let kelvin = |end: &Entry<'_>| end.quantity();
-        let share = |end: &Entry<'_>| end.number("0.5");
         let envelope = Self {
             temperature_k: section
                 .read("temperature", |entry| closed(entry, "[\"30 degC\", \"40 degC\"]", kelvin))?,
-            lighting: of_objects(&section, "lighting", objects, "[0.1, 0.9]", share)?,
-            surroundings_k: of_objects(
-                &section,
-                "surroundings",
-                objects,
-                "[\"-10 degC\", \"30 degC\"]",
-                kelvin,
-            )?,
             distance_m: section
                 .read("distance", |entry| closed(entry, "[\"5 m\", \"30 m\"]", |end| end.quantity()))?,
             materials: section.read("materials", |entry| {
@@ -55,11 +46,30 @@ impl Envelope {
                 }
                 without_repetition(&items, material)
             })?,
+            ..Self::lit(&section, objects)?
         };
         if envelope == Self::default() {
             let instead = "write at least one range, such as temperature = [\"30 degC\", \"40 degC\"], or leave the table out";
             return Err(entry.fail(Error::malformed("the envelope is empty", instead)));
         }
+        Ok(envelope)
+    }
+
+    /// What lights the scene, from a table with `lighting` and `surroundings`; all else is silent.
+    pub(super) fn lit(section: &Section<'_>, objects: usize) -> Result<Self> {
+        let share = |end: &Entry<'_>| end.number("0.5");
+        let kelvin = |end: &Entry<'_>| end.quantity();
+        let envelope = Self {
+            lighting: of_objects(section, "lighting", objects, "[0.1, 0.9]", share)?,
+            surroundings_k: of_objects(
+                section,
+                "surroundings",
+                objects,
+                "[\"-10 degC\", \"30 degC\"]",
+                kelvin,
+            )?,
+            ..Self::default()
+        };
         let least: f64 = envelope.lighting.iter().flatten().map(|range| range[0]).sum();
         if least > 1.0 + LIGHTING_ROUNDING {
             let least = (least * 1e12).round() / 1e12;
@@ -75,21 +85,26 @@ impl Envelope {
         let names = |materials: &Vec<MaterialRef>| -> Vec<String> {
             materials.iter().map(|material| paths.material(material)).collect()
         };
-        let pairs = |ranges: &Vec<[f64; 2]>| ranges.iter().map(|range| range.to_vec()).collect::<Vec<_>>();
-        let kelvins = |range: &[f64; 2]| range.map(|end| Dimension::Temperature.format(end)).to_vec();
         let entries = Entries::default()
             .put_range("temperature", Dimension::Temperature, self.temperature_k)
-            .put_if("lighting", self.lighting.as_ref().map(pairs));
-        let entries = match &self.surroundings_k {
+            .and(self.lights());
+        entries
+            .put_range("distance", Dimension::Length, self.distance_m)
+            .put_if("materials", self.materials.as_ref().map(names))
+    }
+
+    /// What lights the scene.
+    pub(super) fn lights(&self) -> Entries {
+        let pairs = |ranges: &Vec<[f64; 2]>| ranges.iter().map(|range| range.to_vec()).collect::<Vec<_>>();
+        let kelvins = |range: &[f64; 2]| range.map(|end| Dimension::Temperature.format(end)).to_vec();
+        let entries = Entries::default().put_if("lighting", self.lighting.as_ref().map(pairs));
+        match &self.surroundings_k {
             Some(ranges) => {
                 let ranges: Vec<_> = ranges.iter().map(kelvins).collect();
                 entries.put_written("surroundings", Dimension::Temperature, ranges)
             }
             None => entries,
-        };
-        entries
-            .put_range("distance", Dimension::Length, self.distance_m)
-            .put_if("materials", self.materials.as_ref().map(names))
+        }
     }
 
     /// The same with what is silent filled in from the scenario's own scene.

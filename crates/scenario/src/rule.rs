@@ -11,6 +11,7 @@ mod camera;
 mod citation;
 mod clause;
 mod demand;
+mod grid;
 pub(crate) mod known;
 mod reform;
 mod stand_in;
@@ -21,6 +22,7 @@ pub use camera::RuleCamera;
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::Clause;
 pub use demand::{Demand, DepthDemand, DepthObject};
+pub use grid::{GridCell, GridLight};
 pub use known::{Known, Uncertainty};
 pub use reform::Reform;
 pub use stand_in::StandInSpec;
@@ -107,6 +109,8 @@ pub struct Rule {
     pub sources: Vec<Citation>,
     /// Other values that somebody proposes.
     pub reforms: Vec<Reform>,
+    /// Lights of the table that is made of it cell by cell.
+    pub grid: Vec<GridLight>,
     /// What is expected of its cameras.
     pub tests: Vec<RuleTest>,
 }
@@ -130,7 +134,19 @@ impl Rule {
         let sources = citation::read(root)?;
         let stand_in = root.read("stand_in", StandInSpec::read)?;
         let reforms = reform::read(root, about.from)?;
-        Ok(Self { about, coverage_factor, scenario, stand_in, clauses, cameras, sources, reforms, tests })
+        let grid = grid::read(root, scenario.environment.len())?;
+        Ok(Self {
+            about,
+            coverage_factor,
+            scenario,
+            stand_in,
+            clauses,
+            cameras,
+            sources,
+            reforms,
+            grid,
+            tests,
+        })
     }
 
     /// Leaves out, in all clauses, alternatives whose spectra do not cover the bands, if that is asked for.
@@ -209,6 +225,7 @@ impl Rule {
         let tests: Vec<_> =
             self.tests.iter().map(|test| test.entries(&self.cameras, &self.clauses)).collect();
         let reforms: Vec<_> = self.reforms.iter().map(Reform::entries).collect();
+        let grid: Vec<_> = self.grid.iter().map(GridLight::entries).collect();
         document
             .put("rule", about)
             .put_if(
@@ -220,6 +237,7 @@ impl Rule {
             .put_if("stand_in", self.stand_in.as_ref().map(|spec| spec.written(paths)))
             .put("camera", self.cameras.iter().map(camera).collect::<Vec<_>>())
             .put_if("reform", (!reforms.is_empty()).then_some(reforms))
+            .put_if("grid", (!grid.is_empty()).then_some(grid))
             .put_if("test", (!tests.is_empty()).then_some(tests))
     }
 }
@@ -239,6 +257,7 @@ impl PartialEq for Rule {
             && self.clauses.len() == other.clauses.len()
             && self.clauses.iter().zip(&other.clauses).all(same_clause)
             && self.reforms == other.reforms
+            && self.grid == other.grid
             && self.tests == other.tests
             && self.stand_in == other.stand_in
             && self.cameras.len() == other.cameras.len()

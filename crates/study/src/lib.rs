@@ -88,13 +88,14 @@ pub use looked_up::Study;
 pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
-    ApartAnswer, ApproachResult, BeforeLaw, BudgetLine, CameraAnswer, CameraBeforeClause, CameraVerdict,
-    Certified, ClauseAnswer, Course, CourseOfCamera, CrossingResult, Definition, Drawn, EmissivityError,
-    EnvelopeResult, Extent, FiguresMoved, Fixes, Found, IdealCamera, LightTime, LimitingScene, Line,
-    MarginUncertainty, Market, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Moment, Moved,
-    Neighbourhood, NotIdentifiable, NotInForce, NotPassed, Outcome, Proof, Quotable, Reformed, Reforms,
-    RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, SafetyOfRule, ShapesDrawn, StandIn, StandInAnswer,
-    StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+    ApartAnswer, ApproachResult, BeforeLaw, BudgetLine, CameraAnswer, CameraBeforeClause, CameraInCell,
+    CameraVerdict, Certified, ClauseAnswer, Course, CourseOfCamera, CrossingResult, Definition, Drawn,
+    EmissivityError, EnvelopeResult, Extent, FiguresMoved, Fixes, Found, Grid, GridCell, IdealCamera,
+    LightTime, LimitingScene, Line, MarginUncertainty, Market, Measure, MeasuredAnswer, MeasuredScene,
+    MeasuredVerdict, Moment, Moved, Neighbourhood, NotIdentifiable, NotInForce, NotPassed, Outcome, Proof,
+    Quotable, Reformed, Reforms, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, SafetyOfRule,
+    ShapesDrawn, StandIn, StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets,
+    WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

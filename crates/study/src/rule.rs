@@ -14,6 +14,7 @@ mod depth;
 mod earlier;
 mod envelope;
 mod expected;
+mod grid;
 mod guard;
 mod ideal;
 mod market;
@@ -37,6 +38,7 @@ pub use clauses::{
 };
 pub use course::{Course, CourseOfCamera, Moment};
 pub use expected::{TestCheck, TestResult, Told};
+pub use grid::{CameraInCell, Grid, GridCell};
 pub use market::Market;
 pub use moved::{FiguresMoved, Moved};
 pub use not_in_force::NotInForce;

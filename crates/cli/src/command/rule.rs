@@ -13,8 +13,8 @@ use hadar_scenario::rule::{Citation, Figure};
 use hadar_scenario::{Date, Rule, Setting, Written};
 use hadar_study::sweep::Question;
 use hadar_study::{
-    CameraAnswer, Condition, Extent, FiguresMoved, Reforms, RuleAnswer, RuleAsked, RuleStudy, TestResult,
-    Warning,
+    CameraAnswer, Condition, Extent, FiguresMoved, Grid, Reforms, RuleAnswer, RuleAsked, RuleStudy,
+    TestResult, Warning,
 };
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -47,8 +47,11 @@ pub(super) struct RuleArgs {
     /// Move every number of the rule by a tenth, alone, and say what hangs on it
     #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "reforms", "on", "accept"])]
     figures: bool,
+    /// Judge every clause with a vehicle cell by cell, speed by speed and light by light, [[grid]]: the table that a maker hands in
+    #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "reforms", "figures", "on", "accept"])]
+    grid: bool,
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
-    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "figures", "on"])]
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "figures", "grid", "on"])]
     verify: Option<PathBuf>,
     /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
@@ -82,6 +85,7 @@ pub(super) fn run(
         (args.stand_in, "--stand-in"),
         (args.reforms, "--reforms"),
         (args.figures, "--figures"),
+        (args.grid, "--grid"),
     ];
     if let Some((_, flag)) = alone.into_iter().find(|(asked, _)| *asked && args.rules.len() > 1) {
         let found = format!("{flag} is asked of {} rules at once", args.rules.len());
@@ -121,6 +125,9 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     if args.sources {
         return sources(&rule_read, global);
     }
+    if args.grid {
+        return grid(&rule_read, global);
+    }
     if args.test {
         global.writes_nothing("--test")?;
     }
@@ -146,6 +153,7 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
         seed: global.seed,
         on: args.on,
         accepted: args.accept.clone(),
+        ..RuleAsked::default()
     };
     let bar = global.progress("pairs");
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
@@ -194,6 +202,20 @@ fn figures(written: &Written, global: &Global) -> Result<u8> {
     let text = rule::figures_moved(&found);
     let title = Rule::from_written(written)?.about.name;
     let work = global.report(&text, || rule::moved_bundle(&found, title.as_deref()))?;
+    let mut stats = found.stats.clone();
+    stats.add(&work);
+    global.answer(&found, &text, &stats)?;
+    Ok(0)
+}
+
+/// Every cell of the rule's grid.
+fn grid(rule_read: &Rule, global: &Global) -> Result<u8> {
+    let bar = global.progress("pairs");
+    let found = Grid::of(rule_read, &global.library()?, &|done, all| bar.set(done, all))?;
+    bar.finish();
+    let units = rule_read.scenario.units();
+    let text = rule::cell_by_cell(&found, units);
+    let work = global.report(&text, || rule::grid_bundle(&found, rule_read.about.name.as_deref(), units))?;
     let mut stats = found.stats.clone();
     stats.add(&work);
     global.answer(&found, &text, &stats)?;

@@ -3,6 +3,7 @@
 pub(crate) mod certificate;
 mod check;
 pub(crate) mod course;
+pub(crate) mod grid;
 mod hardest;
 mod market;
 mod measured;
@@ -15,6 +16,7 @@ mod stop;
 mod text;
 
 pub use check::check;
+pub use grid::cell_by_cell;
 pub(crate) use hardest::{HardestScene, hardest_scenes};
 pub(crate) use measured::measure;
 pub use moved::figures_moved;

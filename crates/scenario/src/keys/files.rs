@@ -100,6 +100,7 @@ pub(crate) static RULE: Table = Table::of(
             silent("the rule is one demand", tables("clause", &clause::CLAUSE)),
             silent("no figure has a source", tables("source", &rule::SOURCE)),
             silent("no reform is looked at", tables("reform", &rule::REFORM)),
+            silent("no table is made", tables("grid", &rule::GRID)),
             silent("nothing is tested", tables("test", &rule::TEST)),
             table("uncertainty", &rule::UNCERTAINTY),
             table("stand_in", &stop::STAND_IN),

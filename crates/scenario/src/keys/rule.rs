@@ -1,7 +1,8 @@
 //! Tables that only a rule has: what it says of itself, its cameras, sources and tests.
 
 use super::key::Silent::{Is, Means, Refused};
-use super::key::{COUNT, Key, LENGTH, More, POSITIVE, TIME, Table, Value};
+use super::key::{COUNT, Key, LENGTH, More, POSITIVE, SPEED, TIME, Table, Value};
+use super::task::LIT_KEYS;
 use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::units::Dimension;
 
@@ -292,6 +293,23 @@ const REFORM_KEYS: &[Key] = &[
 pub(crate) static REFORM: Table = Table::of(
     "Other values of the law that somebody proposes or has enacted, with a document or a choice behind them.",
     &[REFORM_KEYS, GROUND_KEYS],
+);
+
+const GRID_KEYS: &[Key] = &[
+    Key::row("name", Value::Text, Refused, "\"night\"", "What the light is called.", "rows of the table"),
+    Key::row(
+        "speed_step",
+        SPEED,
+        Refused,
+        "\"10 km/h\"",
+        "From one speed of a [stop] to the next, from its lowest on; its highest is a cell in any case.",
+        "columns of the table",
+    ),
+];
+/// `[[grid]]`.
+pub(crate) static GRID: Table = Table::of(
+    "A light in which every clause with a [stop] is judged speed by speed, for the table that a maker hands in.",
+    &[GRID_KEYS, LIT_KEYS],
 );
 
 const AT_MOST_WHOLE: Allowed =

@@ -360,15 +360,8 @@ const REQUIREMENT_KEYS: &[Key] = &[
 pub(crate) static REQUIREMENT: Table =
     Table::of("How reliable the decision must be, and at which speed.", &[REQUIREMENT_KEYS]);
 
-const ENVELOPE_KEYS: &[Key] = &[
-    Key::row(
-        "temperature",
-        Value::Pair(&KELVIN),
-        Means("target.temperature"),
-        "[\"30 degC\", \"40 degC\"]",
-        "Temperatures of the target in which the requirement must hold.",
-        "one side of the box of scenes whose worst is found and proved",
-    ),
+/// Ranges of what lights a scene.
+pub(super) const LIT_KEYS: &[Key] = &[
     Key::row(
         "lighting",
         Value::Either(&[Value::Pair(&A_SHARE), Value::List(&Value::Pair(&A_SHARE))]),
@@ -385,6 +378,16 @@ const ENVELOPE_KEYS: &[Key] = &[
         "Temperatures of the surroundings: one range for each [[environment]], or a list with one for each.",
         "sides of the box of scenes whose worst is found and proved",
     ),
+];
+const TEMPERATURE_KEYS: &[Key] = &[Key::row(
+    "temperature",
+    Value::Pair(&KELVIN),
+    Means("target.temperature"),
+    "[\"30 degC\", \"40 degC\"]",
+    "Temperatures of the target in which the requirement must hold.",
+    "one side of the box of scenes whose worst is found and proved",
+)];
+const ENVELOPE_KEYS: &[Key] = &[
     Key::row(
         "distance",
         Value::Pair(&LENGTH),
@@ -405,7 +408,7 @@ const ENVELOPE_KEYS: &[Key] = &[
 /// `[envelope]`.
 pub(crate) static ENVELOPE: Table = Table::of(
     "Ranges of scenes in all of which the requirement must hold; hadar rule alone searches them.",
-    &[ENVELOPE_KEYS],
+    &[TEMPERATURE_KEYS, LIT_KEYS, ENVELOPE_KEYS],
 );
 
 const SENSITIVITY_KEYS: &[Key] = &[

@@ -223,7 +223,8 @@ fn table(entries: &DeTable<'_>, name: &str, other: &[&str], found: &mut Vec<(Spa
         match value.get_ref() {
             DeValue::Table(inner) => table(inner, &full, &[], found),
             DeValue::Array(items) if items.iter().any(|item| matches!(item.get_ref(), DeValue::Table(_))) => {
-                let other = if full == "clause" { NO_FIGURES_OF_CLAUSE } else { &[] };
+                let other =
+                    if ["clause", "grid"].contains(&full.as_str()) { NO_FIGURES_OF_CLAUSE } else { &[] };
                 for (index, item) in items.iter().enumerate() {
                     if let DeValue::Table(inner) = item.get_ref() {
                         table(inner, &format!("{full}[{index}]"), other, found);

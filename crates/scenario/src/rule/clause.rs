@@ -345,7 +345,7 @@ impl Clause {
 
     /// Refuses an envelope with scenes whose lighting does not add up to the total that is known: the alternative's always does, and
     /// would seem told apart by that alone.
-    fn lit_as_known(&self) -> Result<()> {
+    pub(super) fn lit_as_known(&self) -> Result<()> {
         let lighting = self.envelope().lighting.unwrap_or_default();
         let Some(total) = self.scenario.unknown.lighting_total else { return Ok(()) };
         let [least, most] = [0, 1].map(|end| lighting.iter().map(|range| range[end]).sum::<f64>());

@@ -8,7 +8,7 @@ use hadar::error::{Error, Result};
 use toml::value::Date;
 
 /// Tables that no reform of a law changes.
-const NOT_LAW: [&str; 8] = ["title", "camera", "cameras", "rule", "source", "test", "reform", "find"];
+const NOT_LAW: [&str; 9] = ["title", "camera", "cameras", "rule", "source", "test", "reform", "grid", "find"];
 
 /// Other values of a rule.
 #[derive(Debug, Clone, PartialEq)]

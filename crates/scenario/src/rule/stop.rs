@@ -40,6 +40,14 @@ impl StopSpec {
         self.encounter.as_ref()
     }
 
+    /// The same at one of its speeds.
+    pub(super) fn at(&self, speed_m_s: f64) -> Result<Self> {
+        let figures = StopFigures { speeds_m_s: [speed_m_s; 2], ..self.figures };
+        let stop = Stop::new(figures)?;
+        let crossing = |one: Encounter| Encounter::new(stop, one.crossing_m_s(), one.offset_m());
+        Ok(Self { figures, stop, encounter: self.encounter.map(crossing).transpose()? })
+    }
+
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
         let section = entry.section()?;
         let speed = section.require("speed")?;

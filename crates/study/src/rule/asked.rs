@@ -10,6 +10,8 @@ pub struct RuleAsked {
     pub extent: Extent,
     /// Whether proofs may spare work.
     pub skipping: Skipping,
+    /// Whether clauses that hardly differ may share their worst scenes: margins then are within a thousandth of what each alone finds.
+    pub nearly_alike: bool,
     /// Seed of the scenes that are drawn for the share no camera can do.
     pub seed: u64,
     /// The day that is asked about.

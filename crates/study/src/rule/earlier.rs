@@ -3,6 +3,14 @@
 //!
 //! The same is what is bit by bit the same: bands, surroundings, spectra, what is unknown, ranges, counts and noise. Distances of the ideal
 //! camera, which has no noise but that of its photons, grow as √κ: those of one exposure are those of every other.
+//!
+//! Where many clauses are asked that differ hardly at all (the cells of a grid), it is enough that counts and noise are nearly the same. With κ counts
+//! per radiance and the added variance v, a band tells
+//!
+//! √(κS + v) − √(κS′ + v) = (S − S′)/(√(S/κ + v/κ²) + √(S′/κ + v/κ²))
+//!
+//! of any two spectra, so that with κ(1 + ε) and v(1 + δ) no statistical distance is less than the share min(√(1 + ε), (1 + ε)/√(1 + δ)), the least of
+//! all bands, of what it was: what was proved holds by that share, and the scene found is looked at again.
 
 use super::apart::{Candidate, TellApart};
 use super::asked::{Extent, RuleAsked};
@@ -28,9 +36,45 @@ pub(super) struct Earlier<'a> {
     pub(super) ideal: Option<Scenes<'a>>,
 }
 
+/// Share of a statistical distance that may be lost where clauses are nearly the same.
+const NEARLY: f64 = 1e-3;
+
 impl Earlier<'_> {
     /// The worst of a camera, if it was asked for in the same words.
-    pub(super) fn worst(&self, of: &TellApart, index: usize, alone: bool) -> Option<&Worst> {
+    pub(super) fn worst<'b>(&'b self, of: &'b TellApart, index: usize, alone: bool) -> Option<&'b Worst> {
+        let (pairs, worst) = self.asked_like(of, index, alone)?;
+        pairs.into_iter().all(|(one, other)| one.sees_as(other)).then_some(worst)
+    }
+
+    /// The worst of a camera that counts nearly as much of the same, if that settles whether it is enough.
+    pub(super) fn nearly_worst(&self, of: &TellApart, index: usize, alone: bool) -> Result<Option<Worst>> {
+        let Some((pairs, (worst, all))) = self.asked_like(of, index, alone) else { return Ok(None) };
+        let sighted: Vec<&Sighted> = pairs.iter().map(|(one, _)| *one).collect();
+        let shares = pairs.into_iter().map(|(one, other)| one.share_left_of(other));
+        let share = shares.fold(1.0, f64::min);
+        if share < 1.0 - NEARLY || worst.between.is_some() {
+            return Ok(None);
+        }
+        let again = |pair: &Estimate| -> Result<Estimate> {
+            let Sighted { study, counting, .. } = sighted[pair.sighted];
+            let (own, other) = (&study.target.emissivity, &study.alternatives[pair.alternative].emissivity);
+            let found = sighted[pair.sighted].solver().with_counting(own, other, &pair.state, counting)?;
+            Ok(Estimate { distance: found.distance, nearest: found.state, ..pair.clone() })
+        };
+        let pair = again(&worst.pair)?;
+        let lower_bound = worst.lower_bound.map(|bound| (share * bound).min(pair.distance));
+        let settled = pair.distance < of.required || lower_bound.is_some_and(|bound| bound >= of.required);
+        let worst = Searched { pair, lower_bound, ..worst.clone() };
+        Ok(if settled { Some((worst, all.iter().map(again).collect::<Result<_>>()?)) } else { None })
+    }
+
+    /// What was found of a camera by a clause that demands the same of it, with what both look at.
+    fn asked_like<'b>(
+        &'b self,
+        of: &'b TellApart,
+        index: usize,
+        alone: bool,
+    ) -> Option<(Vec<(&'b Sighted, &'b Sighted)>, &'b Worst)> {
         let (candidate, known) = (of.candidates.get(index)?, self.apart.candidates.get(index)?);
         let (was_alone, worst) = self.worst.get(index)?;
         let asked = |of: &TellApart, candidate: &Candidate| (of.required, of.decisive(candidate));
@@ -39,9 +83,8 @@ impl Earlier<'_> {
             && candidate.share == known.share
             && candidate.between.is_empty()
             && known.between.is_empty()
-            && candidate.sighted.len() == known.sighted.len()
-            && candidate.sighted.iter().zip(&known.sighted).all(|(one, other)| one.sees_as(other));
-        same.then_some(worst)
+            && candidate.sighted.len() == known.sighted.len();
+        same.then(|| (candidate.sighted.iter().zip(&known.sighted).collect(), worst))
     }
 }
 
@@ -63,9 +106,10 @@ impl TellApart {
             let first = judged.len();
             if let [one] = part {
                 let within = |done: usize| progress(before + done.min(one.pairs()));
-                judged.push(self.judged(first, alone, earlier, &within)?);
+                judged.push(self.judged(first, alone, (earlier, asked.nearly_alike), &within)?);
             } else {
-                let one = |index: usize| self.judged(first + index, alone, earlier, &|_| ());
+                let one =
+                    |index: usize| self.judged(first + index, alone, (earlier, asked.nearly_alike), &|_| ());
                 judged.extend(parallel::booked(part.len(), one)?);
             }
             before += part.iter().map(Candidate::pairs).sum::<usize>();
@@ -104,6 +148,20 @@ impl Sighted {
     /// Whether all that is searched here is what is searched there.
     fn sees_as(&self, other: &Self) -> bool {
         self.counting == other.counting && self.ranges == other.ranges && self.study.asks_as(&other.study)
+    }
+
+    /// No statistical distance here is less than this share of what it is there; 0 where other things are searched.
+    fn share_left_of(&self, other: &Self) -> f64 {
+        if self.ranges != other.ranges || !self.study.asks_as(&other.study) {
+            return 0.0;
+        }
+        let counts = self.counting.counts_per_radiance / other.counting.counts_per_radiance;
+        let of_noise = |w: usize| match (self.counting.var_added(w), other.counting.var_added(w)) {
+            (own, known) if own <= known => counts.min(1.0),
+            (own, known) => counts / (own / known).sqrt(),
+        };
+        let least = (0..self.study.bands.len()).map(of_noise).fold(counts.sqrt(), f64::min);
+        if least.is_finite() { least.min(1.0) } else { 0.0 }
     }
 }
 

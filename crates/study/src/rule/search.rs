@@ -80,7 +80,7 @@ impl TellApart {
         &self,
         index: usize,
         alone: bool,
-        earlier: &[Earlier<'_>],
+        earlier: (&[Earlier<'_>], bool),
         progress: &dyn Fn(usize),
     ) -> Result<(CameraVerdict, (bool, Worst))> {
         let candidate = &self.candidates[index];
@@ -185,12 +185,20 @@ impl TellApart {
         &self,
         index: usize,
         alone: bool,
-        earlier: &[Earlier<'_>],
+        (earlier, nearly_alike): (&[Earlier<'_>], bool),
         progress: &dyn Fn(usize),
     ) -> Result<Worst> {
         if let Some(known) = earlier.iter().find_map(|clause| clause.worst(self, index, alone)) {
             demand::spared(Thing::WorstCases, Reason::Shared, known.1.len() as u64);
             return Ok(known.clone());
+        }
+        if nearly_alike {
+            for clause in earlier {
+                if let Some(known) = clause.nearly_worst(self, index, alone)? {
+                    demand::spared(Thing::WorstCases, Reason::Shared, known.1.len() as u64);
+                    return Ok(known);
+                }
+            }
         }
         let found = self.worst(&self.candidates[index], alone, &|_, _| true, progress)?;
         found.ok_or_else(|| {
