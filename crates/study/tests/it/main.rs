@@ -8,6 +8,7 @@ mod conditions;
 mod course;
 mod find;
 mod fuzz_readers;
+mod grid;
 mod keys;
 mod object;
 mod ordered;
