@@ -167,6 +167,27 @@ impl Rule {
         citation::of(&self.scenario.source)
     }
 
+    /// The figures of the camera at an index that its file states, a known camera's own left out.
+    #[must_use]
+    pub fn camera_figures(&self, index: usize) -> Vec<Figure> {
+        let of = |camera: &RuleCamera| citation::of_camera(&self.scenario.source, &camera.key);
+        self.cameras.get(index).map(of).unwrap_or_default()
+    }
+
+    /// Of a camera of the user's own file: the document that it names, if it names one.
+    #[must_use]
+    pub fn own_document(&self, index: usize) -> Option<Option<&str>> {
+        let spec = &self.cameras.get(index)?.spec;
+        let name = spec.own.as_ref().and(spec.preset.as_ref())?;
+        let stated = self.scenario.source.cameras.iter().find(|camera| camera.name == *name)?;
+        Some(stated.document.as_deref())
+    }
+
+    /// What stands behind the figure at a key.
+    pub fn behind(&self, key: &str) -> impl Iterator<Item = &Ground> {
+        self.sources.iter().filter(move |citation| citation.covers(key)).map(|citation| &citation.ground)
+    }
+
     /// Whether its demands are those of `[[clause]]` tables.
     #[must_use]
     pub fn has_clauses(&self) -> bool {

@@ -35,6 +35,9 @@ pub struct Source {
     pub lines: Arc<BTreeMap<String, usize>>,
     /// Short texts, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.
     pub texts: Arc<BTreeMap<String, String>>,
+    /// Keys under which something stands that messages know by another: what a clause calls `things` is looked up as
+    /// `envelope.materials`.
+    pub(super) called: Vec<(&'static str, &'static str)>,
     /// What stands in the place of its own values.
     pub settings: Vec<Setting>,
     /// Cameras of the user's own, which it may name.
@@ -70,6 +73,9 @@ impl Source {
     /// Where `key` stands; see [`super::Scenario::place`].
     #[must_use]
     pub fn place(&self, key: &str) -> Place {
+        let own =
+            self.called.iter().find_map(|(known, own)| Some(format!("{own}{}", key.strip_prefix(known)?)));
+        let key = own.as_deref().unwrap_or(key);
         if let Some(place) = self.set_at(key) {
             return place;
         }

@@ -43,6 +43,7 @@ use hadar::spectrum::Bands;
 use hadar_formats::cube::Found;
 use hadar_scenario::RangeScenario;
 use hadar_simulate::render::{Part, StereoPair};
+use std::sync::Arc;
 
 /// Bytes of a pixel that are kept of cubes, beside those of the file; measured.
 const ONE_VIEW: u64 = 320;
@@ -90,7 +91,7 @@ struct Informed {
     cells: InformationMap,
     truth: Truth,
     /// Of a scene, with the counts of its left view.
-    pair: Option<StereoPair>,
+    pair: Option<Arc<StereoPair>>,
     counts: Option<Cube>,
 }
 
@@ -161,6 +162,41 @@ impl RangeStudy {
         sink: Option<&dyn MapSink>,
         progress: Progress<'_>,
     ) -> Result<Ranging> {
+        self.range_of(plan, None, sink, progress)
+    }
+
+    /// The scene as both of its cameras see it; `None` of cubes.
+    ///
+    /// # Errors
+    /// A scene that cannot be rendered.
+    pub(crate) fn rendered(&self, progress: Progress<'_>) -> Result<Option<Arc<StereoPair>>> {
+        let (Resolved::Scene(scene), Some(bands)) = (&self.subject, &self.bands) else { return Ok(None) };
+        let at = |error: hadar::Error| error.at(self.scenario.place("scene"));
+        let pair = scene.scene.render(&scene.rig, bands, &scene.options, progress).map_err(at)?;
+        Ok(Some(Arc::new(pair)))
+    }
+
+    /// Whether another camera, however much noise it has, has the same scene before it and sees the same of it.
+    pub(crate) fn is_rendered_as(&self, other: &Self) -> bool {
+        match (&self.subject, &other.subject) {
+            (Resolved::Scene(own), Resolved::Scene(others)) => {
+                self.scenario.subject == other.scenario.subject
+                    && self.bands == other.bands
+                    && own.rig == others.rig
+                    && own.options == others.options
+            }
+            _ => false,
+        }
+    }
+
+    /// As [`Self::range`], of a scene that was rendered, perhaps for another camera.
+    pub(crate) fn range_of(
+        &self,
+        plan: &RangePlan,
+        rendered: Option<&Arc<StereoPair>>,
+        sink: Option<&dyn MapSink>,
+        progress: Progress<'_>,
+    ) -> Result<Ranging> {
         let shape = self.shape()?;
         if plan.verdict_alone
             && plan.skipping == Skipping::On
@@ -171,7 +207,7 @@ impl RangeStudy {
         if let Some(cube) = self.too_large_to_keep(shape) {
             return self.streamed(cube, plan, sink, progress);
         }
-        let informed = self.informed(shape, progress)?;
+        let informed = self.informed(shape, rendered, progress)?;
         let ground = self.ground(&informed.truth, shape)?;
         let window = self.scenario.stereo.window;
         let Some(first) = informed.left.first() else { return Err(nothing_to_see()) };
@@ -291,11 +327,16 @@ impl RangeStudy {
         }
     }
 
-    fn informed(&self, shape: Shape, progress: Progress<'_>) -> Result<Informed> {
+    fn informed(
+        &self,
+        shape: Shape,
+        rendered: Option<&Arc<StereoPair>>,
+        progress: Progress<'_>,
+    ) -> Result<Informed> {
         match (&self.subject, &self.bands) {
             (Resolved::Scene(scene), Some(bands)) => {
-                let at = |error: hadar::Error| error.at(self.scenario.place("scene"));
-                let pair = scene.scene.render(&scene.rig, bands, &scene.options, progress).map_err(at)?;
+                let own = if rendered.is_none() { self.rendered(progress)? } else { None };
+                let pair = rendered.cloned().or(own).ok_or_else(nothing_to_see)?;
                 let request = self.request(&scene.noise, &Cell::ALL, shape);
                 let (left, cells, counts) = signals::of_scene(scene, &pair.left, bands, &request)?;
                 let (right, ..) = signals::of_scene(scene, &pair.right, bands, &request)?;

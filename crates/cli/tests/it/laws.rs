@@ -190,4 +190,8 @@ fn contrast_is_the_kelvins_over_twice_the_noise() {
     assert!(folder.refusal(&["rule", "a.toml"]).contains("unknown.priors.temperature: a prior says"));
     folder.file("a.toml", &text("299.5 K", "").replace("behind = [\"black.csv\"]\n", ""));
     assert!(folder.refusal(&["rule", "a.toml"]).contains("behind"));
+    // What is said of it is said by its own key.
+    let unknown = text("299.5 K", "").replace("behind = [\"black.csv\"]", "behind = [\"concreet\"]");
+    folder.file("a.toml", &unknown);
+    assert!(folder.refusal(&["rule", "a.toml"]).starts_with("a.toml:12: behind[0]: there is no material"));
 }

@@ -56,10 +56,17 @@ fn who_crosses_blurs_more_and_must_be_in_the_view() {
 
 const OWN: &str = "f_number = 1.0\nnoise_electrons = 0\noptics_efficiency = 1.0\nquantum_efficiency = 1.0\n";
 
+/// The same with a word on where its figures are from, those of the camera too.
+fn sourced(text: &str) -> String {
+    let law = "\"target\", \"environment\", \"alternatives\", \"bands\", \"envelope\", \"stop\"";
+    format!("{text}[[source]]\nkeys = [{law}, \"camera[0]\"]\nchoice = \"a test\"\n")
+}
+
 /// Passed is only what is proved and unconditional, on a stated day on which the rule as it is written holds.
 #[test]
 fn a_rule_is_passed_on_a_stated_day_alone() {
-    let text = easy("", "").replacen("[target]", "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]", 1);
+    let own = easy("", "").replacen("[target]", "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]", 1);
+    let text = sourced(&own);
     let rule = |set: &[&str]| {
         let set = set.iter().map(|one| hadar_scenario::Setting::parse(one, "--set").unwrap());
         Rule::from_written(&Written::of(&text, None).with(set)).unwrap()
@@ -74,6 +81,16 @@ fn a_rule_is_passed_on_a_stated_day_alone() {
     let all = Condition::codes();
     let day = Some("2026-11-28");
     assert_eq!(outcome(&[], day, &all), (Outcome::Passed, vec![]));
+    // Nobody says where the camera's exposure is from: the rule names no source at all, or none for it.
+    let without = RuleStudy::new(&Rule::from_toml(&own, None).unwrap(), library()).unwrap();
+    let asked = RuleAsked {
+        on: day.map(|day| hadar_scenario::day(day).unwrap()),
+        accepted: all.clone(),
+        ..RuleAsked::default()
+    };
+    let (result, reasons) = without.answer(&asked, &|_, _| ()).unwrap().outcome();
+    assert_eq!(result, Outcome::Warned);
+    assert_eq!(serde_json::to_value(&reasons).unwrap()[0]["figures"], json!(["camera[0].exposure"]));
     assert_eq!(outcome(&[], None, &all), (Outcome::Warned, vec!["no-day"]));
     assert_eq!(outcome(&[], Some("2025-12-31"), &all), (Outcome::Warned, vec!["not-in-force"]));
     assert_eq!(outcome(&["requirement.distance=1"], day, &all), (Outcome::Warned, vec!["changed"]));
@@ -86,11 +103,8 @@ fn a_rule_is_passed_on_a_stated_day_alone() {
 /// What is demanded of a report is not believed but read in a statement that was made again; an envelope holds its very bytes.
 #[test]
 fn a_report_is_held_against_what_is_demanded() {
-    let folder = Folder::with(&easy("", "").replacen(
-        "[target]",
-        "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]",
-        1,
-    ));
+    let dated = easy("", "").replacen("[target]", "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]", 1);
+    let folder = Folder::with(&sourced(&dated));
     let codes = Condition::codes().join(",");
     let made =
         folder.run(&["rule", "a.toml", "--on", "2026-11-28", "--accept", &codes, "--out", "out", "-q"]);
@@ -272,7 +286,8 @@ fn limits_and_shared_errors_of_figures() {
 /// Materials by a name of the program that are others, and spectra beyond what was measured, are no ground for a pass.
 #[test]
 fn other_materials_and_guessed_spectra_are_no_pass() {
-    let text = easy("", "").replacen("[target]", "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]", 1);
+    let text =
+        sourced(&easy("", "").replacen("[target]", "[rule]\nname = \"R\"\nfrom = 2026-01-01\n[target]", 1));
     let folder = Folder::with(&text);
     fs::create_dir(folder.path().join("own")).unwrap();
     folder.file("own/skin.csv", "wavenumber_cm1,emissivity\n700,0.97\n1300,0.98\n");

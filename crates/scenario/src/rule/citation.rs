@@ -1,8 +1,9 @@
 //! Where the numbers of a rule are from: a clause of a document in its own words, or a choice with its reason.
 //!
 //! A rule that names any source (`[[source]]`) names one for each of its figures: a number that is nobody's is refused when the
-//! rule is read. Figures are all values in the tables of the scenes, the demands, `[stop]` and the clauses; names, wording,
-//! cameras (whose figures have documents of their own) and tests are none.
+//! rule is read. Figures are all values in the tables of the scenes, the demands, `[stop]` and the clauses; names, wording
+//! and tests are none. A camera's own figures (`camera[0].netd`, or `camera[0]` for all of them) may have a source, and need none; those of a
+//! known camera have the documents of that.
 
 use crate::Source;
 use crate::entries::Entries;
@@ -15,6 +16,8 @@ use toml::value::Date;
 
 /// Tables and keys at the top of a rule that hold no figures of its own.
 const NO_FIGURES: &[&str] = &["title", "cameras", "rule", "camera", "source", "test", "find", "reform"];
+/// Keys of a camera that are no figures of it.
+const NO_FIGURES_OF_CAMERA: &[&str] = &["name", "preset", "share"];
 /// The same of a clause.
 const NO_FIGURES_OF_CLAUSE: &[&str] = &["name", "kind", "text"];
 
@@ -196,6 +199,32 @@ impl Figure {
 
 /// All figures in the text of a rule.
 pub(super) fn of(source: &Source) -> Vec<Figure> {
+    written(source, figures)
+}
+
+/// The figures of a camera's own in the text of a rule, by where the camera stands in it.
+pub(super) fn of_camera(source: &Source, key: &str) -> Vec<Figure> {
+    written(source, |document| {
+        let mut found = Vec::new();
+        if let Some(DeValue::Array(items)) = document.get("camera").map(toml::Spanned::get_ref) {
+            let tables = items.iter().enumerate().map(|(index, item)| (format!("camera[{index}]"), item));
+            for (_, item) in tables.filter(|(own, _)| own == key) {
+                if let DeValue::Table(inner) = item.get_ref() {
+                    for (name, value) in inner
+                        .iter()
+                        .filter(|(name, _)| !NO_FIGURES_OF_CAMERA.contains(&name.get_ref().as_ref()))
+                    {
+                        found.push((value.span(), dotted(key, name.get_ref())));
+                    }
+                }
+            }
+        }
+        found.sort_by_key(|(span, _)| span.start);
+        found
+    })
+}
+
+fn written(source: &Source, figures: impl Fn(&DeTable<'_>) -> Vec<(Span, String)>) -> Vec<Figure> {
     let text = &source.text;
     let (document, _) = DeTable::parse_recoverable(text);
     let figure = |(span, key): (Span, String)| {

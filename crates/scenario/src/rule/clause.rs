@@ -166,6 +166,11 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     scenario.requirement.time_s = scenario.requirement.time_s.or(rule.requirement.time_s);
     scenario.title.clone_from(&rule.title);
     scenario.source = relaid(&rule.source, &key);
+    scenario.source.called = match kind {
+        Kind::FalseAlarm => vec![("envelope.materials", "things")],
+        Kind::Contrast => vec![("alternatives.materials", "behind")],
+        _ => Vec::new(),
+    };
     let clause = Clause { name: Some(name), text: said, demand, scenario, stop, key };
     clause.check()?;
     Ok(clause)

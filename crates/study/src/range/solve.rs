@@ -55,7 +55,7 @@ impl RangeStudy {
         let decisive = ground.decisive(windows, var)?.filter(|(ratio, ..)| ratio.is_finite());
         let Some((ratio_now, window, depth_m)) = decisive else { return Ok(None) };
         let every = Every {
-            pair: informed.pair.as_ref(),
+            pair: informed.pair.as_deref(),
             var_diffraction_px2: ground.var_diffraction_px2,
             well: self.photons_of_the_well(informed)?,
             close: CLOSE,

@@ -160,7 +160,7 @@ impl RangeStudy {
             }
             _ => None,
         };
-        let pair = drawn.as_ref().or(informed.pair.as_ref());
+        let pair = drawn.as_ref().or(informed.pair.as_deref());
         let ratio = change.noise / change.photons;
         let as_it_is = !moved && change.noise == 1.0 && change.photons == 1.0;
         let map = |left: bool| -> Result<Option<SignalMap>> {

@@ -23,7 +23,8 @@ use hadar::parallel;
 use hadar_scenario::range::{Demand, RangeScenario, Subject};
 use hadar_scenario::rule::{Clause, DepthDemand, DepthObject, Verdict};
 use hadar_scenario::{BandsSpec, Rule, Setting};
-use hadar_simulate::render::StreetSpec;
+use hadar_simulate::render::{StereoPair, StreetSpec};
+use std::sync::Arc;
 
 /// Ends of distances nearer to each other than by this factor have none between them.
 const ALIKE: f64 = 1.05;
@@ -114,15 +115,23 @@ impl DepthClause {
     }
 
     pub(super) fn answer(&self, progress: &dyn Fn(usize)) -> Result<MeasuredAnswer> {
-        let mut verdicts = Vec::with_capacity(self.cameras.len());
-        for (done, camera) in self.cameras.iter().enumerate() {
-            let seen = parallel::booked(camera.studies.len(), |index| {
-                let (distance_m, study) = &camera.studies[index];
-                self.seen(*distance_m, study)
-            })?;
-            verdicts.push(self.judged(camera, seen)?);
-            progress(done + 1);
+        let mut seen: Vec<Vec<Seen>> = self.cameras.iter().map(|_| Vec::new()).collect();
+        let alike = self.rendered_alike();
+        let mut done = 0;
+        // As many at a time as there are threads, so that progress can be told between them.
+        for part in alike.chunks(rayon::current_num_threads().max(1)) {
+            for found in parallel::booked(part.len(), |index| self.seen_alike(&part[index]))? {
+                found.into_iter().for_each(|(camera, one)| seen[camera].push(one));
+            }
+            done += part.len();
+            progress(self.cameras.len() * done / alike.len());
         }
+        let verdicts = self
+            .cameras
+            .iter()
+            .zip(seen)
+            .map(|(camera, seen)| self.judged(camera, seen))
+            .collect::<Result<_>>()?;
         let share = self.demand.requirement.share;
         let (quantity, demanded) = match self.demand.requirement.error {
             Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m),
@@ -139,10 +148,38 @@ impl DepthClause {
         Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
     }
 
+    /// All that is looked at, by camera and distance, what is rendered alike together.
+    fn rendered_alike(&self) -> Vec<Vec<(usize, &(f64, RangeStudy))>> {
+        let mut alike: Vec<Vec<(usize, &(f64, RangeStudy))>> = Vec::new();
+        let all = self.cameras.iter().enumerate();
+        for (camera, one) in all.flat_map(|(camera, own)| own.studies.iter().map(move |one| (camera, one))) {
+            match alike
+                .iter_mut()
+                .find(|known| known.first().is_some_and(|(_, first)| one.1.is_rendered_as(&first.1)))
+            {
+                Some(known) => known.push((camera, one)),
+                None => alike.push(vec![(camera, one)]),
+            }
+        }
+        alike
+    }
+
+    /// What is found from one distance by cameras that see the same.
+    fn seen_alike(&self, alike: &[(usize, &(f64, RangeStudy))]) -> Result<Vec<(usize, Seen)>> {
+        let rendered = match alike {
+            [(_, first), _, ..] => first.1.rendered(&|_, _| ())?,
+            _ => None,
+        };
+        let one = |(camera, (distance_m, study)): &(usize, &(f64, RangeStudy))| {
+            Ok((*camera, self.seen(*distance_m, study, rendered.as_ref())?))
+        };
+        alike.iter().map(one).collect()
+    }
+
     /// What is found from one distance.
-    fn seen(&self, distance_m: f64, study: &RangeStudy) -> Result<Seen> {
+    fn seen(&self, distance_m: f64, study: &RangeStudy, rendered: Option<&Arc<StereoPair>>) -> Result<Seen> {
         let plan = RangePlan { bounds_alone: true, ..RangePlan::default() };
-        let found = study.range(&plan, None, &|_, _| ())?;
+        let found = study.range_of(&plan, rendered, None, &|_, _| ())?;
         let object = found.objects.iter().find(|object| object.name == self.demand.object.name());
         let by = |signal: Signal| {
             object.and_then(|object| object.signals.iter().find(|bounds| bounds.signal == signal))

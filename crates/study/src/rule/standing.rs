@@ -38,6 +38,13 @@ pub enum Reason {
     NotProved(Place, Grade),
     /// Meeting a clause rests on conditions that nobody accepted, by their codes.
     RestsOn(Place, Vec<String>),
+    /// Figures of a camera of which nobody says where they are from.
+    Unsourced {
+        /// The camera.
+        camera: String,
+        /// Their keys.
+        figures: Vec<String>,
+    },
     /// A value stands in the place of the rule's own.
     Changed {
         /// Its key.
@@ -76,6 +83,7 @@ impl Reason {
             Self::Undecided(_) => "undecided",
             Self::NotProved(..) => "not-proved",
             Self::RestsOn(..) => "conditions",
+            Self::Unsourced { .. } => "camera-figures",
             Self::Changed { .. } => "changed",
             Self::Replaced { .. } => "materials-replaced",
             Self::NoDay => "no-day",
@@ -92,7 +100,8 @@ impl Reason {
             | Self::Undecided(place)
             | Self::NotProved(place, _)
             | Self::RestsOn(place, _) => Some(place),
-            Self::Changed { .. }
+            Self::Unsourced { .. }
+            | Self::Changed { .. }
             | Self::Replaced { .. }
             | Self::NoDay
             | Self::NoDates
@@ -108,6 +117,7 @@ impl RuleAnswer {
         let mut reasons: Vec<Reason> =
             self.clauses.iter().flat_map(|clause| self.of_clause(clause)).collect();
         let fails = reasons.iter().any(|one| matches!(one, Reason::Fails(_)));
+        reasons.extend(self.unsourced());
         let mut is_rule = true;
         // A rule that does not hold, or with other values, is not the one that is failed.
         for set in &self.rule.scenario.source.settings {
@@ -135,6 +145,18 @@ impl RuleAnswer {
             (false, false) => Outcome::Warned,
         };
         (outcome, reasons)
+    }
+
+    /// Cameras with figures of which nobody says where they are from.
+    fn unsourced(&self) -> impl Iterator<Item = Reason> {
+        self.cameras.iter().enumerate().filter_map(|(index, camera)| {
+            let own = self.rule.camera_figures(index).into_iter().map(|figure| figure.key);
+            let file =
+                (self.rule.own_document(index) == Some(None)).then(|| self.rule.cameras[index].key.clone());
+            let figures: Vec<String> =
+                own.chain(file).filter(|key| self.rule.behind(key).next().is_none()).collect();
+            (!figures.is_empty()).then(|| Reason::Unsourced { camera: camera.name.clone(), figures })
+        })
     }
 
     fn of_clause(&self, clause: &ClauseAnswer) -> Vec<Reason> {
@@ -173,6 +195,10 @@ impl serde::Serialize for Reason {
         match self {
             Self::NotProved(_, grade) => map.serialize_entry("evidence", grade)?,
             Self::RestsOn(_, codes) => map.serialize_entry("conditions", codes)?,
+            Self::Unsourced { camera, figures } => {
+                map.serialize_entry("camera", camera)?;
+                map.serialize_entry("figures", figures)?;
+            }
             Self::Changed { key, value } => {
                 map.serialize_entry("key", key)?;
                 map.serialize_entry("value", value)?;

@@ -12,7 +12,8 @@ use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use crate::words::safety;
 use crate::words::shortfall::no;
-use hadar_scenario::rule::{Clause, Ground, Verdict};
+use hadar::instrument::presets;
+use hadar_scenario::rule::{Clause, Figure, Ground, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
     ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
@@ -70,6 +71,11 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
         out.heading(2, "Where the numbers of the rule are from");
         out.table(&["number", "value", "from"], &[0, 1], numbers_of(&answer.rule));
     }
+    let cameras = figures_of_cameras(answer);
+    if !cameras.is_empty() {
+        out.heading(2, "Where the figures of the cameras are from");
+        out.table(&["camera", "figure", "value", "from"], &[1, 2], cameras);
+    }
     out.heading(2, "What the words mean");
     out.items(WORDS.map(|[word, meaning]| (Some(word.to_owned()), meaning.to_owned())));
     out
@@ -91,8 +97,7 @@ pub(super) fn about_the_rule(answer: &RuleAnswer) -> Vec<(&'static str, String)>
 pub(super) fn what_it_is(rule: &Rule) -> String {
     let figures = rule.figures();
     let of_choice = |key: &str| {
-        let behind = rule.sources.iter().filter(|citation| citation.covers(key));
-        let grounds: Vec<&Ground> = behind.map(|citation| &citation.ground).collect();
+        let grounds: Vec<&Ground> = rule.behind(key).collect();
         grounds.is_empty() || grounds.iter().any(|ground| matches!(ground, Ground::Choice(_)))
     };
     let chosen = figures.iter().filter(|figure| of_choice(&figure.key)).count();
@@ -205,6 +210,10 @@ pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
     }
     for reason in reasons {
         match reason {
+            NotPassed::Unsourced { camera, figures } => out.push(format!(
+                "nobody says where figures of {camera} are from: {} ([[source]])",
+                figures.join(", ")
+            )),
             NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),
             NotPassed::Replaced { materials } => {
                 out.push(format!(
@@ -263,18 +272,40 @@ fn look_alikes(rule: &Rule) -> Option<String> {
     })
 }
 
+const NOBODY: &str = "nobody says from where";
+
 /// Every number of the rule with what stands behind it.
 fn numbers_of(rule: &Rule) -> Vec<[String; 3]> {
-    let behind = |key: &str| {
-        let all = rule.sources.iter().filter(|citation| citation.covers(key));
-        let said = all.map(|citation| sources::from_where(&citation.ground));
-        said.collect::<Vec<_>>().join("; ")
-    };
-    let named = |key: &str| match behind(key) {
-        said if said.is_empty() => "nobody says from where".to_owned(),
-        said => said,
-    };
-    rule.figures().into_iter().map(|figure| [figure.key.clone(), figure.value, named(&figure.key)]).collect()
+    let named = |figure: Figure| [figure.key.clone(), figure.value, behind(rule, &figure.key)];
+    rule.figures().into_iter().map(named).collect()
+}
+
+/// What stands behind a figure.
+fn behind(rule: &Rule, key: &str) -> String {
+    let said: Vec<String> = rule.behind(key).map(sources::from_where).collect();
+    if said.is_empty() { NOBODY.to_owned() } else { said.join("; ") }
+}
+
+/// Every figure of the cameras that the rule states, and the known cameras that stand behind the others.
+fn figures_of_cameras(answer: &RuleAnswer) -> Vec<[String; 4]> {
+    let rule = &answer.rule;
+    let mut rows = Vec::new();
+    for (index, (camera, own)) in answer.cameras.iter().zip(&rule.cameras).enumerate() {
+        if let Some(preset) = &own.spec.preset {
+            let own = rule.own_document(index).map(|named| named.map(str::to_owned));
+            let known = || {
+                let known = presets::find(preset).ok()?;
+                known.document.or_else(|| known.provenance.into_iter().next())
+            };
+            let from = own.unwrap_or_else(known).unwrap_or_else(|| NOBODY.to_owned());
+            rows.push([camera.name.clone(), "preset".into(), preset.clone(), from]);
+        }
+        for figure in rule.camera_figures(index) {
+            let key = figure.key.split_once('.').map_or(figure.key.as_str(), |(_, key)| key).to_owned();
+            rows.push([camera.name.clone(), key, figure.value, behind(rule, &figure.key)]);
+        }
+    }
+    rows
 }
 
 /// When a rule holds.

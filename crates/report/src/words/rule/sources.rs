@@ -12,10 +12,10 @@ use std::fmt::Write as _;
 pub fn sources(rule: &Rule) -> String {
     let figures = rule.figures();
     let name = rule.about.name.as_deref().unwrap_or("This rule");
-    let stated = |figure: &&Figure| {
-        let behind = rule.sources.iter().filter(|citation| citation.covers(&figure.key));
-        behind.into_iter().any(|citation| matches!(citation.ground, Ground::Document { .. }))
-    };
+    let stated =
+        |figure: &&Figure| rule.behind(&figure.key).any(|ground| matches!(ground, Ground::Document { .. }));
+    let of_cameras: Vec<Figure> =
+        (0..rule.cameras.len()).flat_map(|index| rule.camera_figures(index)).collect();
     let documented = figures.iter().filter(stated).count();
     let mut out = format!(
         "{name}: {} figures, {documented} of documents, {} choices of its author alone.\n",
@@ -35,7 +35,8 @@ pub fn sources(rule: &Rule) -> String {
                 let _ = writeln!(out, "Choice: {reason}");
             }
         }
-        for Figure { key, value, line, .. } in figures.iter().filter(|figure| citation.covers(&figure.key)) {
+        let own = figures.iter().chain(&of_cameras).filter(|figure| citation.covers(&figure.key));
+        for Figure { key, value, line, .. } in own {
             let _ = writeln!(out, "  line {line}: {key} = {value}");
         }
     }
