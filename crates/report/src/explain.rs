@@ -5,6 +5,7 @@
 //! fails where it is not what the sources say; `named.tsv` has those that are no fields.
 
 use crate::words::conditions::EXPLAINED;
+use crate::words::shortfall;
 use crate::words::warnings;
 use hadar_scenario::keys::{self, Place, Silent};
 use hadar_study::warning::Code;
@@ -22,6 +23,8 @@ pub struct Reference {
     pub warnings: Vec<ExplainedCode>,
     /// Codes of conditions of a verdict; those of figures of a camera are their keys.
     pub conditions: Vec<ExplainedCode>,
+    /// Codes of what a camera falls short of.
+    pub shortfalls: Vec<ExplainedCode>,
     /// Keys of answers.
     pub results: Vec<ResultKey>,
 }
@@ -116,6 +119,7 @@ pub fn all() -> Reference {
         keys: keys::all().iter().map(ExplainedKey::from).collect(),
         warnings: Code::ALL.iter().copied().map(ExplainedCode::from).collect(),
         conditions: conditions().collect(),
+        shortfalls: shortfalls().collect(),
         results: results().collect(),
     }
 }
@@ -123,6 +127,17 @@ pub fn all() -> Reference {
 /// Codes of conditions of a verdict.
 pub fn conditions() -> impl Iterator<Item = ExplainedCode> {
     EXPLAINED.iter().map(|[code, meaning, remedy]| ExplainedCode { code, meaning, remedy })
+}
+
+/// Codes of what a camera falls short of.
+pub fn shortfalls() -> impl Iterator<Item = ExplainedCode> {
+    shortfall::EXPLAINED.iter().map(|[code, meaning, remedy]| ExplainedCode { code, meaning, remedy })
+}
+
+/// What a camera of that code falls short of.
+#[must_use]
+pub fn shortfall(word: &str) -> Option<ExplainedCode> {
+    shortfalls().find(|one| one.code == word.trim_matches(['[', ']']))
 }
 
 /// The condition of a verdict of that code.
@@ -176,7 +191,7 @@ pub fn words() -> Vec<String> {
         place.paths.into_iter().chain([name])
     });
     let codes = Code::ALL.iter().map(|code| code.name().to_owned());
-    let codes = codes.chain(conditions().map(|one| one.code.to_owned()));
+    let codes = codes.chain(conditions().chain(shortfalls()).map(|one| one.code.to_owned()));
     let mut words: Vec<String> = keys.chain(codes).chain(results().map(|one| one.key.to_owned())).collect();
     words.sort_unstable();
     words.dedup();

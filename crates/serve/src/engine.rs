@@ -41,6 +41,8 @@ pub struct Engine {
     pub cameras: OwnCameras,
     /// The scenario that the page begins with.
     pub begin: String,
+    /// The rule that the page for rules begins with; the first of the collection where `None`.
+    pub begin_rule: Option<String>,
     /// Commit of the program's source, for reports.
     pub commit: String,
     /// How long an answer may take, and how much memory the program.

@@ -131,6 +131,8 @@ impl Engine {
         #[derive(Serialize)]
         struct Start<'a> {
             version: &'static str,
+            /// The rule that it begins with; none where that is the first pack.
+            begin: Option<&'a str>,
             packs: Vec<Pack>,
             /// Words of the page, each with its meaning.
             words: &'a [[&'a str; 2]],
@@ -138,6 +140,7 @@ impl Engine {
         }
         json::line(&Start {
             version: VERSION,
+            begin: self.begin_rule.as_deref(),
             packs: packs::all()?,
             words: &rows::WORDS,
             library_warnings: self.library.warnings(),

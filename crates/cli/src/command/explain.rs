@@ -44,6 +44,8 @@ struct Explained {
     warning: Option<ExplainedCode>,
     /// The condition of a verdict of this code.
     condition: Option<ExplainedCode>,
+    /// What a camera falls short of by this code.
+    shortfall: Option<ExplainedCode>,
     /// Keys of answers that are called so.
     results: Vec<ResultKey>,
     /// The command of this name.
@@ -78,6 +80,7 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         keys: places.iter().map(ExplainedKey::from).collect(),
         warning: explain::code(word).map(ExplainedCode::from),
         condition: explain::condition(word),
+        shortfall: explain::shortfall(word),
         results: explain::result(word),
         command: command(word, cli),
     };
@@ -85,6 +88,7 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         && explained.results.is_empty()
         && explained.warning.is_none()
         && explained.condition.is_none()
+        && explained.shortfall.is_none()
         && explained.command.is_none()
     {
         return Err(unknown(word, cli));
@@ -156,6 +160,9 @@ fn text(explained: &Explained, places: &[Place]) -> String {
     if let Some(condition) = explained.condition {
         of_code("condition", condition, &mut text);
     }
+    if let Some(shortfall) = explained.shortfall {
+        of_code("falls short by", shortfall, &mut text);
+    }
     if places.len() > IN_FULL {
         let _ = writeln!(
             text,
@@ -193,6 +200,8 @@ fn reference_text(reference: &Reference) -> String {
     reference.warnings.iter().for_each(|one| of_code("warning", *one, &mut text));
     text.push_str("CONDITIONS OF A VERDICT\n\n");
     reference.conditions.iter().for_each(|one| of_code("condition", *one, &mut text));
+    text.push_str("WHAT A CAMERA FALLS SHORT OF\n\n");
+    reference.shortfalls.iter().for_each(|one| of_code("falls short by", *one, &mut text));
     text.push_str("KEYS OF THE JSON\n\n");
     reference.results.iter().for_each(|one| of_result(*one, &mut text));
     text

@@ -197,7 +197,9 @@ fn reforms(written: &Written, global: &Global) -> Result<u8> {
 /// What hangs on every figure of the rule.
 fn figures(written: &Written, global: &Global) -> Result<u8> {
     let bar = global.progress("figures");
-    let found = FiguresMoved::of(written, &global.library()?, &|done, all| bar.set(done, all))?;
+    let found = FiguresMoved::of(written, &global.library()?, global.skip_uncovered, &|done, all| {
+        bar.set(done, all)
+    })?;
     bar.finish();
     let text = rule::figures_moved(&found);
     let title = Rule::from_written(written)?.about.name;

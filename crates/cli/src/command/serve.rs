@@ -4,6 +4,7 @@ use super::global::{Global, put};
 use super::{init, provenance};
 use clap::Args;
 use hadar::error::{Error, Result};
+use hadar_scenario::command_for;
 use hadar_serve::Engine;
 use hadar_study::OwnCameras;
 use std::net::{Ipv4Addr, TcpListener};
@@ -12,7 +13,8 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ServeArgs {
-    /// The scenario that the page begins with, `-` for standard input; silent: that of `hadar init size`
+    /// The scenario that the page begins with, or the rule that the page for rules does, `-` for standard input; silent: that of
+    /// `hadar init size`
     scenario: Option<PathBuf>,
     /// Port on 127.0.0.1; 0 takes any that is free
     #[arg(long, value_name = "PORT", default_value_t = 8731)]
@@ -20,14 +22,20 @@ pub(super) struct ServeArgs {
 }
 
 pub(super) fn run(args: &ServeArgs, global: &Global) -> Result<ExitCode> {
-    let begin = match &args.scenario {
-        Some(path) => global.written(path)?.text,
-        None => init::size(),
+    let written = args.scenario.as_ref().map(|path| global.written(path)).transpose()?;
+    let (begin, begin_rule) = match written {
+        Some(written) if matches!(command_for(&written), Ok(Some("rule"))) => {
+            (init::size(), Some(written.text))
+        }
+        Some(written) => (written.text, None),
+        None => (init::size(), None),
     };
+    let page = if begin_rule.is_some() { "rules" } else { "" };
     let engine = Engine {
         library: global.library()?,
         cameras: OwnCameras::from_files(&global.cameras)?,
         begin,
+        begin_rule,
         commit: provenance::COMMIT.to_owned(),
         limits: global.limits,
     };
@@ -37,7 +45,7 @@ pub(super) fn run(args: &ServeArgs, global: &Global) -> Result<ExitCode> {
     })?;
     let address =
         listener.local_addr().map_err(|error| Error::malformed(error.to_string(), "name another --port"))?;
-    put(&format!("http://{address}/"))?;
+    put(&format!("http://{address}/{page}"))?;
     global.note("open it in a browser of this machine; Ctrl-C ends it");
     hadar_serve::serve(engine, listener)?;
     Ok(ExitCode::SUCCESS)

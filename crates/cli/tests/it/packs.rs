@@ -95,7 +95,7 @@ fn numbers_break_tests_or_are_listed(wanted: impl Fn(&str) -> bool) {
         if !wanted(name) {
             continue;
         }
-        let found = FiguresMoved::of(&Written::of(&text, Some(&path)), &library, &|_, _| ()).unwrap();
+        let found = FiguresMoved::of(&Written::of(&text, Some(&path)), &library, false, &|_, _| ()).unwrap();
         let broken: BTreeSet<&str> = found
             .figures
             .iter()

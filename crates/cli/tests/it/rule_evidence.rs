@@ -219,7 +219,7 @@ fn reforms_are_held_beside_the_law() {
 /// Every number of a rule moved: what no verdict knows of has no change, what is demanded has its own.
 #[test]
 fn every_figure_of_a_rule_is_moved() {
-    let found = FiguresMoved::of(&Written::of(&easy("", ""), None), library(), &|_, _| ()).unwrap();
+    let found = FiguresMoved::of(&Written::of(&easy("", ""), None), library(), false, &|_, _| ()).unwrap();
     let change = |key: &str, to: &str| {
         let one = found.figures.iter().find(|one| one.key == key && one.moved_to.contains(to));
         one.unwrap_or_else(|| panic!("{key} {to}: {:?}", found.figures)).largest_change

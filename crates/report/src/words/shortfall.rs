@@ -2,6 +2,67 @@
 
 use hadar_study::Shortfall;
 
+/// Codes of what a camera falls short of, each with its meaning and what to do about it.
+pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
+    [
+        "distance",
+        "the statistical distance from the nearest look-alike is below that demanded: what is counted does not tell the two apart as reliably as that",
+        "more light (exposure, frames, f-number, pixel), less noise, other bands, or states of the alternative that are ruled out (priors, temperature of the alternatives)",
+    ],
+    [
+        "pixels",
+        "fewer pixels lie across the target than are demanded, or they run into each other while a frame is exposed",
+        "a longer focal length, a shorter exposure, or a decision nearer to the target",
+    ],
+    [
+        "temperature-error",
+        "the temperature of the target is not known as well as demanded",
+        "more light, less noise, more bands, or an emissivity that is better known",
+    ],
+    [
+        "depth-error",
+        "the distance is not known as well as demanded in the share of windows that is demanded",
+        "a longer baseline or focal length, larger windows, less noise",
+    ],
+    [
+        "decision-time",
+        "the frames are read later than the decision must stand",
+        "fewer frames or bands, a higher frame rate, or a target that comes into view earlier",
+    ],
+    [
+        "motion-blur",
+        "the picture of the target moves by a pixel or more while all bands are exposed",
+        "a shorter exposure, bands that are read together, a shorter focal length or a lower speed",
+    ],
+    [
+        "motion-unknown",
+        "a speed is demanded, and nobody says how far the target is: whether its picture is blurred cannot be said, which counts as not met",
+        "state target.distance or envelope.distance",
+    ],
+    [
+        "out-of-view",
+        "the target, on its way across, is not in the camera's view in time for the decision",
+        "a wider view (field_of_view), or a higher speed of the vehicle from which on it is",
+    ],
+    [
+        "full-well",
+        "a reading of the brightest scene does not fit into the full well",
+        "a shorter exposure, a smaller aperture, or a filter",
+    ],
+    ["frame-rate", "the exposure is longer than a frame", "a shorter exposure or a lower frame rate"],
+    [
+        "diffraction",
+        "the lens blurs a point over more than the pixel",
+        "a smaller f-number or a larger pixel",
+    ],
+    ["impractical", "no camera is built or used like that", "change another quantity"],
+    [
+        "lowest-noise",
+        "read noise and the steps of the converter leave more noise than that, whatever the detector",
+        "change another quantity",
+    ],
+];
+
 /// What is wrong with an image, each in a clause of its own.
 pub(super) fn clauses(spoiled: &[Shortfall]) -> String {
     spoiled.iter().map(|by| clause(*by)).collect::<Vec<_>>().join(", and ")

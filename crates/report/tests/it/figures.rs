@@ -267,7 +267,7 @@ fn panel() -> impl Strategy<Value = Panel> {
 }
 
 fn line_figure() -> impl Strategy<Value = Figure> {
-    (words(), words(), axis(), panel(), prop::option::of(panel()))
+    (words(), words(), axis(), panel(), prop::collection::vec(panel(), 0..4))
         .prop_map(|(title, subtitle, x, panel, lower)| LineFigure { title, subtitle, x, panel, lower }.into())
 }
 

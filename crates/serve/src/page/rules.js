@@ -221,6 +221,11 @@ function choose(file) {
 }
 
 function wrote() {
+  writes();
+  pass("The rule was changed: press Answer.");
+}
+
+function writes() {
   own = rule();
   if (!at("pack").querySelector("option[value='']")) {
     at("pack").prepend(element("option", { value: "" }, "your own text"));
@@ -228,7 +233,6 @@ function wrote() {
   at("pack").value = "";
   at("pack-says").textContent = "";
   history.replaceState(null, "", "#");
-  pass("The rule was changed: press Answer.");
 }
 
 at("ask").addEventListener("submit", (event) => { event.preventDefault(); ask(); });
@@ -253,16 +257,24 @@ at("print").addEventListener("click", () => print());
 addEventListener("beforeprint", () => { at("printed").textContent = rule(); });
 
 (async () => {
+  let begin = null;
   try {
     const start = await (await fetch("/rules/start")).json();
     packs = start.packs;
     at("version").textContent = start.version;
+    begin = start.begin;
     at("words").replaceChildren(...start.words.flatMap(meaningOf));
   } catch {
     return failed({ message: "The program does not answer. Start `hadar serve` again, then load this page anew." });
   }
   at("pack").replaceChildren(...packs.map((pack) => element("option", { value: pack.file }, pack.name)));
-  const wanted = packs.find((pack) => `#${pack.file}` === location.hash) ?? packs[0];
+  const named = packs.find((pack) => `#${pack.file}` === location.hash);
+  if (begin !== null && !named) {
+    at("rule").value = begin;
+    writes();
+    return ask();
+  }
+  const wanted = named ?? packs[0];
   at("pack").value = wanted.file;
   choose(wanted.file);
 })();

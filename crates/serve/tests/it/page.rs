@@ -278,6 +278,7 @@ fn only_this_machine_is_listened_to() {
         library: Library::empty(),
         cameras: Default::default(),
         begin: String::new(),
+        begin_rule: None,
         commit: String::new(),
         limits: Default::default(),
     };

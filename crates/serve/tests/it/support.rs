@@ -22,6 +22,7 @@ pub(crate) fn server() -> SocketAddr {
             library: Library::embedded().unwrap(),
             cameras: Default::default(),
             begin: SCENARIO.to_owned(),
+            begin_rule: None,
             commit: "test".to_owned(),
             limits: Default::default(),
         };

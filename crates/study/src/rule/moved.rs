@@ -56,8 +56,14 @@ impl FiguresMoved {
     ///
     /// # Errors
     /// As [`RuleStudy::answer`], of the rule as it is.
-    pub fn of(written: &Written, library: &Library, progress: &dyn Fn(usize, usize)) -> Result<Self> {
-        let law = Rule::from_written(written)?;
+    pub fn of(
+        written: &Written,
+        library: &Library,
+        skip_uncovered: bool,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<Self> {
+        let mut law = Rule::from_written(written)?;
+        law.skip_uncovered(skip_uncovered);
         let own = answer(&law, library)?;
         let mut stats = own.stats.clone();
         let jobs: Vec<(String, String, String)> = law.figures().iter().flat_map(moves).collect();
@@ -66,6 +72,7 @@ impl FiguresMoved {
         for (done, (key, value, moved_to)) in jobs.into_iter().enumerate() {
             let setting = Setting { key: key.clone(), value: moved_to.clone(), by: "the move" };
             let found = Rule::from_written(&written.clone().with([setting])).and_then(|mut rule| {
+                rule.skip_uncovered(skip_uncovered);
                 only_clause(&mut rule, &key);
                 answer(&rule, library)
             });
@@ -93,7 +100,7 @@ impl FiguresMoved {
         hadar::order::descending(&mut figures, |one| {
             one.largest_change.unwrap_or(0.0) + if one.verdicts.is_empty() { 0.0 } else { 1e6 }
         });
-        Ok(Self { law: own.cameras.iter().map(BeforeLaw::of).collect(), figures, stats })
+        Ok(Self { law: BeforeLaw::all(&own), figures, stats })
     }
 }
 

@@ -3,6 +3,7 @@
 use super::asked::{Extent, RuleAsked};
 use super::clauses::{CameraAnswer, RuleAnswer};
 use super::{Market, RuleStudy};
+use crate::Shortfall;
 use crate::condition::Condition;
 use hadar::demand::Work;
 use hadar::error::{Error, Place, Result};
@@ -59,13 +60,33 @@ pub struct BeforeLaw {
     pub margin: f64,
     /// The clause of that margin.
     pub limiting_clause: Option<String>,
+    /// Where the least margin decides nothing: what spoils the picture, by the first clause that it fails.
+    pub spoiled_by: Vec<Shortfall>,
+    /// That clause.
+    pub spoiled_clause: Option<String>,
     /// Codes of the conditions of a 'meets' without which it may be none.
     pub conditions: Vec<String>,
 }
 
 impl BeforeLaw {
-    pub(super) fn of(camera: &CameraAnswer) -> Self {
+    /// Of every camera of an answer.
+    pub(super) fn all(answer: &RuleAnswer) -> Vec<Self> {
+        answer.cameras.iter().map(|camera| Self::of(camera, answer)).collect()
+    }
+
+    fn of(camera: &CameraAnswer, answer: &RuleAnswer) -> Self {
+        let mut lines = answer.clauses.iter().flat_map(|clause| {
+            clause.lines().into_iter().map(|line| (clause.name.clone(), line)).collect::<Vec<_>>()
+        });
+        let is_spoiled = camera.verdict == Verdict::Fails && camera.margin >= 1.0;
+        let fails = lines.find(|(_, line)| line.camera == camera.name && line.verdict == Verdict::Fails);
+        let (spoiled_clause, spoiled_by) = match fails.filter(|_| is_spoiled) {
+            Some((clause, line)) => (clause, line.fails_by.to_vec()),
+            None => (None, Vec::new()),
+        };
         Self {
+            spoiled_by,
+            spoiled_clause,
             camera: camera.name.clone(),
             verdict: camera.verdict,
             margin: camera.margin,
@@ -109,9 +130,8 @@ impl Reforms {
         };
         let own = answer(&law)?;
         progress(1, all);
-        let standings = |answer: &RuleAnswer| answer.cameras.iter().map(BeforeLaw::of).collect::<Vec<_>>();
         let mut stats = own.stats.clone();
-        let before = standings(&own);
+        let before = BeforeLaw::all(&own);
         let mut reforms = Vec::with_capacity(law.reforms.len());
         for (index, Reform { name, status, from, set, ground }) in law.reforms.iter().enumerate() {
             let named = |error: Error| {
@@ -121,7 +141,7 @@ impl Reforms {
             rule.skip_uncovered(skip_uncovered);
             let answer = answer(&rule).map_err(named)?;
             stats.add(&answer.stats);
-            let cameras = standings(&answer);
+            let cameras = BeforeLaw::all(&answer);
             let changed = before.iter().zip(&cameras).filter(|(law, reform)| law.differs_from(reform));
             reforms.push(Reformed {
                 name: name.clone(),

@@ -4,6 +4,7 @@ use super::market::of_market;
 use super::sources::from_where;
 use crate::text::columns::aligned;
 use crate::text::significant;
+use crate::words::shortfall::codes;
 use hadar_scenario::rule::Verdict;
 use hadar_study::{BeforeLaw, Reformed, Reforms};
 use std::fmt::Write as _;
@@ -71,7 +72,7 @@ pub fn reforms(found: &Reforms) -> String {
         rows.push([law.camera.clone(), cell(law)].into_iter().chain(by_reform).collect());
     }
     out += &aligned(&rows, &[]);
-    out += "  in brackets: least margin, above 1 where the demand is met, and the clause of it\n\n";
+    out += "  in brackets: least margin, above 1 where the demand is met, or what spoils the picture, and the clause of it\n\n";
     for (name, market) in std::iter::once(("the rule as it is", found.market))
         .chain(found.reforms.iter().map(|reform| (reform.name.as_str(), reform.market)))
     {
@@ -106,8 +107,12 @@ fn what_it_sets(reform: &Reformed) -> String {
 
 /// A verdict with its margin and the clause of that.
 fn cell(one: &BeforeLaw) -> String {
-    let by = one.limiting_clause.as_ref().map_or_else(String::new, |clause| format!(", {clause}"));
-    format!("{} ({}{by})", of(one), significant(one.margin, 3))
+    let (why, clause) = match one.spoiled_by.as_slice() {
+        [] => (significant(one.margin, 3), &one.limiting_clause),
+        by => (codes(by, ", ").replace('-', " "), &one.spoiled_clause),
+    };
+    let by = clause.as_ref().map_or_else(String::new, |clause| format!(", {clause}"));
+    format!("{} ({why}{by})", of(one))
 }
 
 fn of(one: &BeforeLaw) -> &'static str {
