@@ -188,6 +188,18 @@ impl Rule {
         self.sources.iter().filter(move |citation| citation.covers(key)).map(|citation| &citation.ground)
     }
 
+    /// The same rule with a clause for each cell of its grid in the place of its own, and the cells.
+    ///
+    /// # Errors
+    /// A rule without a grid, or without speeds; a clause with another number of surroundings; too many cells; a light in which not all scenes
+    /// are lit as is known.
+    pub fn of_cells(&self) -> Result<(Self, Vec<GridCell>)> {
+        let (clauses, cells) = grid::cells(&self.clauses, &self.grid, &|key| self.scenario.place(key))?;
+        let mut rule = Self { clauses, ..self.clone() };
+        (rule.tests, rule.reforms, rule.grid) = (Vec::new(), Vec::new(), Vec::new());
+        Ok((rule, cells))
+    }
+
     /// Whether its demands are those of `[[clause]]` tables.
     #[must_use]
     pub fn has_clauses(&self) -> bool {

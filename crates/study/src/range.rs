@@ -62,6 +62,8 @@ pub struct RangePlan {
     pub verdict_alone: bool,
     /// Whether what would have to change is left out, whose every look may render the scene.
     pub bounds_alone: bool,
+    /// Whether signals are left out that nobody counts: parts of the light of a rendered scene.
+    pub counted_alone: bool,
 }
 
 /// Is told how much of how much is done.
@@ -207,7 +209,7 @@ impl RangeStudy {
         if let Some(cube) = self.too_large_to_keep(shape) {
             return self.streamed(cube, plan, sink, progress);
         }
-        let informed = self.informed(shape, rendered, progress)?;
+        let informed = self.informed(shape, (rendered, plan.counted_alone), progress)?;
         let ground = self.ground(&informed.truth, shape)?;
         let window = self.scenario.stereo.window;
         let Some(first) = informed.left.first() else { return Err(nothing_to_see()) };
@@ -330,7 +332,7 @@ impl RangeStudy {
     fn informed(
         &self,
         shape: Shape,
-        rendered: Option<&Arc<StereoPair>>,
+        (rendered, counted_alone): (Option<&Arc<StereoPair>>, bool),
         progress: Progress<'_>,
     ) -> Result<Informed> {
         match (&self.subject, &self.bands) {
@@ -338,8 +340,9 @@ impl RangeStudy {
                 let own = if rendered.is_none() { self.rendered(progress)? } else { None };
                 let pair = rendered.cloned().or(own).ok_or_else(nothing_to_see)?;
                 let request = self.request(&scene.noise, &Cell::ALL, shape);
-                let (left, cells, counts) = signals::of_scene(scene, &pair.left, bands, &request)?;
-                let (right, ..) = signals::of_scene(scene, &pair.right, bands, &request)?;
+                let (left, cells, counts) =
+                    signals::of_scene(scene, &pair.left, (bands, counted_alone), &request)?;
+                let (right, ..) = signals::of_scene(scene, &pair.right, (bands, counted_alone), &request)?;
                 let truth = Truth::of_scene(&scene.scene, &pair.left);
                 Ok(Informed { left, right, cells, truth, pair: Some(pair), counts: Some(counts) })
             }

@@ -92,7 +92,7 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
         skipping: global.skipping(),
         // A report shows all windows.
         verdict_alone: args.check && global.out.is_none(),
-        bounds_alone: false,
+        ..RangePlan::default()
     };
     if args.check && matches!(&scenario.subject, Subject::Cube(cube) if cube.depth.is_none()) {
         let found =

@@ -2,13 +2,14 @@
 //!
 //! Each is one light: a `name`, the `lighting` and `surroundings` that stand in the place of those of the envelope (silent: these), and the
 //! `speed_step` that cuts the speeds of each `[stop]`, from the lowest on; the highest is a cell of its own. A cell is a clause of its own
-//! ([`Rule::of_cells`]), judged as every clause is.
+//! ([`super::Rule::of_cells`]), judged as every clause is.
 
-use super::{Clause, Demand, Rule};
+use super::clause::Clause;
+use super::demand::Demand;
 use crate::entries::Entries;
 use crate::envelope::Envelope;
 use crate::section::{Entry, Section};
-use hadar::error::{Error, Result};
+use hadar::error::{Error, Place, Result};
 use hadar::units::Dimension;
 
 /// Most cells of a rule.
@@ -89,56 +90,50 @@ fn one(item: &Entry<'_>, objects: usize) -> Result<GridLight> {
     Ok(GridLight { name, speed_step_m_s, lighting: lit.lighting, surroundings_k: lit.surroundings_k })
 }
 
-impl Rule {
-    /// The same rule with a clause for each cell of its grid in the place of its own, and the cells.
-    ///
-    /// # Errors
-    /// A rule without a grid, or without speeds; a clause with another number of surroundings; too many cells; a light in which not all scenes
-    /// are lit as is known.
-    pub fn of_cells(&self) -> Result<(Self, Vec<GridCell>)> {
-        let refused = |found: &str, instead: &str, key: &str| {
-            Err(Error::malformed(found, instead).at(self.scenario.place(key)))
-        };
-        if self.grid.is_empty() {
-            let instead = "write [[grid]] with name = \"night\" and speed_step = \"10 km/h\"";
-            return refused("the rule has no grid", instead, "");
-        }
-        let (mut clauses, mut cells) = (Vec::new(), Vec::new());
-        for clause in &self.clauses {
-            let Some(stop) = &clause.stop else { continue };
-            // Geometry has no light, and a street one of its own.
-            let is_lit = !matches!(clause.demand, Demand::Resolution { .. } | Demand::DepthError(_));
-            let lights = if is_lit { self.grid.len() } else { 1 };
-            for (index, light) in self.grid.iter().enumerate().take(lights) {
-                let key = format!("grid[{index}]");
-                for speed_m_s in light.speeds_m_s(stop.figures().speeds_m_s) {
-                    if cells.len() == MOST {
-                        let found = format!("more than {MOST} cells");
-                        return refused(&found, "write a longer step", &format!("{key}.speed_step"));
-                    }
-                    let own = clause.name.as_deref().unwrap_or_default();
-                    let name = Some(format!("{own} {} {speed_m_s}", light.name));
-                    let mut cell = Clause { name, stop: Some(stop.at(speed_m_s)?), ..clause.clone() };
-                    if is_lit {
-                        cell.lit_by(light).map_err(|error| error.at(self.scenario.place(&key)))?;
-                    }
-                    clauses.push(cell);
-                    let light = is_lit.then(|| light.name.clone());
-                    cells.push(GridCell { clause: clause.name.clone(), light, speed_m_s });
+/// A clause for each cell of a grid, and the cells; `place` tells where a key stands.
+///
+/// # Errors
+/// No clause with speeds; a clause with another number of surroundings; too many cells; a light in which not all scenes are lit as is known.
+pub(super) fn cells(
+    clauses: &[Clause],
+    grid: &[GridLight],
+    place: &dyn Fn(&str) -> Place,
+) -> Result<(Vec<Clause>, Vec<GridCell>)> {
+    let refused =
+        |found: &str, instead: &str, key: &str| Err(Error::malformed(found, instead).at(place(key)));
+    if grid.is_empty() {
+        let instead = "write [[grid]] with name = \"night\" and speed_step = \"10 km/h\"";
+        return refused("the rule has no grid", instead, "");
+    }
+    let (mut made, mut cells) = (Vec::new(), Vec::new());
+    for clause in clauses {
+        let Some(stop) = &clause.stop else { continue };
+        // Geometry has no light, and a street one of its own.
+        let is_lit = !matches!(clause.demand, Demand::Resolution { .. } | Demand::DepthError(_));
+        let lights = if is_lit { grid.len() } else { 1 };
+        for (index, light) in grid.iter().enumerate().take(lights) {
+            let key = format!("grid[{index}]");
+            for speed_m_s in light.speeds_m_s(stop.figures().speeds_m_s) {
+                if cells.len() == MOST {
+                    let found = format!("more than {MOST} cells");
+                    return refused(&found, "write a longer step", &format!("{key}.speed_step"));
                 }
+                let own = clause.name.as_deref().unwrap_or_default();
+                let name = Some(format!("{own} {} {speed_m_s}", light.name));
+                let mut cell = Clause { name, stop: Some(stop.at(speed_m_s)?), ..clause.clone() };
+                if is_lit {
+                    cell.lit_by(light).map_err(|error| error.at(place(&key)))?;
+                }
+                made.push(cell);
+                let light = is_lit.then(|| light.name.clone());
+                cells.push(GridCell { clause: clause.name.clone(), light, speed_m_s });
             }
         }
-        if cells.is_empty() {
-            return refused(
-                "no clause has a speed",
-                "write [stop], of which the grid has the speeds",
-                "grid",
-            );
-        }
-        let mut rule = Self { clauses, ..self.clone() };
-        (rule.tests, rule.reforms, rule.grid) = (Vec::new(), Vec::new(), Vec::new());
-        Ok((rule, cells))
     }
+    if cells.is_empty() {
+        return refused("no clause has a speed", "write [stop], of which the grid has the speeds", "grid");
+    }
+    Ok((made, cells))
 }
 
 impl Clause {

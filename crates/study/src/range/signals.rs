@@ -2,13 +2,13 @@
 
 use super::results::Signal;
 use super::subject::{Measured, Rendered, nothing_to_see};
-use hadar::cube::{Cube, Rows as _, Shape};
+use hadar::cube::{Cube, MemoryCube, Rows as _, Shape};
 use hadar::error::Result;
 use hadar::parallel;
 use hadar::ranging::depth::WindowInformation;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::Joined;
-use hadar::ranging::reconstruction::EmissionImage;
+use hadar::ranging::reconstruction::{BesideEmission, EmissionImage};
 use hadar::spectrum::Bands;
 use hadar_simulate::render::{Part, View};
 use std::ops::Range;
@@ -86,15 +86,44 @@ impl Measured {
 /// Rows whose emission and scattered light are made at a time: a core's own cache holds them.
 const ROWS: usize = 4;
 
-/// All signals of one view of a scene, the four cells of its total signal, and that signal.
+/// All signals of one view of a scene, or those alone that a camera counts, the four cells of its total signal, and that signal.
 pub(super) fn of_scene(
     subject: &Rendered,
     view: &View,
-    bands: &Bands,
+    (bands, counted_alone): (&Bands, bool),
     request: &Request<'_>,
 ) -> Result<(Vec<SignalMap>, InformationMap, Cube)> {
+    let total = view.cube(Part::Total, subject.counting.counts_per_radiance)?;
+    let beside = if counted_alone { None } else { Some(beside(subject, view, bands, &total, request)?) };
+    let total = Cube::from(total);
+    let all = information(&total, request)?;
+    let mut maps = vec![
+        SignalMap::thermal(&all, request.joined, bands.len()),
+        SignalMap::of(Signal::HeatCube, Cell::Full, &all),
+    ];
+    if let Some(beside) = beside {
+        let half = [request.window.half_rows(), request.window.half_columns()];
+        let of = |signal: Signal, pixels: &[f64]| SignalMap {
+            information: beside.windows(pixels, &all, half),
+            ..SignalMap::of(signal, Cell::Full, &all)
+        };
+        let alone = of(Signal::ScatteredAsMeasured, &beside.scattered_alone);
+        maps.push(of(Signal::Reconstructed, &beside.temperature));
+        maps.push(of(Signal::ReconstructedBlind, &beside.strength_too));
+        maps.push(SignalMap { photons: beside.windows(&beside.scattered_counts, &all, half), ..alone });
+    }
+    Ok((maps, all, total))
+}
+
+/// What the scattered light tells beside what is emitted.
+fn beside(
+    subject: &Rendered,
+    view: &View,
+    bands: &Bands,
+    total: &MemoryCube<f64>,
+    request: &Request<'_>,
+) -> Result<BesideEmission> {
     let factor = subject.counting.counts_per_radiance;
-    let total = view.cube(Part::Total, factor)?;
     let (shape, var_added) = (total.shape(), subject.var_per_band(bands.len()));
     let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();
     let counts: Vec<_> = total.samples().chunks(ROWS * shape.row_len()).collect();
@@ -120,20 +149,5 @@ pub(super) fn of_scene(
     let mut blocks = blocks.into_iter();
     let Some(mut beside) = blocks.next() else { return Err(nothing_to_see()) };
     blocks.for_each(|below| beside.append(&below));
-    let total = Cube::from(total);
-    let all = information(&total, request)?;
-    let half = [request.window.half_rows(), request.window.half_columns()];
-    let of = |signal: Signal, pixels: &[f64]| SignalMap {
-        information: beside.windows(pixels, &all, half),
-        ..SignalMap::of(signal, Cell::Full, &all)
-    };
-    let alone = of(Signal::ScatteredAsMeasured, &beside.scattered_alone);
-    let maps = vec![
-        SignalMap::thermal(&all, request.joined, bands.len()),
-        SignalMap::of(Signal::HeatCube, Cell::Full, &all),
-        of(Signal::Reconstructed, &beside.temperature),
-        of(Signal::ReconstructedBlind, &beside.strength_too),
-        SignalMap { photons: beside.windows(&beside.scattered_counts, &all, half), ..alone },
-    ];
-    Ok((maps, all, total))
+    Ok(beside)
 }

@@ -178,7 +178,7 @@ impl DepthClause {
 
     /// What is found from one distance.
     fn seen(&self, distance_m: f64, study: &RangeStudy, rendered: Option<&Arc<StereoPair>>) -> Result<Seen> {
-        let plan = RangePlan { bounds_alone: true, ..RangePlan::default() };
+        let plan = RangePlan { bounds_alone: true, counted_alone: true, ..RangePlan::default() };
         let found = study.range_of(&plan, rendered, None, &|_, _| ())?;
         let object = found.objects.iter().find(|object| object.name == self.demand.object.name());
         let by = |signal: Signal| {
