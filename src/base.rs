@@ -15,6 +15,7 @@ pub mod minimum;
 pub(crate) mod named;
 pub mod order;
 pub mod parallel;
+pub mod radiance_unit;
 pub mod random;
 pub mod root;
 pub mod simd;

@@ -222,7 +222,7 @@ impl Grid {
                 let (x, y) = place.at(0.5, 0.5);
                 scene.text((x, y + 0.36 * NUMBER), &ticks::label(value), NUMBER, ink, Anchor::Middle);
             }
-            if matrix.threshold.as_ref().is_some_and(|threshold| value < threshold.value) {
+            if matrix.is_marked(row, column, value) {
                 marked.get_or_insert((colour, ink));
                 let smaller = place.width().min(place.height());
                 let radius = if numbers { 3.0 } else { (0.2 * smaller).clamp(0.7, 4.0) };

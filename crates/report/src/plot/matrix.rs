@@ -38,6 +38,8 @@ pub struct Matrix {
     pub values: Vec<f64>,
     /// Cells below this value are marked.
     pub threshold: Option<Threshold>,
+    /// Cells that are marked whatever their value, in the order of the values; those below the threshold where empty.
+    pub marked: Vec<bool>,
     /// Rows at which a new group begins, rising; a line is drawn above each.
     pub row_groups: Vec<usize>,
     /// Columns at which a new group begins, rising; a line is drawn at the left of each.
@@ -64,6 +66,7 @@ impl Matrix {
             colour,
             values,
             threshold: None,
+            marked: vec![],
             row_groups: vec![],
             column_groups: vec![],
             no_value: "no value".to_owned(),
@@ -82,6 +85,21 @@ impl Matrix {
     pub fn threshold(mut self, value: f64, meaning: impl Into<String>) -> Self {
         self.threshold = Some(Threshold { value, meaning: meaning.into() });
         self
+    }
+
+    /// Marks these cells, in the order of the values, in the place of those below the threshold.
+    #[must_use]
+    pub fn marked(mut self, marked: Vec<bool>) -> Self {
+        self.marked = marked;
+        self
+    }
+
+    /// Whether a cell is marked.
+    pub(super) fn is_marked(&self, row: usize, column: usize, value: f64) -> bool {
+        match self.marked.as_slice() {
+            [] => self.threshold.as_ref().is_some_and(|threshold| value < threshold.value),
+            marked => marked.get(row * self.columns.len() + column).copied().unwrap_or(false),
+        }
     }
 
     /// Separates groups that begin at these rows, and at the same columns.

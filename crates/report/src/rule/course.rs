@@ -10,6 +10,9 @@ use hadar_study::{Course, Moment};
 /// Steps on the second reading of the axis of time, at most.
 const DISTANCES: f64 = 6.0;
 
+/// The last colour of the palette, whichever cameras there are.
+const LAST: usize = 6;
+
 /// A picture of every course.
 pub(super) fn plots(courses: &[Course], units: Units) -> Vec<Plot> {
     let name = |index: usize| match courses.len() {
@@ -38,7 +41,7 @@ fn plot(name: String, course: &Course, units: Units) -> Plot {
     if let Some(camera) = course.cameras.first() {
         let speeds = camera.moments.iter().map(|moment| units.speed_number(moment.impact_m_s)).collect();
         let series = Series::line(words::EVERY_CAMERA, times(&camera.moments), speeds);
-        impact = impact.series(series.colour(course.cameras.len()));
+        impact = impact.series(series.colour(LAST));
     }
     panels.push(impact);
     let decided_s = course.decision.distance_m / course.decision.closing_m_s;

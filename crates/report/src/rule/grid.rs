@@ -5,13 +5,13 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Figure, Matrix, number as number_in_picture};
 use crate::table::{Table, number, optional};
 use crate::words::rule::grid::{
-    MARGIN, NOT_MET, ROWS, SPOILED, at, columns, row, rows, speeds, title_of_camera, title_of_grid,
+    MARGIN, NO_CELL, NOT_MET, ROWS, at, columns, row, rows, speeds, title_of_camera, title_of_grid,
 };
 use crate::words::shortfall::codes;
 use hadar::error::Result;
 use hadar_scenario::Units;
 use hadar_scenario::rule::Verdict;
-use hadar_study::{CameraInCell, Grid};
+use hadar_study::Grid;
 
 /// All files.
 ///
@@ -69,11 +69,13 @@ fn picture(found: &Grid, index: usize, title: &str, units: Units) -> Plot {
     let (rows, speeds) = (rows(found), speeds(found));
     let mut table = Table::new(["row", "speed_m_s", "margin", "verdict"]);
     let mut values = Vec::with_capacity(rows.len() * speeds.len());
+    let mut not_met = Vec::with_capacity(values.capacity());
     let mut camera = "";
     for own in &rows {
         for speed_m_s in &speeds {
             let cell = at(found, *own, *speed_m_s).and_then(|cell| cell.cameras.get(index));
-            values.push(cell.map_or(f64::NAN, drawn));
+            values.push(cell.map_or(f64::NAN, |cell| cell.margin));
+            not_met.push(cell.is_some_and(|cell| cell.verdict != Verdict::Meets));
             let Some(cell) = cell else { continue };
             camera = &cell.camera;
             let verdict = cell.verdict.name().to_owned();
@@ -88,11 +90,6 @@ fn picture(found: &Grid, index: usize, title: &str, units: Units) -> Plot {
         (columns(units), heads),
         (Axis::log(MARGIN), values),
     );
-    let figure = Figure::from(matrix.threshold(1.0, NOT_MET).no_value(SPOILED));
+    let figure = Figure::from(matrix.threshold(1.0, NOT_MET).marked(not_met).no_value(NO_CELL));
     Plot { name: format!("grid_{}", index + 1).into(), figure, table }
-}
-
-/// The margin, unless it would say what the verdict does not.
-fn drawn(cell: &CameraInCell) -> f64 {
-    if cell.verdict == Verdict::Meets || cell.margin < 1.0 { cell.margin } else { f64::NAN }
 }

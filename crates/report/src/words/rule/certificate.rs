@@ -13,7 +13,7 @@ use crate::words::probability::reliability;
 use crate::words::safety;
 use crate::words::shortfall::no;
 use hadar::instrument::presets;
-use hadar_scenario::rule::{Clause, Figure, Ground, Verdict};
+use hadar_scenario::rule::{Clause, Figure, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
     ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
@@ -96,11 +96,7 @@ pub(super) fn about_the_rule(answer: &RuleAnswer) -> Vec<(&'static str, String)>
 /// What the page is, and what it is not.
 pub(super) fn what_it_is(rule: &Rule) -> String {
     let figures = rule.figures();
-    let of_choice = |key: &str| {
-        let grounds: Vec<&Ground> = rule.behind(key).collect();
-        grounds.is_empty() || grounds.iter().any(|ground| matches!(ground, Ground::Choice(_)))
-    };
-    let chosen = figures.iter().filter(|figure| of_choice(&figure.key)).count();
+    let chosen = figures.iter().filter(|figure| !sources::is_documented(rule, &figure.key)).count();
     format!(
         "A calculation by hadar, no type approval, no test and no legal advice: nothing was measured. It answers for one reading of a rule: of its {} numbers {} \
          are those of documents, {chosen} are choices of the author or have no source. It judges what cameras could tell, not what their software does.",

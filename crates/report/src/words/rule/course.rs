@@ -9,7 +9,7 @@ pub(crate) const MARGIN: &str = "d over that demanded";
 pub(crate) const DEMANDED: &str = "demanded";
 pub(crate) const AT_MOST: &str = "1 pixel";
 pub(crate) const BLUR: &str = "blur (pixels)";
-pub(crate) const EVERY_CAMERA: &str = "any camera";
+pub(crate) const EVERY_CAMERA: &str = "decided then";
 pub(crate) const DECISION: &str = "decision";
 pub(crate) const TIME: &str = "time to contact if nobody brakes (s)";
 pub(crate) const DISTANCE: &str = "distance (m)";
@@ -33,7 +33,7 @@ pub(crate) fn below(course: &Course, told: bool) -> String {
         (false, false) => "",
     };
     format!(
-        "{told}The decision must stand {} m ahead; one that comes later leaves the speed of the last panel at contact.",
+        "{told}The decision must stand {} m ahead; one that comes later leaves the closing speed of the last panel at contact.",
         significant(course.decision.distance_m, 3)
     )
 }
@@ -45,5 +45,5 @@ pub(crate) fn pixels(size_m: f64) -> String {
 
 /// The axis of what braking still does.
 pub(crate) fn impact(unit: &str) -> String {
-    format!("left at contact ({unit})")
+    format!("speed at contact ({unit})")
 }

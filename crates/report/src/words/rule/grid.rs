@@ -8,18 +8,17 @@ use hadar_scenario::rule::Verdict;
 use hadar_study::{CameraInCell, Grid, GridCell, Shortfall};
 use std::fmt::Write as _;
 
-/// What cells without a margin are in a picture.
-pub(crate) const SPOILED: &str =
-    "no such cell; or not met though the margin is above 1 (late, blurred, out of view, full, undecided)";
+/// What an empty place is in a picture.
+pub(crate) const NO_CELL: &str = "no such cell";
 /// What marked cells are in a picture.
-pub(crate) const NOT_MET: &str = "not met";
+pub(crate) const NOT_MET: &str = "not met or undecided, whatever the margin (why: grid.csv)";
 /// What the colour of a cell is.
 pub(crate) const MARGIN: &str = "margin: what is there over what is demanded";
 /// What the rows and columns of the table are.
 pub(crate) const ROWS: &str = "clause, light";
 
 /// Below the tables.
-const BELOW: &str = "Each cell: whether the clause is met at that speed in that light, and its margin, above 1 where the demand is met; 'yes, if' under conditions, which hadar rule tells. b: blurred by a pixel or more; b?: that cannot be said; l: its frames are read too late; v: the target is out of view; w: the well is full.";
+const BELOW: &str = "Each cell: whether the clause is met at that speed in that light, and its margin, above 1 where the demand is met; 'yes, if' under the conditions below. b: blurred by a pixel or more; b?: that cannot be said; l: its frames are read too late, and that alone leaves the closing speed in brackets at contact; v: the target is out of view; w: the well is full.";
 
 /// How many cells each camera meets, then every camera's table.
 #[must_use]
@@ -38,13 +37,22 @@ pub fn cell_by_cell(found: &Grid, units: Units) -> String {
         for (clause, light) in &rows {
             let one = |speed: &f64| {
                 let cell = at(found, (*clause, *light), *speed).and_then(|cell| cell.cameras.get(index));
-                cell.map_or_else(|| "-".to_owned(), in_short)
+                cell.map_or_else(|| "-".to_owned(), |cell| in_short(cell, units))
             };
             lines.push(std::iter::once(row(*clause, *light)).chain(speeds.iter().map(one)).collect());
         }
         let _ = write!(out, "\n{}", aligned(&lines, &[]));
     }
     let _ = writeln!(out, "\n{BELOW}");
+    for (index, camera) in cameras.iter().enumerate() {
+        let cells = found.cells.iter().filter_map(|cell| cell.cameras.get(index));
+        let mut codes: Vec<&str> = cells.flat_map(|cell| &cell.conditions).map(String::as_str).collect();
+        codes.sort_unstable();
+        codes.dedup();
+        if !codes.is_empty() {
+            let _ = writeln!(out, "{}: yes only if {}", camera.camera, codes.join(", "));
+        }
+    }
     out
 }
 
@@ -116,12 +124,17 @@ fn counted(found: &Grid, index: usize) -> String {
 }
 
 /// A camera in a cell in the fewest words.
-fn in_short(cell: &CameraInCell) -> String {
+fn in_short(cell: &CameraInCell, units: Units) -> String {
     let spoiled: Vec<&str> = cell.fails_by.iter().filter_map(|by| spoils(*by)).collect();
     let said = verdict(cell.verdict, cell.conditions.is_empty());
     let margin = (cell.margin < 1.0 || spoiled.is_empty()).then(|| significant(cell.margin, 3));
     let why: Vec<&str> = margin.as_deref().into_iter().chain(spoiled).collect();
-    format!("{said} {}", why.join(" "))
+    let mut out = format!("{said} {}", why.join(" "));
+    // Who is only late still brakes.
+    if let (Some(impact_m_s), [Shortfall::DecisionTime]) = (cell.impact_m_s, cell.fails_by.as_slice()) {
+        let _ = write!(out, " ({})", significant(units.speed_number(impact_m_s), 3));
+    }
+    out
 }
 
 /// What is wrong beside the margin, in a letter.

@@ -12,13 +12,11 @@ use std::fmt::Write as _;
 pub fn sources(rule: &Rule) -> String {
     let figures = rule.figures();
     let name = rule.about.name.as_deref().unwrap_or("This rule");
-    let stated =
-        |figure: &&Figure| rule.behind(&figure.key).any(|ground| matches!(ground, Ground::Document { .. }));
     let of_cameras: Vec<Figure> =
         (0..rule.cameras.len()).flat_map(|index| rule.camera_figures(index)).collect();
-    let documented = figures.iter().filter(stated).count();
+    let documented = figures.iter().filter(|figure| is_documented(rule, &figure.key)).count();
     let mut out = format!(
-        "{name}: {} figures, {documented} of documents, {} choices of its author alone.\n",
+        "{name}: {} figures, {documented} of documents, {} choices of its author, some beside a document.\n",
         figures.len(),
         figures.len() - documented
     );
@@ -41,6 +39,12 @@ pub fn sources(rule: &Rule) -> String {
         }
     }
     out
+}
+
+/// Whether documents alone stand behind a figure.
+pub(super) fn is_documented(rule: &Rule, key: &str) -> bool {
+    let grounds: Vec<&Ground> = rule.behind(key).collect();
+    !grounds.is_empty() && grounds.iter().all(|ground| matches!(ground, Ground::Document { .. }))
 }
 
 /// What stands behind something, in a phrase.

@@ -50,8 +50,12 @@ pub(super) fn decisions(stop: &StopResult, units: Units) -> String {
 /// What one camera does in that time.
 pub(super) fn approach(approach: &ApproachResult, units: Units) -> String {
     let frames = |count: u32| if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") };
-    let needed =
-        format!("{} of all bands take {}", frames(approach.frames_needed), quantity(approach.needed_s, "s"));
+    let take = if approach.frames_needed == 1 { "takes" } else { "take" };
+    let needed = format!(
+        "{} of all bands {take} {}",
+        frames(approach.frames_needed),
+        quantity(approach.needed_s, "s")
+    );
     let fit = match (approach.frames_within, approach.time_s) {
         (Some(0), Some(time_s)) => format!("; not one fits into {} s", significant(time_s, 3)),
         (Some(1), Some(time_s)) => format!("; 1 fits into {} s", significant(time_s, 3)),
