@@ -9,6 +9,7 @@ pub(crate) mod read;
 pub(super) mod write;
 
 pub use category::{CategorySpec, SegmentationSpec};
+use hadar::radiance_unit::RadianceUnit;
 
 use super::{AtmosphereSpec, BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar_estimate::decompose::SpatialPrior;
@@ -114,14 +115,19 @@ pub enum CubeNoise {
 }
 
 /// What the samples of a cube are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum CubeUnit {
     /// Counts, so many for each photon s⁻¹ m⁻² sr⁻¹ per cm⁻¹ of a band's mean radiance.
     CountsPerPhotonRadiance(f64),
     /// Counts of the scenario's camera.
     Camera,
-    /// Radiance in W m⁻² sr⁻¹ per cm⁻¹, with a noise that is stated.
-    Radiance,
+    /// Radiance, with a noise that is stated in the same unit.
+    Radiance {
+        /// The unit.
+        unit: RadianceUnit,
+        /// As it is written.
+        written: String,
+    },
 }
 
 /// Where the spectrum of one of the surroundings is from.

@@ -26,10 +26,22 @@ pub(super) struct NoiseOfBands {
     pub(super) together: Option<Vec<f64>>,
 }
 
+impl NoiseOfBands {
+    /// The same in another unit, each band by its factor.
+    pub(super) fn scale(&mut self, factors: &[f64]) {
+        for sigmas in [&mut self.common, &mut self.together].into_iter().flatten() {
+            sigmas.iter_mut().zip(factors).for_each(|(sigma, factor)| *sigma *= factor);
+        }
+        for var in self.var.iter_mut() {
+            var.iter_mut().zip(factors).for_each(|(var, factor)| *var *= factor * factor);
+        }
+    }
+}
+
 /// As `[cube] noise` says.
 pub(super) fn of_bands(
     noise: Option<&CubeNoise>,
-    unit: CubeUnit,
+    unit: &CubeUnit,
     centres_cm1: &[f64],
     widths_cm1: &[f64],
 ) -> Result<NoiseOfBands> {
@@ -39,7 +51,7 @@ pub(super) fn of_bands(
             Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), ..NoiseOfBands::default() })
         }
         Some(CubeNoise::File(path)) => {
-            let column = if unit == CubeUnit::Radiance { "sigma" } else { "electronic_sigma" };
+            let column = if matches!(unit, CubeUnit::Radiance { .. }) { "sigma" } else { "electronic_sigma" };
             table(path, column, centres_cm1, widths_cm1).map_err(|error| error.in_file(path))
         }
     }

@@ -1,7 +1,9 @@
 //! Whether the samples of a cube are what is expected of them, by the unit that its file states.
 
 use hadar::error::{Error, Result};
+use hadar::radiance_unit::RadianceUnit;
 use hadar_formats::cube::{Found, SampleUnit};
+use hadar_scenario::decompose::CubeUnit;
 
 /// Refuses samples that are no counts by their file. What is in proportion to counts is taken where `scale_is_said`: how many counts a
 /// unit of the file stands for.
@@ -31,6 +33,32 @@ pub(super) fn check_light(found: &Found) -> Result<()> {
             Err(no_light(unit))
         }
         _ => Ok(()),
+    }
+}
+
+/// The unit of a cube's samples by its file, where that is another than the scenario's; spectral radiances alone are converted.
+///
+/// # Errors
+/// A file whose samples are something else than the scenario says.
+pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceUnit>> {
+    let Some(of_file) = &found.unit else { return Ok(None) };
+    let radiance = RadianceUnit::spelt(of_file).ok();
+    match (said, radiance) {
+        (CubeUnit::Radiance { unit, .. }, Some(own)) => Ok((!own.is(*unit)).then_some(own)),
+        (CubeUnit::Radiance { written, .. }, None) => {
+            if SampleUnit::says_nothing(of_file) {
+                return Ok(None);
+            }
+            Err(Error::malformed(
+                format!("the samples are in `{of_file}` by their file, and in `{written}` by the scenario"),
+                "mend the one that is wrong; of a file that states no unit that of the scenario is taken",
+            ))
+        }
+        (_, Some(_)) => Err(Error::malformed(
+            format!("the samples are radiances by their file, in `{of_file}`, and counts by the scenario"),
+            format!("write unit = \"{of_file}\" and noise, the deviation of a sample in that unit"),
+        )),
+        (_, None) => Ok(None),
     }
 }
 

@@ -11,7 +11,7 @@ use self::scale::{Scale, noise_of_left_out};
 use super::cube_bad::{self, BadBand, BadFound};
 use super::cube_bands::{InOrder, axes_in_doubt};
 use super::cube_noise::{NoiseOfBands, of_bands};
-use super::cube_unit::check_light;
+use super::cube_unit::{self, check_light};
 use super::cube_without::without;
 use super::light_found::{LightFound, Readings};
 use super::pixel_map::Map;
@@ -25,7 +25,7 @@ use hadar::spectrum::Bands;
 use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
 use hadar_scenario::BandSource;
-use hadar_scenario::decompose::{Bad, CubeNoise};
+use hadar_scenario::decompose::{Bad, CubeNoise, CubeUnit};
 
 /// A cube that is open, and what its samples are.
 #[derive(Debug)]
@@ -62,7 +62,15 @@ impl Said<'_> {
         let widths = bands.widths_cm1();
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
-        let noise = self.noise(&opened, &centres, &widths)?;
+        let converted = cube_unit::of_file(&opened.found, &self.cube.unit).map_err(at("cube.data"))?;
+        let mut noise = self.noise(&opened, &centres, &widths)?;
+        if let (Some(of_file), CubeUnit::Radiance { unit, written }) = (converted, &self.cube.unit) {
+            // The noise is stated in the scenario's unit.
+            let factors = centres.iter().map(|nu| unit.watts_per_cm1(*nu) / of_file.watts_per_cm1(*nu));
+            noise.scale(&factors.collect::<Vec<_>>());
+            let file = opened.found.unit.clone().unwrap_or_default();
+            warnings.push(Warning::UnitConverted { file, scenario: written.clone() });
+        }
         let absent = opened.absent();
         let InOrder { cube, found: read, .. } = opened;
         let lit = self.environment.iter().enumerate().map(|(k, source)| {
@@ -72,7 +80,7 @@ impl Said<'_> {
         let most = brightest(&bands, self.temperature_k[1], &lit);
         let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
         let added: Vec<f64> = (0..bands.len()).map(added).collect();
-        let scale = self.scale((&bands, &bad_bands), &centres, &added, &most, camera.as_ref())?;
+        let scale = self.scale((&bands, &bad_bands), &centres, &added, &most, converted, camera.as_ref())?;
         let mut bad = self.found_bad(&cube, (&bands, &bad_bands), &scale, most)?;
         let Scale { counts_per_radiance, mut var_added, units_per_count } = scale;
         bad_bands.extend(bad.bands.iter().map(|bad| bad.band));
@@ -156,7 +164,7 @@ impl Said<'_> {
     /// The noise of the bands, in rising wavenumber; its table has the order of the file.
     fn noise(&self, opened: &InOrder, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<NoiseOfBands> {
         let [centres, widths] = [centres_cm1, widths_cm1].map(|values| opened.of_file(values));
-        let noise = of_bands(self.cube.noise.as_ref(), self.cube.unit, &centres, &widths)
+        let noise = of_bands(self.cube.noise.as_ref(), &self.cube.unit, &centres, &widths)
             .map_err(self.at("cube.noise"))?;
         Ok(NoiseOfBands {
             var: noise.var.map(|var| opened.rising(&var)),

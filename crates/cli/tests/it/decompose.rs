@@ -281,6 +281,104 @@ fn maps_and_numbers_are_those_of_the_scene() {
     assert!(text.stderr.contains("fits of a material to a pixel"), "{}", text.stderr);
 }
 
+/// W m⁻² sr⁻¹ per cm⁻¹ in other units by textbook factors, λ in µm: the same temperatures, whether the scenario or the file says the unit; of a
+/// file the noise stays in that of the scenario, and so do the deviations.
+#[test]
+fn a_radiance_is_the_same_in_every_unit() {
+    const W: &str = "W m^-2 sr^-1 per cm^-1";
+    let joules = |nu: f64| 6.626_070_15e-34 * 299_792_458.0 * 100.0 * nu;
+    let per_um = |nu: f64| nu * nu / 1e4;
+    let units: [(&str, &dyn Fn(f64) -> f64); 12] = [
+        (W, &|_| 1.0),
+        ("W/(m2 sr cm-1)", &|_| 1.0),
+        ("mW m-2 sr-1 (cm-1)-1", &|_| 1e3),
+        ("W cm-2 sr-1 (cm-1)-1", &|_| 1e-4),
+        ("W m-2 sr-1 um-1", &per_um),
+        ("W m⁻² sr⁻¹ µm⁻¹", &per_um),
+        ("W m-2 sr-1 nm-1", &|nu| per_um(nu) / 1e3),
+        ("microflick", &|nu| per_um(nu) * 1e2),
+        ("W m-2 sr-1 Hz-1", &|_| 1.0 / 29_979_245_800.0),
+        ("photons s-1 m-2 sr-1 (cm-1)-1", &|nu| 1.0 / joules(nu)),
+        ("photons s-1 m-2 sr-1 um-1", &|nu| per_um(nu) / joules(nu)),
+        ("ph s-1 cm-2 sr-1 um-1", &|nu| per_um(nu) / joules(nu) / 1e4),
+    ];
+    let folder = with(SCENARIO);
+    let cube = |factor: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        let of = |i: usize| {
+            pixel(i)
+                .0
+                .iter()
+                .enumerate()
+                .map(|(w, s)| joules(wavenumber(w)) * s * factor(wavenumber(w)))
+                .collect::<Vec<_>>()
+        };
+        (0..ROWS * COLUMNS).flat_map(of).collect()
+    };
+    let scenario = |file: &str, unit: &str, noise: f64| {
+        let said = format!("unit = \"{unit}\"\nnoise = {noise:e}");
+        SCENARIO.replace("counts.npy", file).replace("counts_per_photon_radiance = 1e-13", &said)
+    };
+    let shape = Shape::new(ROWS, COLUMNS, BANDS).unwrap();
+    let own = |found: &serde_json::Value| found["found"][0]["temperature_sigma_median_k"].as_f64().unwrap();
+    let mut sigma_k = None;
+    for (unit, factor) in units {
+        let samples = cube(factor);
+        write_npy(&folder.path().join("u.npy"), shape, &samples).unwrap();
+        let least = samples.iter().copied().fold(f64::INFINITY, f64::min);
+        folder.file("b.toml", &scenario("u.npy", unit, 1e-4 * least));
+        let found = folder.json(&["decompose", "b.toml"]);
+        assert!(found["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-3, "{unit}: {}", found["truth"]);
+        // The file says the unit, and the scenario another one.
+        let raw: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+        fs::write(folder.path().join("u.img"), raw).unwrap();
+        let header = |unit: &str| {
+            format!(
+                "ENVI\nsamples = {COLUMNS}\nlines = {ROWS}\nbands = {BANDS}\nheader offset = 0\ndata type = 5\ninterleave = bip\nbyte order = 0\ndata units = {unit}\n"
+            )
+        };
+        folder.file("u.hdr", &header(unit));
+        folder.file("c.toml", &scenario("u.img", W, 1e-5));
+        let found = folder.json(&["decompose", "c.toml"]);
+        assert!(found["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-3, "{unit}: {}", found["truth"]);
+        let sigma_k = *sigma_k.get_or_insert(own(&found));
+        assert!((own(&found) / sigma_k - 1.0).abs() < 1e-6, "{unit}: {} {sigma_k}", own(&found));
+        let codes: Vec<&str> =
+            found["warnings"].as_array().unwrap().iter().filter_map(|one| one["code"].as_str()).collect();
+        assert_eq!(codes.contains(&"unit-converted"), factor(1000.0) != 1.0, "{unit}: {codes:?}");
+        // Counts are no radiance, whatever factor is said.
+        folder.file("d.toml", &SCENARIO.replace("counts.npy", "u.img"));
+        assert!(folder.refusal(&["decompose", "d.toml"]).contains("radiances by their file"), "{unit}");
+    }
+    for (unit, what) in [
+        ("DN", "in `DN` by their file"),
+        ("K", "no factor makes photons"),
+        ("counts", "in `counts` by their file"),
+    ] {
+        folder.file(
+            "u.hdr",
+            &fs::read_to_string(folder.path().join("u.hdr"))
+                .unwrap()
+                .lines()
+                .filter(|line| !line.starts_with("data units"))
+                .map(|line| format!("{line}\n"))
+                .chain([format!("data units = {unit}\n")])
+                .collect::<String>(),
+        );
+        let refused = folder.refusal(&["decompose", "c.toml"]);
+        assert!(refused.contains(what), "{unit}: {refused}");
+    }
+    for (unit, what) in [
+        ("K", "what is `K`"),
+        ("W m-2 sr-1 cm-1", "per cm^-1 is"),
+        ("W m-2 um-1", "not per sr"),
+        ("W m-2 sr-1 um-2", "not per area"),
+    ] {
+        folder.file("b.toml", &scenario("u.npy", unit, 1.0));
+        let refused = folder.refusal(&["decompose", "b.toml"]);
+        assert!(refused.contains(what) && refused.contains("cube.unit"), "{unit}: {refused}");
+    }
+}
+
 /// Radiances in watts with a noise, a camera's counts, light from rows of the cube, some of the materials: the same temperatures.
 #[test]
 fn units_and_lights_are_what_is_said() {

@@ -49,7 +49,16 @@ const SHARE_WORDS: &[&str] = &[
     "%",
 ];
 
+/// Those of them that say nothing of what is counted.
+const NOTHING: &[&str] = &["", "none", "unitless", "dimensionless", "unknown", "n/a", "1"];
+
 impl SampleUnit {
+    /// Whether a unit says nothing of what samples are.
+    #[must_use]
+    pub fn says_nothing(text: &str) -> bool {
+        NOTHING.contains(&text.trim().to_lowercase().as_str())
+    }
+
     /// What samples in a unit are, spelt as files spell it: `K`, `degrees_Celsius`, `0.01 K`, `photons`, `W m-2 sr-1 um-1`, …
     ///
     /// ```

@@ -16,6 +16,7 @@ use super::{
 };
 use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
+use hadar::radiance_unit::RadianceUnit;
 use std::path::Path;
 
 /// Maps of the truth in files of their own.
@@ -89,25 +90,29 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
     let section = entry.section()?;
     section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
     let counts = section.number("counts_per_photon_radiance")?;
-    let radiance = section.choice("unit", &[(RADIANCE, ())])?.is_some();
+    let radiance = section.read("unit", |entry| {
+        let written = entry.name("\"W m^-2 sr^-1 um^-1\"")?;
+        let unit = RadianceUnit::spelt(&written).map_err(|error| entry.fail(error))?;
+        Ok(CubeUnit::Radiance { unit, written })
+    })?;
     let noise = section.read("noise", |entry| match entry.text("\"noise.csv\"") {
         Ok(text) if is_path(text) => file(entry).map(CubeNoise::File),
         _ => entry.number("1e-4").map(CubeNoise::Uniform),
     })?;
     let unit = match (counts, radiance, camera) {
-        (Some(_), _, true) | (_, true, true) => {
+        (Some(_), _, true) | (_, Some(_), true) => {
             let found = "a [camera] and a unit say twice what a sample is";
             return Err(entry.fail(Error::malformed(found, "leave one of them out")));
         }
         (Some(counts), ..) => CubeUnit::CountsPerPhotonRadiance(counts),
-        (None, true, _) if noise.is_none() => {
+        (None, Some(_), _) if noise.is_none() => {
             let found = "radiances alone do not say how they scatter";
             let instead = "write noise = 1e-4, the deviation of a sample in that unit";
             return Err(section.fail("unit", Error::malformed(found, instead)));
         }
-        (None, true, _) => CubeUnit::Radiance,
-        (None, false, true) => CubeUnit::Camera,
-        (None, false, false) => {
+        (None, Some(radiance), _) => radiance,
+        (None, None, true) => CubeUnit::Camera,
+        (None, None, false) => {
             let found = "nothing says what a sample is";
             let instead = format!(
                 "write counts_per_photon_radiance = 2.2e-14, unit = \"{RADIANCE}\" with a noise, or a [camera]"

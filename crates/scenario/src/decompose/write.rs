@@ -56,10 +56,10 @@ pub(crate) fn cube_written(
     environment: &[LightSource],
     paths: Paths<'_>,
 ) -> Document {
-    let (counts, unit) = match cube.unit {
-        CubeUnit::CountsPerPhotonRadiance(counts) => (Some(counts), None),
+    let (counts, unit) = match &cube.unit {
+        CubeUnit::CountsPerPhotonRadiance(counts) => (Some(*counts), None),
         CubeUnit::Camera => (None, None),
-        CubeUnit::Radiance => (None, Some("W m^-2 sr^-1 per cm^-1")),
+        CubeUnit::Radiance { written, .. } => (None, Some(written.as_str())),
     };
     let whole = |numbers: &[usize]| numbers.iter().map(|n| *n as i64).collect::<Vec<_>>();
     let written = Entries::default()

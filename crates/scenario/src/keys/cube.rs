@@ -54,10 +54,10 @@ const CUBE_KEYS: &[Key] = &[
     ),
     Key::row(
         "unit",
-        Value::Choice(&["W m^-2 sr^-1 per cm^-1"]),
+        Value::Text,
         Means("counts"),
         "\"W m^-2 sr^-1 per cm^-1\"",
-        "That samples are radiances; a noise must stand beside it.",
+        "That samples are spectral radiances, of watts or photons, per wavenumber, wavelength or frequency; a noise in the same unit must stand beside it. Where the file states another such unit its samples are converted.",
         "scale of the samples",
     ),
     Key::row(

@@ -1,6 +1,6 @@
 //! What the samples of a cube are in counts.
 //!
-//! Of counts by photon radiance k, a band of width Δν has k/Δν for each of ∫L dν; of radiances in W m⁻² sr⁻¹ per cm⁻¹ a count is so small that
+//! Of counts by photon radiance k, a band of width Δν has k/Δν for each of ∫L dν; of radiances (in any unit, a band at its centre) a count is so small that
 //! the stated noise alone counts, u = min σ²/(10⁶ max L_E), and σ²/u² is its variance. A camera counts by its own figures.
 //!
 //! Units: photons s⁻¹ m⁻² sr⁻¹ for radiances; u in the unit of the cube.
@@ -8,6 +8,7 @@
 use super::said::Said;
 use hadar::error::{Error, Result};
 use hadar::instrument::{Camera, View};
+use hadar::radiance_unit::RadianceUnit;
 use hadar::spectrum::Bands;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_scenario::decompose::CubeUnit;
@@ -30,21 +31,24 @@ impl Said<'_> {
         centres_cm1: &[f64],
         added: &[f64],
         most: &[f64],
+        of_samples: Option<RadianceUnit>,
         camera: Option<&Camera>,
     ) -> Result<Scale> {
         let widths = bands.widths_cm1();
-        Ok(match self.cube.unit {
+        Ok(match &self.cube.unit {
             CubeUnit::CountsPerPhotonRadiance(counts) => Scale {
                 counts_per_radiance: widths.iter().map(|width| counts / width).collect(),
                 var_added: added.to_vec(),
                 units_per_count: 1.0,
             },
-            CubeUnit::Radiance => {
+            CubeUnit::Radiance { unit, .. } => {
+                let unit = of_samples.unwrap_or(*unit);
                 // A variance so much larger than that of the photons that the noise alone counts.
                 // What is left out is worth nothing, whether it is a band of the file or not.
                 let used = |(band, value): (usize, f64)| (!bad_bands.contains(&band)).then_some(value);
                 let least = added.iter().copied().enumerate().filter_map(used).fold(f64::INFINITY, f64::min);
-                let joules = |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
+                let joules =
+                    |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu / unit.watts_per_cm1(*nu);
                 let of_bands = || centres_cm1.iter().zip(&widths);
                 // Of what surfaces and lights can send, not of what the cube holds: no sample changes what another one is worth.
                 let largest = of_bands().zip(most).map(|((nu, width), sum)| joules(nu) * sum / width);

@@ -8,7 +8,7 @@ pub(crate) const AGAINST: &str = "Against what is there";
 /// What is taken for the noise of a cube.
 pub(crate) const fn noise(unit: &CubeUnit) -> &'static str {
     match unit {
-        CubeUnit::Radiance => "the stated noise, the same for all samples",
+        CubeUnit::Radiance { .. } => "the stated noise, the same for all samples",
         CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
             "Poisson counts with the stated electronic noise"
         }

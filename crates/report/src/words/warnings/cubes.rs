@@ -12,6 +12,14 @@ words! {
             "the cube was read as {rows} rows x {columns} columns x {bands} bands, though its first axis is the shortest by far"
         ),
     }
+    UnitConverted {
+        meaning: "The file of a cube states another unit of spectral radiance than the scenario: its samples are taken in the file's, band by band at the \
+            centre, and the noise in the scenario's.",
+        remedy: "Where the file is wrong mend it; else nothing need be done.",
+        UnitConverted { file, scenario } => format!(
+            "the samples are in `{file}` by their file: they were taken so, each band at its centre, and the noise in `{scenario}`, as the scenario says"
+        ),
+    }
     BandOrderTaken {
         meaning: "Bands are stated as wavelengths, and the file of the cube does not say in which order it \
             has them.",
