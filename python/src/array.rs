@@ -4,6 +4,7 @@
 //! would be taken wrongly without notice is refused: masked arrays, complex numbers, text, objects.
 
 use crate::error::raised;
+use crate::quantity::{In, converted};
 use hadar::Error;
 use numpy::ndarray::{ArrayD, IxDyn, arr0};
 use numpy::{
@@ -19,6 +20,7 @@ use pyo3::types::{PyFloat, PyInt};
 pub(crate) fn numbers<'py, T: Element>(
     given: &Bound<'py, PyAny>,
     what: &str,
+    wanted: In,
 ) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
     if let Some(array) = as_it_lies(given)? {
         return Ok(array);
@@ -30,6 +32,8 @@ pub(crate) fn numbers<'py, T: Element>(
             return Ok(array);
         }
     }
+    let values = converted(given, what, wanted)?;
+    let given = values.as_ref().unwrap_or(given);
     let numpy = py.import(intern!(py, "numpy"))?;
     let refused = |found: &str, instead: &str| raised(Error::malformed(format!("{what}: {found}"), instead));
     if given.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
@@ -61,8 +65,8 @@ pub(crate) fn as_it_lies<'py, T: Element>(
 }
 
 /// Numbers of one dimension; a single one counts as a list of one.
-pub(crate) fn list(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
-    let array = numbers::<f64>(given, what)?;
+pub(crate) fn list(given: &Bound<'_, PyAny>, what: &str, wanted: In) -> PyResult<Vec<f64>> {
+    let array = numbers::<f64>(given, what, wanted)?;
     if array.ndim() > 1 {
         let found = format!("{what}: an array of {} dimensions", array.ndim());
         return Err(raised(Error::malformed(found, "give one of one dimension")));
@@ -70,9 +74,18 @@ pub(crate) fn list(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
     Ok(array.as_slice().map_or_else(|_| array.as_array().iter().copied().collect(), <[f64]>::to_vec))
 }
 
+/// A range of temperatures, K: its two ends.
+pub(crate) fn ends(given: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; 2]> {
+    let values = list(given, what, In::Kelvin)?;
+    let found = values.len();
+    values
+        .try_into()
+        .map_err(|_| raised(Error::Length { what: format!("ends of {what}"), found, expected: 2 }))
+}
+
 /// Rows of two dimensions; a single row counts as a table of one.
-pub(crate) fn rows(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<Vec<f64>>> {
-    let array = numbers::<f64>(given, what)?;
+pub(crate) fn rows(given: &Bound<'_, PyAny>, what: &str, wanted: In) -> PyResult<Vec<Vec<f64>>> {
+    let array = numbers::<f64>(given, what, wanted)?;
     let view = array.as_array();
     match view.ndim() {
         1 => Ok(vec![view.iter().copied().collect()]),

@@ -1,8 +1,9 @@
 //! Heat cubes taken apart.
 
-use crate::array::{list, numbers, rows, shaped};
+use crate::array::{ends, list, numbers, rows, shaped};
 use crate::error::{named, raised};
 use crate::lent::Lent;
+use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, RADIANCE};
 use crate::scene::bands;
 use crate::threads::with_threads;
 use hadar::demand::Skipping;
@@ -32,7 +33,7 @@ pub(crate) fn decompose<'py>(
     counts_per_radiance: &Bound<'py, PyAny>,
     var_added: Option<&Bound<'py, PyAny>>,
     units_per_count: f64,
-    temperature_range: Option<[f64; 2]>,
+    temperature_range: Option<&Bound<'py, PyAny>>,
     lighting_total: Option<f64>,
     gain: bool,
     bad_bands: Option<Vec<usize>>,
@@ -45,12 +46,14 @@ pub(crate) fn decompose<'py>(
     skipping: bool,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let temperature_k = temperature_range.map_or(Ok(RANGE_K), |given| ends(given, "temperature_range"))?;
     let lent = Lent::of(cube)?;
     let view = lent.view()?;
     let bands = self::bands(bands)?;
     let each = |given: &Bound<'_, PyAny>, what: &str| -> PyResult<Vec<f64>> {
-        let alone = numbers::<f64>(given, what)?.ndim() == 0;
-        let values = list(given, what)?;
+        let stated = if what == "var_added" { COUNTS_SQUARED } else { PER_RADIANCE };
+        let alone = numbers::<f64>(given, what, stated)?.ndim() == 0;
+        let values = list(given, what, stated)?;
         Ok(match values.first() {
             Some(one) if alone => vec![*one; bands.len()],
             _ => values,
@@ -58,11 +61,12 @@ pub(crate) fn decompose<'py>(
     };
     let counts_per_radiance = each(counts_per_radiance, "counts_per_radiance")?;
     let var_added = var_added.map_or(Ok(Vec::new()), |given| each(given, "var_added"))?;
-    let library = rows(library, "library")?;
+    let library = rows(library, "library", In::One)?;
     let kind = if light_in_counts { Light::Counts } else { Light::Radiance };
-    let surroundings = match numbers::<f64>(light, "light")?.len() {
+    let lit = if light_in_counts { In::Counts } else { RADIANCE };
+    let surroundings = match numbers::<f64>(light, "light", lit)?.len() {
         0 => Vec::new(),
-        _ => rows(light, "light")?.into_iter().map(kind).collect::<Vec<_>>(),
+        _ => rows(light, "light", lit)?.into_iter().map(kind).collect::<Vec<_>>(),
     };
     let method = named("method", method, &Method::ALL, Method::name).map_err(raised)?;
     let spatial = match (potts, tex_sgd) {
@@ -76,7 +80,7 @@ pub(crate) fn decompose<'py>(
         }
     };
     let options = Options {
-        prior: prior.map_or(Ok(Vec::new()), |given| list(given, "prior"))?,
+        prior: prior.map_or(Ok(Vec::new()), |given| list(given, "prior", In::One))?,
         library_error: emissivity_error
             .map(|(relative, correlation_cm1)| LibraryError { relative, correlation_cm1 }),
         skipping: if skipping { Skipping::On } else { Skipping::Off },
@@ -90,7 +94,7 @@ pub(crate) fn decompose<'py>(
         counts_per_radiance: &counts_per_radiance,
         var_added: &var_added,
         units_per_count,
-        temperature_k: temperature_range.unwrap_or(RANGE_K),
+        temperature_k,
         lighting_total,
         gain,
         bad_bands: bad_bands.as_deref().unwrap_or_default(),

@@ -2,6 +2,7 @@
 
 use crate::array::{as_it_lies, numbers};
 use crate::error::raised;
+use crate::quantity::In;
 use hadar::cube::{CubeRef, Rows, Sample, Shape};
 use hadar::error::{Error, Result};
 use numpy::ndarray::{ArrayView3, ArrayViewD, Ix3, s};
@@ -20,7 +21,7 @@ impl<'py> Lent<'py> {
     pub(crate) fn of(given: &Bound<'py, PyAny>) -> PyResult<Self> {
         match as_it_lies::<f32>(given)? {
             Some(array) => Ok(Self::F32(array)),
-            None => numbers::<f64>(given, "cube").map(Self::F64),
+            None => numbers::<f64>(given, "cube", In::Counts).map(Self::F64),
         }
     }
 

@@ -14,6 +14,7 @@ mod lent;
 mod library;
 mod pairs;
 mod planck;
+mod quantity;
 mod question;
 mod scene;
 mod states;

@@ -2,6 +2,7 @@
 
 use crate::array::{flat, list};
 use crate::error::raised;
+use crate::quantity::In;
 use hadar::material::Library;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -22,7 +23,7 @@ pub(crate) fn emissivity<'py>(
     material: &Bound<'py, PyAny>,
     nu: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let nu = list(nu, "nu")?;
+    let nu = list(nu, "nu", In::PerCentimetre)?;
     let found = match material.extract::<String>() {
         Ok(name) if !name.contains(['/', '\\', '.']) => {
             Library::embedded().and_then(|library| library.get(&name)?.emissivity(&nu))

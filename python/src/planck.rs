@@ -2,6 +2,7 @@
 
 use crate::array::{numbers, shaped};
 use crate::error::raised;
+use crate::quantity::{In, RADIANCE};
 use hadar::error::{Error, check};
 use hadar::planck as law;
 use numpy::ndarray::{ArrayViewD, Axis, IxDyn};
@@ -48,7 +49,8 @@ pub(crate) fn brightness_temperature<'py>(
     radiance: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = nu.py();
-    let (nu, radiance) = (numbers::<f64>(nu, "nu")?, numbers::<f64>(radiance, "radiance")?);
+    let (nu, radiance) =
+        (numbers::<f64>(nu, "nu", In::PerCentimetre)?, numbers::<f64>(radiance, "radiance", RADIANCE)?);
     positive(&nu, "wavenumber", "cm^-1")?;
     for &value in radiance.as_array().iter().filter(|value| !value.is_nan()) {
         check::non_negative("radiance", value, "photons s^-1 m^-2 sr^-1 per cm^-1").map_err(raised)?;
@@ -67,7 +69,10 @@ fn broadcast<'py>(
     law: impl for<'a> Fn(&'a [f64], f64, &'a mut [f64]) + Send + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = nu.py();
-    let (nu, temperature) = (numbers::<f64>(nu, "nu")?, numbers::<f64>(temperature, "temperature")?);
+    let (nu, temperature) = (
+        numbers::<f64>(nu, "nu", In::PerCentimetre)?,
+        numbers::<f64>(temperature, "temperature", In::Kelvin)?,
+    );
     positive(&nu, "wavenumber", "cm^-1")?;
     positive(&temperature, "temperature", "K")?;
     let shape = common(py, nu.shape(), temperature.shape())?;

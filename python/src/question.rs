@@ -1,6 +1,7 @@
 //! Scenarios and rules as Python says them: a file, text, or a dict.
 
 use crate::error::raised;
+use crate::quantity::{as_written, parts};
 use hadar::error::{Error, Result};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -105,6 +106,19 @@ fn of_object(given: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
     }
     if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
         return items(given.try_iter()?.collect::<PyResult<_>>()?);
+    }
+    if let Some((values, unit)) = parts(given)? {
+        let value = of_object(&values, key)?;
+        let text = match value {
+            Value::Integer(number) => number.to_string(),
+            Value::Float(number) => number.to_string(),
+            _ => {
+                let found = format!("an array in `{unit}`");
+                let instead = "write a list of texts, a number and its unit in each";
+                return Err(raised(Error::malformed(found, instead).for_key(key)));
+            }
+        };
+        return Ok(Value::String(format!("{text} {}", as_written(&unit))));
     }
     if given.hasattr("tolist")? {
         return of_object(&given.call_method0("tolist")?, key);

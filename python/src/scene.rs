@@ -1,7 +1,8 @@
 //! A scene: bands, the target's state, its surroundings, what is unknown, and how photons are counted.
 
-use crate::array::{flat, list, numbers, rows};
+use crate::array::{ends, flat, list, numbers, rows};
 use crate::error::{named, raised};
+use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, number};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
@@ -41,7 +42,7 @@ pub(crate) struct Scene {
 
 /// Bands by their centres, or by rows of lower and upper ends.
 pub(crate) fn bands(given: &Bound<'_, PyAny>) -> PyResult<Bands> {
-    let array = numbers::<f64>(given, "bands")?;
+    let array = numbers::<f64>(given, "bands", In::PerCentimetre)?;
     let view = array.as_array();
     let ascending = |values: &[f64]| match values.windows(2).find(|pair| !matches!(pair, [a, b] if a < b)) {
         None => Ok(()),
@@ -79,27 +80,35 @@ impl Scene {
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         bands: &Bound<'_, PyAny>,
-        temperature: f64,
+        temperature: &Bound<'_, PyAny>,
         lighting: Option<&Bound<'_, PyAny>>,
         environment: Option<&Bound<'_, PyAny>>,
         environment_emissivity: Option<&Bound<'_, PyAny>>,
         unknown: Option<Vec<String>>,
         priors: Option<BTreeMap<String, f64>>,
         lighting_total: Option<f64>,
-        temperature_range: Option<[f64; 2]>,
+        temperature_range: Option<&Bound<'_, PyAny>>,
         lighting_range: Option<[f64; 2]>,
-        counts_per_radiance: Option<f64>,
+        counts_per_radiance: Option<&Bound<'_, PyAny>>,
         var_added: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let bands = self::bands(bands)?;
-        let of =
-            |given: Option<&Bound<'_, PyAny>>, what| given.map_or(Ok(Vec::new()), |given| list(given, what));
-        let (lighting, environment) = (of(lighting, "lighting")?, of(environment, "environment")?);
+        let of = |given: Option<&Bound<'_, PyAny>>, what, wanted| {
+            given.map_or(Ok(Vec::new()), |given| list(given, what, wanted))
+        };
+        let temperature = number(temperature, "temperature", In::Kelvin)?;
+        let temperature_range =
+            temperature_range.map(|given| ends(given, "temperature_range")).transpose()?;
+        let counts_per_radiance = counts_per_radiance
+            .map(|given| number(given, "counts_per_radiance", PER_RADIANCE))
+            .transpose()?;
+        let lighting = of(lighting, "lighting", In::One)?;
+        let environment = of(environment, "environment", In::Kelvin)?;
         let emissivities = match environment_emissivity {
-            Some(given) => rows(given, "environment_emissivity")?.into_iter().map(Some).collect(),
+            Some(given) => rows(given, "environment_emissivity", In::One)?.into_iter().map(Some).collect(),
             None => vec![None; environment.len()],
         };
-        let counting = match (counts_per_radiance, of(var_added, "var_added")?) {
+        let counting = match (counts_per_radiance, of(var_added, "var_added", COUNTS_SQUARED)?) {
             (None, var_added) if var_added.is_empty() => None,
             (None, _) => {
                 let found = "var_added without counts_per_radiance";
@@ -164,7 +173,7 @@ impl Scene {
 impl Scene {
     /// An emissivity at the nodes of the bands.
     pub(crate) fn emissivity(&self, given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
-        let spectrum = list(given, what)?;
+        let spectrum = list(given, what, In::One)?;
         let checked = hadar::scene::check_emissivity(&spectrum, self.bands.nodes_cm1().len());
         checked.map_err(|error| raised(error.for_key(what)))?;
         Ok(spectrum)

@@ -3,6 +3,7 @@
 use crate::array::{numbers, shaped};
 use crate::error::{named, raised};
 use crate::pairs::{DISTANCES, share};
+use crate::quantity::In;
 use crate::scene::Scene;
 use crate::threads::with_threads;
 use hadar::error::Error;
@@ -39,8 +40,10 @@ pub(crate) fn over_states<'py>(
         (scene.emissivity(target, "target")?, scene.emissivity(alternative, "alternative")?);
     let by_nearest = named("distance", by, &DISTANCES, |by| by.1).map_err(raised)?.0;
     let tolerance = share(prove)?;
-    let (temperatures, lit) =
-        (numbers::<f64>(temperature, "temperature")?, numbers::<f64>(lighting, "lighting")?);
+    let (temperatures, lit) = (
+        numbers::<f64>(temperature, "temperature", In::Kelvin)?,
+        numbers::<f64>(lighting, "lighting", In::One)?,
+    );
     let shape = temperatures.shape().to_vec();
     let objects = scene.surroundings.objects().len();
     let with_axis: Vec<usize> = shape.iter().copied().chain([objects]).collect();

@@ -3,6 +3,7 @@
 use crate::array::{list, numbers, shaped};
 use crate::error::{named, raised};
 use crate::lent::Lent;
+use crate::quantity::COUNTS_SQUARED;
 use crate::threads::with_threads;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, InformationMap, Request, Window, information};
@@ -40,10 +41,10 @@ pub(crate) fn window_information<'py>(
     let view = lent.view()?;
     let noise = match var_added {
         None => NoiseVariance::None,
-        Some(given) if numbers::<f64>(given, "var_added")?.ndim() == 0 => {
-            NoiseVariance::Uniform(list(given, "var_added")?.into_iter().sum())
+        Some(given) if numbers::<f64>(given, "var_added", COUNTS_SQUARED)?.ndim() == 0 => {
+            NoiseVariance::Uniform(list(given, "var_added", COUNTS_SQUARED)?.into_iter().sum())
         }
-        Some(given) => NoiseVariance::PerBand(list(given, "var_added")?),
+        Some(given) => NoiseVariance::PerBand(list(given, "var_added", COUNTS_SQUARED)?),
     };
     let cells = match &cells {
         None => Ok(vec![Cell::Full]),

@@ -47,6 +47,8 @@ const SPELLINGS: &[(SpectralUnit, &[&str])] = &[
             "cm1",
             "1/cm",
             "/cm",
+            "1/centimeter",
+            "1/centimetre",
             "percm",
             "inversecm",
             "reciprocalcm",

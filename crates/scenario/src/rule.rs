@@ -183,9 +183,12 @@ impl Rule {
         Some(stated.document.as_deref())
     }
 
-    /// What stands behind the figure at a key.
+    /// What stands behind the figure at a key; nothing behind a value that is set over the rule.
     pub fn behind(&self, key: &str) -> impl Iterator<Item = &Ground> {
-        self.sources.iter().filter(move |citation| citation.covers(key)).map(|citation| &citation.ground)
+        let source = &self.scenario.source;
+        let is_set = source.setting(key).is_some() || source.settings.iter().any(|set| set.is_in(key));
+        let own = if is_set { &[][..] } else { &self.sources };
+        own.iter().filter(move |citation| citation.covers(key)).map(|citation| &citation.ground)
     }
 
     /// The same rule with a clause for each cell of its grid in the place of its own, and the cells.

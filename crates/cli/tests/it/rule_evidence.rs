@@ -100,6 +100,28 @@ fn a_rule_is_passed_on_a_stated_day_alone() {
     assert!(failed.1.contains(&"fails"));
 }
 
+/// Values that are set over a rule stand in its certificate as they are, with nothing behind them.
+#[test]
+fn what_is_set_over_a_camera_has_no_source() {
+    let folder = Folder::with(&sourced(&easy("", "frames = 3\n")));
+    let rows = |set: &[&str]| {
+        let set: Vec<&str> = set.iter().flat_map(|one| ["--set", *one]).collect();
+        let made = folder.run(&[&["rule", "a.toml", "--out", "out", "--force", "-q"], &set[..]].concat());
+        assert_eq!(made.code, 0, "{}", made.stderr);
+        let text = fs::read_to_string(folder.path().join("out/certificate.md")).unwrap();
+        let (_, after) = text.split_once("figures of the cameras are from").unwrap();
+        after.split_once("##").unwrap().0.to_owned()
+    };
+    let plain = rows(&[]);
+    assert!(plain.contains("`1 ms`") || plain.contains("\"1 ms\""), "{plain}");
+    assert!(!plain.contains("nobody says") && plain.contains("a choice: a test"), "{plain}");
+    let set = rows(&["camera[0].exposure=2 ms", "camera[0].quantum_efficiency=0.5"]);
+    assert!(set.contains("2 ms") && !set.contains("1 ms") && set.contains("quantum_efficiency"), "{set}");
+    assert_eq!(set.matches("nobody says from where").count(), 2, "{set}");
+    let whole = rows(&["camera=[{preset=\"ideal-pnrd\",frames=7}]"]);
+    assert!(!whole.contains("a choice: a test") && !whole.contains("1 ms"), "{whole}");
+}
+
 /// What is demanded of a report is not believed but read in a statement that was made again; an envelope holds its very bytes.
 #[test]
 fn a_report_is_held_against_what_is_demanded() {

@@ -204,7 +204,10 @@ pub(super) fn of(source: &Source) -> Vec<Figure> {
 
 /// The figures of a camera's own in the text of a rule, by where the camera stands in it.
 pub(super) fn of_camera(source: &Source, key: &str) -> Vec<Figure> {
-    written(source, |document| {
+    if let Some(setting) = source.setting(key) {
+        return vec![Figure::new(key, &setting.value)];
+    }
+    let mut found = written(source, |document| {
         let mut found = Vec::new();
         if let Some(DeValue::Array(items)) = document.get("camera").map(toml::Spanned::get_ref) {
             let tables = items.iter().enumerate().map(|(index, item)| (format!("camera[{index}]"), item));
@@ -221,14 +224,24 @@ pub(super) fn of_camera(source: &Source, key: &str) -> Vec<Figure> {
         }
         found.sort_by_key(|(span, _)| span.start);
         found
-    })
+    });
+    for set in &source.settings {
+        let name = set.key.strip_prefix(key).and_then(|rest| rest.strip_prefix('.')).unwrap_or_default();
+        let is_new = !found.iter().any(|figure| set.covers(&figure.key) || set.is_in(&figure.key));
+        if is_new && !name.is_empty() && !NO_FIGURES_OF_CAMERA.contains(&name) {
+            found.push(Figure::new(&set.key, &set.value));
+        }
+    }
+    found
 }
 
 fn written(source: &Source, figures: impl Fn(&DeTable<'_>) -> Vec<(Span, String)>) -> Vec<Figure> {
     let text = &source.text;
     let (document, _) = DeTable::parse_recoverable(text);
     let figure = |(span, key): (Span, String)| {
-        let value = text.get(span).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+        let own = || text.get(span).unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+        // What is set over the file stands there.
+        let value = source.setting(&key).map_or_else(own, |setting| setting.value.clone());
         Figure { value, line: source.place(&key).line.unwrap_or_default(), key }
     };
     figures(document.get_ref()).into_iter().map(figure).collect()

@@ -176,7 +176,7 @@ impl RuleStudy {
 
 impl Kind {
     /// Every camera, with the number of bands that it reads.
-    fn looking(&self) -> Vec<(&Named, usize)> {
+    pub(super) fn looking(&self) -> Vec<(&Named, usize)> {
         match self {
             Self::Apart(apart) => apart.candidates.iter().map(Candidate::looking).collect(),
             Self::Resolution(clause) => clause.looking(),

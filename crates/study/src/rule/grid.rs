@@ -1,19 +1,24 @@
 //! The grid of a rule: every cell, a clause at one speed in one light, before every camera.
 //!
 //! What is left at contact in a cell is 0 where the camera meets it, and the whole closing speed where it fails by anything that later frames do
-//! not mend; who has only read its frames too late decides where they are read, and brakes from there.
+//! not mend; who has only read its frames too late decides where they are read, unless they are blurred there or the target is out of view, and
+//! brakes from there.
 
 use super::RuleStudy;
+use super::approach::Moving;
 use super::asked::{Extent, RuleAsked};
+use super::cameras::Named;
 use super::clauses::Line;
 use crate::Shortfall;
 use crate::condition::Condition;
 use crate::grade::Grade;
 use hadar::demand::Work;
 use hadar::error::Result;
+use hadar::instrument::Camera;
 use hadar::material::Library;
+use hadar::policy::encounter::Encounter;
 use hadar_scenario::Rule;
-use hadar_scenario::rule::{StopSpec, Verdict};
+use hadar_scenario::rule::{Clause, Demand, StopSpec, Verdict};
 
 /// A rule, cell by cell.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -59,25 +64,65 @@ pub struct CameraInCell {
     pub conditions: Vec<String>,
     /// How the verdict is known.
     pub grade: Grade,
-    /// How fast vehicle and target close in at contact, m s⁻¹; `None` where the verdict is undecided.
+    /// How fast vehicle and target close in at contact, m s⁻¹; `None` where that cannot be said: undecided, or a false alarm.
     pub impact_m_s: Option<f64>,
 }
 
-impl CameraInCell {
-    fn of(line: &Line<'_>, spec: &StopSpec) -> Self {
-        let decision = spec.stop().decisions()[0];
-        let late = || {
-            let needed_s = line.approach?.needed_s;
-            let decided_m = decision.start_m? - decision.closing_m_s * needed_s;
-            Some(spec.stop().impact_m_s(&decision, decided_m))
-        };
-        let impact_m_s = match line.verdict {
+/// A clause at one speed, before one camera that reads so many bands.
+struct Before<'a> {
+    clause: &'a Clause,
+    spec: &'a StopSpec,
+    camera: &'a Camera,
+    bands: usize,
+}
+
+impl Before<'_> {
+    /// How fast both close in at contact, m s⁻¹, if that can be said.
+    fn impact_m_s(&self, line: &Line<'_>) -> Option<f64> {
+        if self.clause.demand == Demand::FalseAlarm {
+            // Whoever takes a thing for a person stops before it.
+            return None;
+        }
+        let closing_m_s = self.spec.stop().decisions()[0].closing_m_s;
+        match line.verdict {
             Verdict::Meets => Some(0.0),
             Verdict::Undecided => None,
-            Verdict::Fails if line.fails_by == [Shortfall::DecisionTime] => late(),
-            Verdict::Fails => Some(decision.closing_m_s),
-        };
-        Self {
+            // Were it in time, it still might not.
+            Verdict::Fails if line.fails_by == [Shortfall::DecisionTime] && !line.undecided_by.is_empty() => {
+                None
+            }
+            Verdict::Fails if line.fails_by == [Shortfall::DecisionTime] => {
+                Some(self.late_m_s(line).unwrap_or(closing_m_s))
+            }
+            Verdict::Fails => Some(closing_m_s),
+        }
+    }
+
+    /// Of a camera that is only late; `None` where the last of its frames, nearer than those it was judged by, are spoiled.
+    fn late_m_s(&self, line: &Line<'_>) -> Option<f64> {
+        let decision = self.spec.stop().decisions()[0];
+        let read_m = decision.start_m? - decision.closing_m_s * line.approach?.needed_s;
+        let here = decision.at_distance(read_m);
+        if read_m <= 0.0 {
+            return None;
+        }
+        if let (Some(encounter), Some(half_rad)) =
+            (self.spec.encounter(), Encounter::half_view_rad(self.camera))
+        {
+            encounter.decided_m(&here, half_rad).filter(|seen_m| *seen_m <= read_m)?;
+        }
+        // Where pixels are counted they run into each other by the same length from everywhere, which is judged.
+        let counts_blur = !matches!(self.clause.demand, Demand::Resolution { .. });
+        let blur =
+            Moving::of(self.clause).map(|moving| moving.blur_pixels_at(&here, self.camera, self.bands));
+        if counts_blur && blur.is_some_and(|blur| blur >= 1.0) {
+            return None;
+        }
+        Some(self.spec.stop().impact_m_s(&decision, read_m))
+    }
+
+    fn judged(&self, line: &Line<'_>) -> CameraInCell {
+        CameraInCell {
             camera: line.camera.to_owned(),
             verdict: line.verdict,
             margin: line.margin,
@@ -85,7 +130,7 @@ impl CameraInCell {
             fails_by: line.fails_by.to_vec(),
             conditions: Condition::open(line.conditions).map(Condition::code).collect(),
             grade: line.grade,
-            impact_m_s,
+            impact_m_s: self.impact_m_s(line),
         }
     }
 }
@@ -100,15 +145,19 @@ impl Grid {
         let study = RuleStudy::new(&rule, library)?;
         let asked = RuleAsked { extent: Extent::Margins, nearly_alike: true, ..RuleAsked::default() };
         let answer = study.answer(&asked, progress)?;
-        let judged = rule.clauses.iter().zip(&answer.clauses).zip(cells);
-        let cells = judged.filter_map(|((clause, found), cell)| {
+        let judged = rule.clauses.iter().zip(&study.clauses).zip(&answer.clauses).zip(cells);
+        let cells = judged.filter_map(|(((clause, kind), found), cell)| {
             let spec = clause.stop.as_ref()?;
+            let lines = found.lines().into_iter().zip(kind.looking());
+            let one = |(line, (named, bands)): (Line<'_>, (&Named, usize))| {
+                Before { clause, spec, camera: &named.camera, bands }.judged(&line)
+            };
             Some(GridCell {
                 clause: cell.clause,
                 light: cell.light,
                 speed_m_s: cell.speed_m_s,
                 decision_distance_m: spec.stop().decisions()[0].distance_m,
-                cameras: found.lines().iter().map(|line| CameraInCell::of(line, spec)).collect(),
+                cameras: lines.map(one).collect(),
             })
         });
         Ok(Self { cells: cells.collect(), stats: answer.stats })

@@ -159,6 +159,44 @@ fn what_is_left_at_contact() {
     assert!(braked > 0, "{:?}", grid(&late));
 }
 
+/// Frames that are read too late are read nearer: blurred there, without the target, or of a camera that may not tell, they stop nobody.
+#[test]
+fn who_is_late_and_sees_nothing_does_not_brake() {
+    let base = NIGHT
+        .replace("start = \"4.0 s\"", "start = \"2.0 s\"")
+        .replace("[\"2 km/h\", \"21 km/h\"]", "\"30 km/h\"")
+        .replace("latency = \"0.2 s\"", "latency = \"0.3 s\"")
+        .replace("8 m/s^2", "6 m/s^2")
+        .replace("cameras = [\"ideal-pnrd\"]\n", "");
+    let camera = |offset: &str, more: &str| {
+        let text = base
+            .replace("= \"2 km/h\"\n[[clause]]", &format!("= \"0 km/h\"\noffset = \"{offset}\"\n[[clause]]"));
+        let (head, tail) = text.split_once("[[camera]]").unwrap();
+        let grid = tail.find("[[grid]]").unwrap();
+        let text =
+            format!("{head}[[camera]]\nname = \"slow\"\npreset = \"ideal-pnrd\"\n{more}{}", &tail[grid..]);
+        let cells = grid(&text);
+        let cell = cells.into_iter().find(|cell| cell.clause.as_deref() == Some("tell")).unwrap();
+        cell.cameras[0].clone()
+    };
+    let closing = 30.0 / 3.6;
+    // Read at 8.75 m, where 2 m beside the axis are outside half of 20 degrees: they were inside down to 11.3 m.
+    let narrow = "exposure = \"0.25 ms\"\nframe_rate = \"20 Hz\"\nfield_of_view = \"20 deg\"\npixels = 600\nframes = 20\n";
+    let beside = camera("2 m", narrow);
+    assert_eq!(beside.fails_by, [Shortfall::DecisionTime], "{beside:?}");
+    assert!((beside.impact_m_s.unwrap() - closing).abs() < 1e-9, "{beside:?}");
+    // The same of one straight ahead stops.
+    let ahead = camera("0 m", narrow);
+    assert!(ahead.impact_m_s.unwrap() < closing, "{ahead:?}");
+    // 1.9 pixels of blur where the last frames are read, .7 where the decision must stand.
+    let fine = camera(
+        "2 m",
+        "exposure = \"1.5 ms\"\nframe_rate = \"10 Hz\"\nfield_of_view = \"60 deg\"\npixels = 2101\nframes = 15\n",
+    );
+    assert_eq!(fine.fails_by, [Shortfall::DecisionTime], "{fine:?}");
+    assert!((fine.impact_m_s.unwrap() - closing).abs() < 1e-9, "{fine:?}");
+}
+
 #[test]
 fn what_is_no_grid_is_refused() {
     let error = |text: String| match Rule::from_toml(&text, None) {

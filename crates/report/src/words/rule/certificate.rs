@@ -293,7 +293,7 @@ fn figures_of_cameras(answer: &RuleAnswer) -> Vec<[String; 4]> {
                 let known = presets::find(preset).ok()?;
                 known.document.or_else(|| known.provenance.into_iter().next())
             };
-            let from = own.unwrap_or_else(known).unwrap_or_else(|| NOBODY.to_owned());
+            let from = own.unwrap_or_else(known).unwrap_or_else(|| behind(rule, &rule.cameras[index].key));
             rows.push([camera.name.clone(), "preset".into(), preset.clone(), from]);
         }
         for figure in rule.camera_figures(index) {

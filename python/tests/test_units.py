@@ -1,0 +1,118 @@
+"""Quantities of other libraries: converted where they mean the same, refused by their name, never stripped."""
+
+import astropy.units as u
+import numpy as np
+import pandas
+import pint
+import pytest
+import xarray
+
+import hadar
+
+NU = np.linspace(800.0, 1250.0, 12)
+E = np.linspace(0.95, 0.98, 12)
+UR = pint.UnitRegistry()
+
+
+def scene(temperature=310.15, environment=(293.15,), bands=NU, **more):
+    return hadar.Scene(bands, temperature, [0.5], environment, **more)
+
+
+def same(one, other):
+    return np.allclose(one.signal(E), other.signal(E), rtol=1e-12, atol=0.0)
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        np.array([20.0]) * u.deg_C,
+        [293.15] * u.K,
+        UR.Quantity(np.array([20.0]), "degC"),
+        UR.Quantity(np.array([68.0]), "degF"),
+        UR.Quantity(np.array([293.15]), "kelvin"),
+        xarray.DataArray([20.0], attrs={"units": "degC"}),
+        xarray.DataArray([20.0], attrs={"units": "degrees_celsius"}),
+        xarray.DataArray([293.15], attrs={"units": "K"}),
+        xarray.DataArray([293.15]),
+        xarray.DataArray(UR.Quantity(np.array([20.0]), "degC")),
+    ],
+    ids=repr,
+)
+def test_temperatures_are_converted(environment):
+    assert same(scene(environment=environment), scene())
+
+
+def test_a_number_has_a_unit_too():
+    assert same(scene(37.0 * u.deg_C), scene())
+    assert same(scene(UR.Quantity(37.0, "degC")), scene())
+    assert same(scene(xarray.DataArray(37.0, attrs={"units": "degC"})), scene())
+    ranged = scene(temperature_range=[0.0, 60.0] * u.deg_C)
+    assert same(ranged, scene(temperature_range=(273.15, 333.15)))
+
+
+@pytest.mark.parametrize(
+    "bands",
+    [
+        NU / u.cm,
+        (1e4 / NU) * u.um,
+        (1e7 / NU) * u.nm,
+        (NU * 29.9792458e9) * u.Hz,
+        UR.Quantity(NU, "1/cm"),
+        UR.Quantity(1e4 / NU, "micrometer"),
+        xarray.DataArray(NU, attrs={"units": "cm-1"}),
+        xarray.DataArray(1e4 / NU, attrs={"units": "um"}),
+    ],
+    ids=lambda value: str(getattr(value, "unit", None) or getattr(value, "units", None)),
+)
+def test_wavenumbers_are_converted(bands):
+    assert same(scene(bands=bands), scene())
+    assert np.allclose(hadar.planck(bands, 300.0), hadar.planck(NU, 300.0), rtol=1e-12, atol=0.0)
+    assert np.allclose(hadar.emissivity("skin", bands), hadar.emissivity("skin", NU), rtol=1e-9, atol=0.0)
+
+
+@pytest.mark.parametrize(
+    ("what", "call"),
+    [
+        ("temperature", lambda: scene(310.0 * u.m)),
+        ("environment", lambda: scene(environment=np.array([20.0]) * u.s)),
+        ("environment", lambda: scene(environment=UR.Quantity(np.array([20.0]), "delta_degC"))),
+        ("environment", lambda: scene(environment=xarray.DataArray([20.0], attrs={"units": "furlong"}))),
+        ("environment", lambda: scene(environment=[UR.Quantity(20.0, "degC")])),
+        ("bands", lambda: scene(bands=NU * u.kg)),
+        ("nu", lambda: hadar.planck(NU * u.K, 300.0)),
+        ("temperature", lambda: hadar.planck(NU, 300.0 / u.cm)),
+        ("emissivity", lambda: scene().signal(E * u.m)),
+        ("radiance", lambda: hadar.brightness_temperature(NU, np.ones(12) * u.W)),
+        ("counts_per_radiance", lambda: scene(counts_per_radiance=xarray.DataArray(1e-12, attrs={"units": "m2"}))),
+        ("cube", lambda: hadar.window_information(xarray.DataArray(np.ones((9, 9, 3)), attrs={"units": "W m-2 sr-1 um-1"}))),
+        ("lighting", lambda: hadar.Scene(NU, 310.0, np.array([0.5]) * u.K, [293.0])),
+    ],
+)
+def test_what_means_something_else_is_refused(what, call):
+    with pytest.raises(hadar.HadarError, match=what):
+        call()
+
+
+def test_what_falls_is_refused_and_not_taken():
+    with pytest.raises(hadar.HadarError, match="do not ascend"):
+        scene(bands=np.sort(1e4 / NU) * u.um)
+
+
+def test_shares_and_counts():
+    assert same(scene(environment=pandas.Series([293.15])), scene())
+    percent = hadar.Scene(NU, 310.15, np.array([50.0]) * u.percent, [293.15])
+    assert same(percent, scene())
+    cube = np.random.default_rng(1).poisson(500, (9, 9, 3)).astype(float)
+    plain = hadar.window_information(cube).full
+    for counted in (cube * u.ct, xarray.DataArray(cube, attrs={"units": "photons"}), xarray.DataArray(cube)):
+        assert np.array_equal(hadar.window_information(counted).full, plain, equal_nan=True)
+
+
+def test_a_scenario_has_quantities_too():
+    said = {"target": {"material": "skin", "temperature": "37 degC"}, "alternatives": {"materials": ["aluminium"]}}
+    for temperature in (37.0 * u.deg_C, UR.Quantity(37.0, "degC"), 310.15 * u.K):
+        other = {**said, "target": {"material": "skin", "temperature": temperature}}
+        found = hadar.size(other)
+        assert abs(found.pairs[0].distance_nearest / hadar.size(said).pairs[0].distance_nearest - 1) < 1e-9
+    with pytest.raises(hadar.HadarError, match="target.temperature"):
+        hadar.size({**said, "target": {"material": "skin", "temperature": 37.0 * u.m}})
