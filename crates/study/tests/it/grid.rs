@@ -172,9 +172,9 @@ fn who_is_late_and_sees_nothing_does_not_brake() {
         let text = base
             .replace("= \"2 km/h\"\n[[clause]]", &format!("= \"0 km/h\"\noffset = \"{offset}\"\n[[clause]]"));
         let (head, tail) = text.split_once("[[camera]]").unwrap();
-        let grid = tail.find("[[grid]]").unwrap();
+        let place = tail.find("[[grid]]").unwrap();
         let text =
-            format!("{head}[[camera]]\nname = \"slow\"\npreset = \"ideal-pnrd\"\n{more}{}", &tail[grid..]);
+            format!("{head}[[camera]]\nname = \"slow\"\npreset = \"ideal-pnrd\"\n{more}{}", &tail[place..]);
         let cells = grid(&text);
         let cell = cells.into_iter().find(|cell| cell.clause.as_deref() == Some("tell")).unwrap();
         cell.cameras[0].clone()
