@@ -16,7 +16,7 @@ class Scene:
     def __new__(
         cls,
         bands: ArrayLike,
-        temperature: float,
+        temperature: ArrayLike,
         lighting: ArrayLike | None = None,
         environment: ArrayLike | None = None,
         *,
@@ -24,9 +24,9 @@ class Scene:
         unknown: Sequence[Literal["temperature", "lighting", "gain", "environment-temperature"]] | None = None,
         priors: Mapping[str, float] | None = None,
         lighting_total: float | None = None,
-        temperature_range: tuple[float, float] | None = None,
+        temperature_range: ArrayLike | None = None,
         lighting_range: tuple[float, float] | None = None,
-        counts_per_radiance: float | None = None,
+        counts_per_radiance: ArrayLike | None = None,
         var_added: ArrayLike | None = None,
     ) -> Scene: ...
     @property

@@ -50,6 +50,10 @@ pub(crate) fn decompose<'py>(
     let lent = Lent::of(cube)?;
     let view = lent.view()?;
     let bands = self::bands(bands)?;
+    if let Some(band) = bad_bands.iter().flatten().find(|band| **band >= bands.len()) {
+        let found = format!("bad_bands: {band} of {} bands", bands.len());
+        return Err(raised(Error::malformed(found, "count bands from 0")));
+    }
     let each = |given: &Bound<'_, PyAny>, what: &str| -> PyResult<Vec<f64>> {
         let stated = if what == "var_added" { COUNTS_SQUARED } else { PER_RADIANCE };
         let alone = numbers::<f64>(given, what, stated)?.ndim() == 0;

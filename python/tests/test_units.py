@@ -108,6 +108,12 @@ def test_shares_and_counts():
         assert np.array_equal(hadar.window_information(counted).full, plain, equal_nan=True)
 
 
+def test_a_band_that_is_not_there_is_no_bad_band():
+    light = hadar.planck(NU, 290.0)
+    with pytest.raises(hadar.HadarError, match="bad_bands: 33 of 12 bands"):
+        hadar.decompose(np.ones(12), [E], [light], NU, counts_per_radiance=1e-12, bad_bands=[33])
+
+
 def test_a_scenario_has_quantities_too():
     said = {"target": {"material": "skin", "temperature": "37 degC"}, "alternatives": {"materials": ["aluminium"]}}
     for temperature in (37.0 * u.deg_C, UR.Quantity(37.0, "degC"), 310.15 * u.K):
