@@ -289,7 +289,7 @@ impl LineFigure {
         self
     }
 
-    /// Adds a lower panel that shares the horizontal axis.
+    /// Adds a lower panel that shares the horizontal axis. Of several, all are low: the titles of their vertical axes have room for a few words.
     #[must_use]
     pub fn lower(mut self, panel: Panel) -> Self {
         self.lower.push(panel);

@@ -267,8 +267,35 @@ fn panel() -> impl Strategy<Value = Panel> {
 }
 
 fn line_figure() -> impl Strategy<Value = Figure> {
-    (words(), words(), axis(), panel(), prop::collection::vec(panel(), 0..4))
-        .prop_map(|(title, subtitle, x, panel, lower)| LineFigure { title, subtitle, x, panel, lower }.into())
+    (words(), words(), axis(), panel(), prop::option::of(panel())).prop_map(
+        |(title, subtitle, x, panel, lower)| {
+            let lower = lower.into_iter().collect();
+            LineFigure { title, subtitle, x, panel, lower }.into()
+        },
+    )
+}
+
+/// Panels of little height over each other, as a vehicle's approach has them.
+#[test]
+fn four_panels_stand_over_each_other() {
+    let panel = |title: &str, top: f64| {
+        let y = (0..20).map(|i| top * f64::from(i + 1) / 20.0).collect();
+        Panel::new(Axis::log(title))
+            .series(Series::line("a camera", (0..20).map(f64::from).collect(), y).colour(0))
+            .rule(Rule::horizontal(top / 2.0, "demanded"))
+            .rule(Rule::vertical(7.0, ""))
+    };
+    let panels = ["d over that demanded", "pixels across 50 cm", "blur (pixels)", "speed at contact (km/h)"];
+    let panels = panels.iter().zip([1.0, 1e3, 60.0, 1e-3]).map(|(title, top)| panel(title, top)).collect();
+    let x = Axis::linear("time (s)").range(19.0, 0.0).secondary("distance (m)", vec![(10.0, "40".into())]);
+    let figure = Figure::from(LineFigure::over("The approach", x, panels));
+    let svg = render_svg(&figure).unwrap();
+    check_svg(&svg);
+    check_png(&render_png(&figure).unwrap());
+    // The first panel is at the top, and one legend tells of all.
+    let at = |title: &str| svg.find(title).unwrap_or_else(|| panic!("{title}"));
+    assert!(at("d over that demanded") < at("blur (pixels)") && at("blur (pixels)") < at("speed at contact"));
+    assert_eq!(svg.matches("a camera").count(), 1);
 }
 
 fn heat_map() -> impl Strategy<Value = Figure> {
