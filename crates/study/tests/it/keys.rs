@@ -15,7 +15,8 @@ const RULE: &str = "[[camera]]\npreset = \"flir-a325sc\"\nname = \"ours\"\n[[cla
     [[clause.environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n\
     [[test]]\ncamera = \"ours\"\nverdict = \"fails\"\n\
     [[reform]]\nname = \"b\"\nset = [\"target.temperature = 36 degC\"]\nchoice = \"why\"\n\
-    [[source]]\nkeys = [\"target\", \"environment\", \"class\", \"clause\", \"category\"]\nchoice = \"why\"\n";
+    [[grid]]\nname = \"g\"\nspeed_step = \"5 km/h\"\n\
+    [[source]]\nkeys = [\"target\", \"environment\", \"class\", \"clause\", \"category\", \"grid\"]\nchoice = \"why\"\n";
 const CAMERA: &str = "[camera]\npreset = \"flir-a325sc\"\n";
 const STREET: &str = "[scene]\nsky = { material = \"skin\", temperature = \"288 K\" }\n\
     ground = { material = \"skin\", temperature = \"12 degC\" }\n\
