@@ -14,6 +14,8 @@ use pyo3::types::{PyList, PyString, PyTuple};
 pub(crate) enum In {
     /// Absolute temperature, K.
     Kelvin,
+    /// Difference of temperatures, K.
+    Kelvins,
     /// Wavenumber, cm⁻¹; wavelengths and frequencies become it.
     PerCentimetre,
     /// Shares and other numbers without a unit.
@@ -79,15 +81,18 @@ pub(crate) fn converted<'py>(
             Some((_, factor, offset)) => scaled(*factor, *offset).map(Some),
             None => refused("give temperatures in K, degC or degF"),
         },
+        // A difference in degC is one in K, and nobody can tell whether it is one.
+        In::Kelvins if matches!(plain.as_str(), "k" | "kelvin" | "deltadegc" | "deltadegreecelsius") => {
+            scaled(1.0, 0.0).map(Some)
+        }
+        In::Kelvins => refused("give a difference of temperatures in K"),
         In::PerCentimetre => match SpectralUnit::spelt(&unit) {
-            Some(SpectralUnit::PerCentimetre) => scaled(1.0, 0.0).map(Some),
-            Some(unit) => {
-                let one = unit.wavenumber_cm1(1.0);
-                match unit.quantity() {
-                    "wavelength" => floats(&values)?.rpow_one(one).map(Some),
-                    _ => scaled(one, 0.0).map(Some),
-                }
+            // ν = ν(1)/λ of a wavelength, ν(1) f of a frequency.
+            Some(unit) if unit.quantity() == "wavelength" => {
+                let numpy = values.py().import(intern!(values.py(), "numpy"))?;
+                numpy.call_method1("true_divide", (unit.wavenumber_cm1(1.0), floats(&values)?)).map(Some)
             }
+            Some(unit) => scaled(unit.wavenumber_cm1(1.0), 0.0).map(Some),
             None => refused("give wavenumbers in cm^-1, or wavelengths in um or nm"),
         },
         In::One if ONES.contains(&plain.as_str()) => scaled(1.0, 0.0).map(Some),
@@ -121,23 +126,10 @@ pub(crate) fn as_written(unit: &str) -> String {
     }
 }
 
-/// Arithmetic of NumPy.
-trait Arithmetic<'py>: Sized {
-    /// one / self.
-    fn rpow_one(&self, one: f64) -> PyResult<Bound<'py, PyAny>>;
-}
-
-impl<'py> Arithmetic<'py> for Bound<'py, PyAny> {
-    fn rpow_one(&self, one: f64) -> PyResult<Bound<'py, PyAny>> {
-        let numpy = self.py().import(intern!(self.py(), "numpy"))?;
-        numpy.call_method1("true_divide", (one, self))
-    }
-}
-
-/// Values as an array of f64.
+/// Values as an array of f64; one that says what is missing still does.
 fn floats<'py>(values: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let numpy = values.py().import(intern!(values.py(), "numpy"))?;
-    numpy.call_method1("asarray", (values, "float64"))
+    numpy.call_method1("asanyarray", (values, "float64"))
 }
 
 /// Values and the unit that they have, if they have one.
@@ -155,7 +147,8 @@ pub(crate) fn parts<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<(Bound<'p
     let Ok(attributes) = given.getattr("attrs") else { return Ok(None) };
     // Of an array of quantities the quantities say it.
     if let Ok(data) = given.getattr("data")
-        && let Some(found) = parts_of_package(&data)?
+        && !data.hasattr("attrs")?
+        && let Some(found) = parts(&data)?
     {
         return Ok(Some(found));
     }
@@ -168,10 +161,6 @@ pub(crate) fn parts<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<(Bound<'p
         }
     }
     Ok(None)
-}
-
-fn parts_of_package<'py>(data: &Bound<'py, PyAny>) -> PyResult<Option<(Bound<'py, PyAny>, String)>> {
-    if data.hasattr("attrs")? { Ok(None) } else { parts(data) }
 }
 
 /// A number in the unit that is wanted.

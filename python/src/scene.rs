@@ -85,7 +85,7 @@ impl Scene {
         environment: Option<&Bound<'_, PyAny>>,
         environment_emissivity: Option<&Bound<'_, PyAny>>,
         unknown: Option<Vec<String>>,
-        priors: Option<BTreeMap<String, f64>>,
+        priors: Option<BTreeMap<String, Bound<'_, PyAny>>>,
         lighting_total: Option<f64>,
         temperature_range: Option<&Bound<'_, PyAny>>,
         lighting_range: Option<[f64; 2]>,
@@ -102,6 +102,11 @@ impl Scene {
         let counts_per_radiance = counts_per_radiance
             .map(|given| number(given, "counts_per_radiance", PER_RADIANCE))
             .transpose()?;
+        let deviation = |(name, given): (String, Bound<'_, PyAny>)| {
+            let wanted = if name.contains("temperature") { In::Kelvins } else { In::One };
+            Ok((name.clone(), number(&given, &format!("priors.{name}"), wanted)?))
+        };
+        let priors = priors.unwrap_or_default().into_iter().map(deviation).collect::<PyResult<_>>()?;
         let lighting = of(lighting, "lighting", In::One)?;
         let environment = of(environment, "environment", In::Kelvin)?;
         let emissivities = match environment_emissivity {
@@ -136,7 +141,7 @@ impl Scene {
                 objects.map(|(&temperature_k, emissivity)| EnvironmentObject { temperature_k, emissivity });
             let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
             let state = surroundings.state(temperature, &lighting)?;
-            let unknowns = unknowns(unknown, priors.unwrap_or_default(), lighting_total)?;
+            let unknowns = unknowns(unknown, priors, lighting_total)?;
             let mut range = StateRange::default();
             range.temperature_k = temperature_range.unwrap_or(range.temperature_k);
             range.lighting = lighting_range.unwrap_or(range.lighting);

@@ -93,6 +93,21 @@ def test_what_means_something_else_is_refused(what, call):
         call()
 
 
+def test_a_prior_is_a_difference():
+    plain = scene(priors={"temperature": 2.0})
+    pair = [hadar.local(E, E - 0.01, one).distance for one in (plain, scene(priors={"temperature": 2.0 * u.K}))]
+    assert pair[0] == pair[1]
+    for wrong in (2.0 * u.deg_C, xarray.DataArray(2.0, attrs={"units": "degF"})):
+        with pytest.raises(hadar.HadarError, match="priors.temperature"):
+            scene(priors={"temperature": wrong})
+
+
+def test_what_is_missing_stays_missing():
+    masked = UR.Quantity(np.ma.masked_array([20.0], [True]), "degC")
+    with pytest.raises(hadar.HadarError, match="masked"):
+        scene(environment=masked)
+
+
 def test_what_falls_is_refused_and_not_taken():
     with pytest.raises(hadar.HadarError, match="do not ascend"):
         scene(bands=np.sort(1e4 / NU) * u.um)

@@ -5,6 +5,7 @@
 //! fails where it is not what the sources say; `named.tsv` has those that are no fields.
 
 use crate::words::conditions::EXPLAINED;
+use crate::words::rule::REASONS;
 use crate::words::shortfall;
 use crate::words::warnings;
 use hadar_scenario::keys::{self, Place, Silent};
@@ -25,6 +26,8 @@ pub struct Reference {
     pub conditions: Vec<ExplainedCode>,
     /// Codes of what a camera falls short of.
     pub shortfalls: Vec<ExplainedCode>,
+    /// Codes of reasons for which a rule is not passed.
+    pub reasons: Vec<ExplainedCode>,
     /// Keys of answers.
     pub results: Vec<ResultKey>,
 }
@@ -99,6 +102,12 @@ impl From<&Place> for ExplainedKey {
     }
 }
 
+impl From<&'static [&'static str; 3]> for ExplainedCode {
+    fn from([code, meaning, remedy]: &'static [&'static str; 3]) -> Self {
+        Self { code, meaning, remedy }
+    }
+}
+
 impl From<Code> for ExplainedCode {
     fn from(code: Code) -> Self {
         let words = warnings::of_code(code);
@@ -120,31 +129,31 @@ pub fn all() -> Reference {
         warnings: Code::ALL.iter().copied().map(ExplainedCode::from).collect(),
         conditions: conditions().collect(),
         shortfalls: shortfalls().collect(),
+        reasons: reasons().collect(),
         results: results().collect(),
     }
 }
 
 /// Codes of conditions of a verdict.
 pub fn conditions() -> impl Iterator<Item = ExplainedCode> {
-    EXPLAINED.iter().map(|[code, meaning, remedy]| ExplainedCode { code, meaning, remedy })
+    EXPLAINED.iter().map(ExplainedCode::from)
 }
 
 /// Codes of what a camera falls short of.
 pub fn shortfalls() -> impl Iterator<Item = ExplainedCode> {
-    shortfall::EXPLAINED.iter().map(|[code, meaning, remedy]| ExplainedCode { code, meaning, remedy })
+    shortfall::EXPLAINED.iter().map(ExplainedCode::from)
 }
 
-/// What a camera of that code falls short of.
-#[must_use]
-pub fn shortfall(word: &str) -> Option<ExplainedCode> {
-    shortfalls().find(|one| one.code == word.trim_matches(['[', ']']))
+/// Codes of reasons for which a rule is not passed.
+pub fn reasons() -> impl Iterator<Item = ExplainedCode> {
+    REASONS.iter().map(ExplainedCode::from)
 }
 
-/// The condition of a verdict of that code.
+/// The one of some codes that is called so.
 #[must_use]
-pub fn condition(word: &str) -> Option<ExplainedCode> {
+pub fn called(word: &str, mut codes: impl Iterator<Item = ExplainedCode>) -> Option<ExplainedCode> {
     let name = word.trim_matches(['[', ']']);
-    conditions().find(|one| one.code == name)
+    codes.find(|one| one.code == name)
 }
 
 /// All keys of answers.
@@ -191,7 +200,7 @@ pub fn words() -> Vec<String> {
         place.paths.into_iter().chain([name])
     });
     let codes = Code::ALL.iter().map(|code| code.name().to_owned());
-    let codes = codes.chain(conditions().chain(shortfalls()).map(|one| one.code.to_owned()));
+    let codes = codes.chain(conditions().chain(shortfalls()).chain(reasons()).map(|one| one.code.to_owned()));
     let mut words: Vec<String> = keys.chain(codes).chain(results().map(|one| one.key.to_owned())).collect();
     words.sort_unstable();
     words.dedup();

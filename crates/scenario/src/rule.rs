@@ -22,7 +22,7 @@ pub use camera::RuleCamera;
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::Clause;
 pub use demand::{Demand, DepthDemand, DepthObject};
-pub use grid::{GridCell, GridLight};
+pub use grid::{GridLight, GridPlace};
 pub use known::{Known, Uncertainty};
 pub use reform::Reform;
 pub use stand_in::StandInSpec;
@@ -196,7 +196,7 @@ impl Rule {
     /// # Errors
     /// A rule without a grid, or without speeds; a clause with another number of surroundings; too many cells; a light in which not all scenes
     /// are lit as is known.
-    pub fn of_cells(&self) -> Result<(Self, Vec<GridCell>)> {
+    pub fn of_cells(&self) -> Result<(Self, Vec<GridPlace>)> {
         let (clauses, cells) = grid::cells(&self.clauses, &self.grid, &|key| self.scenario.place(key))?;
         let mut rule = Self { clauses, ..self.clone() };
         (rule.tests, rule.reforms, rule.grid) = (Vec::new(), Vec::new(), Vec::new());

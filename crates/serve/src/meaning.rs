@@ -27,8 +27,12 @@ pub(crate) fn page(word: &str) -> Option<String> {
         }
         body.push_str("</dl>\n");
     }
-    let codes =
-        [("Warning", explain::code(word).map(ExplainedCode::from)), ("Condition", explain::condition(word))];
+    let codes = [
+        ("Warning", explain::code(word).map(ExplainedCode::from)),
+        ("Condition", explain::called(word, explain::conditions())),
+        ("Falls short by", explain::called(word, explain::shortfalls())),
+        ("Not passed for", explain::called(word, explain::reasons())),
+    ];
     for (what, told) in codes.into_iter().filter_map(|(what, told)| Some((what, told?))) {
         let _ = writeln!(body, "<h2>{what} [{}]</h2>\n<p>{}</p>\n<dl>", told.code, escaped(told.meaning));
         row(&mut body, "do", told.remedy);

@@ -42,11 +42,11 @@ pub(super) fn check_light(found: &Found) -> Result<()> {
 /// A file whose samples are something else than the scenario says.
 pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceUnit>> {
     let Some(of_file) = &found.unit else { return Ok(None) };
-    let radiance = RadianceUnit::spelt(of_file).ok();
+    let radiance = RadianceUnit::spelt(without_name(of_file)).ok();
     match (said, radiance) {
         (CubeUnit::Radiance { unit, .. }, Some(own)) => Ok((!own.is(*unit)).then_some(own)),
         (CubeUnit::Radiance { written, .. }, None) => {
-            if SampleUnit::says_nothing(of_file) {
+            if SampleUnit::says_nothing(without_name(of_file)) {
                 return Ok(None);
             }
             Err(Error::malformed(
@@ -60,6 +60,18 @@ pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceU
         )),
         (_, None) => Ok(None),
     }
+}
+
+/// What is behind `Radiance`, as files write it before a unit or in its place.
+fn without_name(unit: &str) -> &str {
+    let mut rest = unit.trim();
+    for name in ["spectral ", "radiance"] {
+        let head = rest.get(..name.len()).unwrap_or_default();
+        if head.eq_ignore_ascii_case(name) {
+            rest = rest.get(name.len()..).unwrap_or_default().trim_start();
+        }
+    }
+    rest
 }
 
 fn no_light(unit: &str) -> Error {

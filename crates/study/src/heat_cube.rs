@@ -69,7 +69,10 @@ impl Said<'_> {
             let factors = centres.iter().map(|nu| unit.watts_per_cm1(*nu) / of_file.watts_per_cm1(*nu));
             noise.scale(&factors.collect::<Vec<_>>());
             let file = opened.found.unit.clone().unwrap_or_default();
-            warnings.push(Warning::UnitConverted { file, scenario: written.clone() });
+            // Per wavelength the mean over ν₁ to ν₂ has ν₁ν₂ in the place of ν².
+            let halves = centres.iter().zip(&widths).map(|(nu, width)| 0.5 * width / nu);
+            let of_mean = halves.map(|half| half * half).fold(0.0, f64::max);
+            warnings.push(Warning::UnitConverted { file, scenario: written.clone(), of_mean });
         }
         let absent = opened.absent();
         let InOrder { cube, found: read, .. } = opened;

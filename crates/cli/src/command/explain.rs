@@ -46,6 +46,8 @@ struct Explained {
     condition: Option<ExplainedCode>,
     /// What a camera falls short of by this code.
     shortfall: Option<ExplainedCode>,
+    /// The reason of this code for which a rule is not passed.
+    reason: Option<ExplainedCode>,
     /// Keys of answers that are called so.
     results: Vec<ResultKey>,
     /// The command of this name.
@@ -79,8 +81,9 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         word: word.to_owned(),
         keys: places.iter().map(ExplainedKey::from).collect(),
         warning: explain::code(word).map(ExplainedCode::from),
-        condition: explain::condition(word),
-        shortfall: explain::shortfall(word),
+        condition: explain::called(word, explain::conditions()),
+        shortfall: explain::called(word, explain::shortfalls()),
+        reason: explain::called(word, explain::reasons()),
         results: explain::result(word),
         command: command(word, cli),
     };
@@ -89,6 +92,7 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         && explained.warning.is_none()
         && explained.condition.is_none()
         && explained.shortfall.is_none()
+        && explained.reason.is_none()
         && explained.command.is_none()
     {
         return Err(unknown(word, cli));
@@ -163,6 +167,9 @@ fn text(explained: &Explained, places: &[Place]) -> String {
     if let Some(shortfall) = explained.shortfall {
         of_code("falls short by", shortfall, &mut text);
     }
+    if let Some(reason) = explained.reason {
+        of_code("not passed for", reason, &mut text);
+    }
     if places.len() > IN_FULL {
         let _ = writeln!(
             text,
@@ -202,6 +209,8 @@ fn reference_text(reference: &Reference) -> String {
     reference.conditions.iter().for_each(|one| of_code("condition", *one, &mut text));
     text.push_str("WHAT A CAMERA FALLS SHORT OF\n\n");
     reference.shortfalls.iter().for_each(|one| of_code("falls short by", *one, &mut text));
+    text.push_str("WHY A RULE IS NOT PASSED\n\n");
+    reference.reasons.iter().for_each(|one| of_code("not passed for", *one, &mut text));
     text.push_str("KEYS OF THE JSON\n\n");
     reference.results.iter().for_each(|one| of_result(*one, &mut text));
     text

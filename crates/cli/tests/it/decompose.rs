@@ -349,21 +349,24 @@ fn a_radiance_is_the_same_in_every_unit() {
         folder.file("d.toml", &SCENARIO.replace("counts.npy", "u.img"));
         assert!(folder.refusal(&["decompose", "d.toml"]).contains("radiances by their file"), "{unit}");
     }
+    // A name before a unit, or in its place, is none.
+    let rename = |unit: &str| {
+        let text = fs::read_to_string(folder.path().join("u.hdr")).unwrap();
+        let kept =
+            text.lines().filter(|line| !line.starts_with("data units")).map(|line| format!("{line}\n"));
+        folder.file("u.hdr", &kept.chain([format!("data units = {unit}\n")]).collect::<String>());
+    };
+    rename("Radiance [ph s-1 cm-2 sr-1 um-1]");
+    assert!(folder.json(&["decompose", "c.toml"])["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-3);
+    rename("Spectral Radiance");
+    folder.file("e.toml", &scenario("u.img", "ph s-1 cm-2 sr-1 um-1", 1e10));
+    assert!(folder.json(&["decompose", "e.toml"])["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-3);
     for (unit, what) in [
         ("DN", "in `DN` by their file"),
         ("K", "no factor makes photons"),
         ("counts", "in `counts` by their file"),
     ] {
-        folder.file(
-            "u.hdr",
-            &fs::read_to_string(folder.path().join("u.hdr"))
-                .unwrap()
-                .lines()
-                .filter(|line| !line.starts_with("data units"))
-                .map(|line| format!("{line}\n"))
-                .chain([format!("data units = {unit}\n")])
-                .collect::<String>(),
-        );
+        rename(unit);
         let refused = folder.refusal(&["decompose", "c.toml"]);
         assert!(refused.contains(what), "{unit}: {refused}");
     }

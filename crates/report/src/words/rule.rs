@@ -15,6 +15,7 @@ mod stand_in;
 mod stop;
 mod text;
 
+pub(crate) use certificate::REASONS;
 pub use check::check;
 pub use grid::cell_by_cell;
 pub(crate) use hardest::{HardestScene, hardest_scenes};

@@ -30,10 +30,10 @@ pub struct GridLight {
     pub surroundings_k: Option<Vec<[f64; 2]>>,
 }
 
-/// A cell: a clause at one speed, in one light.
+/// Where a cell stands in the table: a clause at one speed, in one light.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct GridCell {
+pub struct GridPlace {
     /// Name of the clause; none of a rule without clauses.
     pub clause: Option<String>,
     /// The light; none of a clause that light does not touch.
@@ -98,7 +98,7 @@ pub(super) fn cells(
     clauses: &[Clause],
     grid: &[GridLight],
     place: &dyn Fn(&str) -> Place,
-) -> Result<(Vec<Clause>, Vec<GridCell>)> {
+) -> Result<(Vec<Clause>, Vec<GridPlace>)> {
     let refused =
         |found: &str, instead: &str, key: &str| Err(Error::malformed(found, instead).at(place(key)));
     if grid.is_empty() {
@@ -126,7 +126,7 @@ pub(super) fn cells(
                 }
                 made.push(cell);
                 let light = is_lit.then(|| light.name.clone());
-                cells.push(GridCell { clause: clause.name.clone(), light, speed_m_s });
+                cells.push(GridPlace { clause: clause.name.clone(), light, speed_m_s });
             }
         }
     }

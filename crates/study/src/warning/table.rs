@@ -81,7 +81,7 @@ warnings! {
     /// A cube that was read so, whose first axis may be the bands.
     AxesInDoubt { rows: usize, columns: usize, bands: usize } = "axes-in-doubt";
     /// A cube whose samples are in another unit by its file than by the scenario.
-    UnitConverted { file: String, scenario: String } = "unit-converted";
+    UnitConverted { file: String, scenario: String, of_mean: f64 } = "unit-converted";
     /// Bands said as wavelengths, of a cube whose file does not say their order.
     BandOrderTaken = "band-order-taken";
     /// The file of a cube lists wavelengths without a unit.

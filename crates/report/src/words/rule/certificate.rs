@@ -163,6 +163,40 @@ const IS_UNDECIDED: &str = "undecided";
 const IS_UNPROVED: &str = "met, and not proved";
 const RESTS: &str = "rests on conditions that nobody accepted (--accept)";
 
+/// Codes of reasons for which a rule is not passed, each with its meaning and what to do about it.
+pub(crate) const REASONS: [[&str; 3]; 10] = [
+    ["fails", "a camera does not meet a clause", "see its margin and what it fails by"],
+    ["undecided", "a camera may or may not meet a clause", "state its figures with less uncertainty"],
+    [
+        "not-proved",
+        "a camera meets a clause, and that is no proof",
+        "see `evidence`: what was searched, simulated or assumed",
+    ],
+    [
+        "conditions",
+        "meeting a clause rests on conditions that nobody accepted",
+        "settle them, or name them with --accept",
+    ],
+    [
+        "camera-figures",
+        "nobody says where figures of a camera are from",
+        "name them in a [[source]], keys = [\"camera[0]\"], with a document or a choice",
+    ],
+    [
+        "changed",
+        "a value stands in the place of the rule's own, so that this is another rule",
+        "leave out --set and --judge",
+    ],
+    [
+        "materials-replaced",
+        "materials by a name of this program are others",
+        "leave out --library, or give them names of their own",
+    ],
+    ["no-day", "no day was stated on which the rule should hold", "name one with --on"],
+    ["no-dates", "the rule does not say when it holds", "write from in [rule]"],
+    ["not-in-force", "the rule does not hold on the day", "ask about a day on which it does"],
+];
+
 /// A reason that is of a camera: under which heading, where, and what else is said of it.
 fn of_a_camera(reason: &NotPassed) -> Option<(&'static str, &CameraBeforeClause, String)> {
     match reason {

@@ -27,7 +27,7 @@ pub(crate) fn title(course: &Course, units: Units) -> String {
 pub(crate) fn below(course: &Course, told: bool) -> String {
     let told = match (told, course.tells_apart) {
         (true, _) => {
-            "d is the statistical distance in the scene that limits each camera; it begins where the camera has read its frames, and is there while the target is in the picture. "
+            "d is the statistical distance in the scene that limits each camera; it begins where the camera has read its frames, as if all were taken there, and is there while the target is in the picture. "
         }
         (false, true) => "No camera has read its frames of a target that is still in the picture. ",
         (false, false) => "",

@@ -2,7 +2,7 @@
 
 use super::block::{short, words};
 use crate::words::decompose::judged::cause;
-use hadar::words::significant;
+use hadar::words::{share, significant};
 
 words! {
     AxesInDoubt {
@@ -16,8 +16,9 @@ words! {
         meaning: "The file of a cube states another unit of spectral radiance than the scenario: its samples are taken in the file's, band by band at the \
             centre, and the noise in the scenario's.",
         remedy: "Where the file is wrong mend it; else nothing need be done.",
-        UnitConverted { file, scenario } => format!(
-            "the samples are in `{file}` by their file: they were taken so, each band at its centre, and the noise in `{scenario}`, as the scenario says"
+        UnitConverted { file, scenario, of_mean } => format!(
+            "the samples are in `{file}` by their file: they were taken so, each band at its centre (at most {} off the mean over a band), and the noise in `{scenario}`, as the scenario says",
+            share(*of_mean)
         ),
     }
     BandOrderTaken {
