@@ -157,6 +157,8 @@ impl Sighted {
         }
         let counts = self.counting.counts_per_radiance / other.counting.counts_per_radiance;
         let of_noise = |w: usize| match (self.counting.var_added(w), other.counting.var_added(w)) {
+            // Without noise but that of the photons.
+            (0.0, 0.0) => f64::INFINITY,
             (own, known) if own <= known => counts.min(1.0),
             (own, known) => counts / (own / known).sqrt(),
         };
@@ -175,5 +177,61 @@ impl Study {
             && self.unknowns == other.unknowns
             && self.range == other.range
             && self.air == other.air
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Kind, RuleStudy};
+    use super::*;
+    use hadar::material::Library;
+    use hadar_scenario::Rule;
+
+    const RULE: &str = "cameras = [\"ideal-pnrd\"]\n[target]\nmaterial = \"skin\"\ntemperature = \"33 degC\"\n\
+        [[environment]]\ntemperature = \"10 degC\"\nlighting = 0.5\n[alternatives]\nmaterials = [\"pmma\"]\n\
+        [bands]\nranges = [[\"8 um\", \"9 um\"], [\"9 um\", \"10 um\"], [\"11 um\", \"12 um\"]]\n\
+        [envelope]\ntemperature = [\"30 degC\", \"37 degC\"]\n";
+
+    /// Shot noise alone leaves √κ, other noise alone κ/√v, and both together more than the share says: each against the distance itself.
+    #[test]
+    fn no_distance_is_less_than_the_share_says() {
+        let study =
+            RuleStudy::new(&Rule::from_toml(RULE, None).unwrap(), &Library::embedded().unwrap()).unwrap();
+        let Some(Kind::Apart(apart)) = study.clauses.first() else { panic!() };
+        let plain = &apart.candidates[0].sighted[0];
+        let bands = plain.study.bands.len();
+        let photons = plain.counting.counts_per_radiance
+            * plain.study.bands.weigh(&vec![1e20; plain.study.bands.nodes_cm1().len()])[0];
+        let seen = |counts: f64, var: f64| {
+            let mut other = plain.clone();
+            other.counting.counts_per_radiance *= counts;
+            other.counting.var_added = vec![var; bands];
+            other
+        };
+        let distance = |seen: &Sighted| {
+            let (own, other) = (&seen.study.target.emissivity, &seen.study.alternatives[0].emissivity);
+            seen.solver().with_counting(own, other, &seen.study.state, &seen.counting).unwrap().distance
+        };
+        let ratio = |from: &Sighted, to: &Sighted| distance(to) / distance(from);
+        for (from, to, exact) in [
+            (seen(1.0, 0.0), seen(0.9, 0.0), Some(0.9f64.sqrt())),
+            (seen(1.0, 1e9 * photons), seen(0.9, 1e9 * photons), Some(0.9)),
+            (seen(1.0, 1e9 * photons), seen(1.0, 1.2e9 * photons), Some(1.2f64.sqrt().recip())),
+            (seen(1.0, photons), seen(0.9, 1.2 * photons), None),
+            (seen(1.0, 0.1 * photons), seen(1.1, 0.2 * photons), None),
+        ] {
+            let (share, found) = (to.share_left_of(&from), ratio(&from, &to));
+            assert!(found >= share * (1.0 - 1e-9), "{found} {share}");
+            if let Some(exact) = exact {
+                assert!((share / exact - 1.0).abs() < 1e-12, "{share} {exact}");
+                assert!((found / exact - 1.0).abs() < 1e-4, "{found} {exact}");
+            }
+        }
+        // Another scene is another question.
+        let mut other = seen(1.0, 0.0);
+        other.study.target.emissivity[0] *= 0.99;
+        assert_eq!(other.share_left_of(plain), 0.0);
+        // More light leaves all.
+        assert_eq!(seen(1.1, 0.0).share_left_of(plain), 1.0);
     }
 }

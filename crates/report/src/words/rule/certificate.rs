@@ -1,6 +1,7 @@
 //! The certificate: a page for whoever must decide by it, then what was checked, what came out, and what it rests on, in Markdown.
 
 use super::hardest::hardest_scenes;
+use super::reasons::{passed, said};
 use super::stop::decisions;
 use super::{in_words_of_kind, measured, sources, text};
 use crate::document::Document;
@@ -12,12 +13,11 @@ use crate::words::page::READ_ONCE;
 use crate::words::probability::reliability;
 use crate::words::safety;
 use crate::words::shortfall::no;
-use hadar::instrument::presets;
-use hadar_scenario::rule::{Clause, Figure, Verdict};
+use hadar_scenario::rule::{Clause, Verdict};
 use hadar_scenario::{Rule, Units};
 use hadar_study::{
-    ApartAnswer, CameraAnswer, CameraBeforeClause, CameraVerdict, ClauseAnswer, Condition, Found, Grade,
-    MeasuredAnswer, MeasuredVerdict, NotPassed, Outcome, RuleAnswer, RuleStudy, Shortfall,
+    ApartAnswer, CameraAnswer, CameraVerdict, ClauseAnswer, Condition, Found, Grade, MeasuredAnswer,
+    MeasuredVerdict, RuleAnswer, RuleStudy, Shortfall,
 };
 
 /// The page.
@@ -69,9 +69,9 @@ pub(crate) fn first_page(answer: &RuleAnswer, provenance: &Provenance) -> Docume
     }
     if !answer.rule.sources.is_empty() {
         out.heading(2, "Where the numbers of the rule are from");
-        out.table(&["number", "value", "from"], &[0, 1], numbers_of(&answer.rule));
+        out.table(&["number", "value", "from"], &[0, 1], sources::numbers_of(&answer.rule));
     }
-    let cameras = figures_of_cameras(answer);
+    let cameras = sources::figures_of_cameras(answer);
     if !cameras.is_empty() {
         out.heading(2, "Where the figures of the cameras are from");
         out.table(&["camera", "figure", "value", "from"], &[1, 2], cameras);
@@ -150,117 +150,6 @@ pub const WORDS: [[&str; 2]; 12] = [
     ],
 ];
 
-/// Whether the rule is passed, in a sentence.
-pub(super) fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
-    match outcome {
-        Outcome::Passed => "Result: PASSED. Every camera meets every clause, proved, under no condition but those that are accepted, on a day on which the rule holds.".into(),
-        _ => format!("Result: {}. {}", outcome.word(), if reasons.len() == 1 { "The reason:" } else { "The reasons:" }),
-    }
-}
-
-const FAILS: &str = "does not meet it";
-const IS_UNDECIDED: &str = "undecided";
-const IS_UNPROVED: &str = "met, and not proved";
-const RESTS: &str = "rests on conditions that nobody accepted (--accept)";
-
-/// Codes of reasons for which a rule is not passed, each with its meaning and what to do about it.
-pub(crate) const REASONS: [[&str; 3]; 10] = [
-    ["fails", "a camera does not meet a clause", "see its margin and what it fails by"],
-    ["undecided", "a camera may or may not meet a clause", "state its figures with less uncertainty"],
-    [
-        "not-proved",
-        "a camera meets a clause, and that is no proof",
-        "see `evidence`: what was searched, simulated or assumed",
-    ],
-    [
-        "conditions",
-        "meeting a clause rests on conditions that nobody accepted",
-        "settle them, or name them with --accept",
-    ],
-    [
-        "camera-figures",
-        "nobody says where figures of a camera are from",
-        "name them in a [[source]], keys = [\"camera[0]\"], with a document or a choice",
-    ],
-    [
-        "changed",
-        "a value stands in the place of the rule's own, so that this is another rule",
-        "leave out --set and --judge",
-    ],
-    [
-        "materials-replaced",
-        "materials by a name of this program are others",
-        "leave out --library, or give them names of their own",
-    ],
-    ["no-day", "no day was stated on which the rule should hold", "name one with --on"],
-    ["no-dates", "the rule does not say when it holds", "write from in [rule]"],
-    ["not-in-force", "the rule does not hold on the day", "ask about a day on which it does"],
-];
-
-/// A reason that is of a camera: under which heading, where, and what else is said of it.
-fn of_a_camera(reason: &NotPassed) -> Option<(&'static str, &CameraBeforeClause, String)> {
-    match reason {
-        NotPassed::Fails(place) => Some((FAILS, place, String::new())),
-        NotPassed::Undecided(place) => Some((IS_UNDECIDED, place, String::new())),
-        NotPassed::NotProved(place, grade) => Some((IS_UNPROVED, place, format!(", {}", grade.name()))),
-        NotPassed::RestsOn(place, codes) => Some((RESTS, place, format!(": {}", codes.join(", ")))),
-        _ => None,
-    }
-}
-
-/// Reasons in words, those of a kind together, and of those the ones of a camera.
-pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
-    let mut out = Vec::new();
-    for heading in [FAILS, IS_UNDECIDED, IS_UNPROVED, RESTS] {
-        let of_heading = reasons.iter().filter_map(of_a_camera).filter(|(own, ..)| *own == heading);
-        let mut groups: Vec<(&str, String, Vec<&str>)> = Vec::new();
-        for (_, place, what) in of_heading {
-            match groups.iter_mut().find(|(camera, own, _)| *camera == place.camera && *own == what) {
-                Some((.., clauses)) => clauses.extend(place.clause.as_deref()),
-                None => groups.push((&place.camera, what, place.clause.as_deref().into_iter().collect())),
-            }
-        }
-        let said = |(camera, what, clauses): (&str, String, Vec<&str>)| match clauses.as_slice() {
-            [] => format!("{camera}{what}"),
-            some => format!("{camera} ({}){what}", some.join(", ")),
-        };
-        let cameras: Vec<String> = groups.into_iter().map(said).collect();
-        if !cameras.is_empty() {
-            out.push(format!("{heading}: {}", cameras.join("; ")));
-        }
-    }
-    let changed = |one: &NotPassed| match one {
-        NotPassed::Changed { key, value } => Some(format!("{key} = {value}")),
-        _ => None,
-    };
-    let changed: Vec<String> = reasons.iter().filter_map(changed).collect();
-    if !changed.is_empty() {
-        let what = "values stand in the place of the rule's own, so that this is another rule";
-        out.push(format!("{what}: {}", changed.join("; ")));
-    }
-    for reason in reasons {
-        match reason {
-            NotPassed::Unsourced { camera, figures } => out.push(format!(
-                "nobody says where figures of {camera} are from: {} ([[source]])",
-                figures.join(", ")
-            )),
-            NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),
-            NotPassed::Replaced { materials } => {
-                out.push(format!(
-                    "materials of these names are not the program's, but those of --library: {}",
-                    materials.join(", ")
-                ));
-            }
-            NotPassed::NoDates => {
-                out.push("the rule does not say from which day it holds ([rule] from)".into())
-            }
-            NotPassed::NotInForce(idle) => out.push(idle.say()),
-            _ => {}
-        }
-    }
-    out
-}
-
 /// A verdict in a cell.
 pub(super) fn in_a_word(
     verdict: Verdict,
@@ -300,42 +189,6 @@ fn look_alikes(rule: &Rule) -> Option<String> {
             silent.join(" and any ")
         )
     })
-}
-
-const NOBODY: &str = "nobody says from where";
-
-/// Every number of the rule with what stands behind it.
-fn numbers_of(rule: &Rule) -> Vec<[String; 3]> {
-    let named = |figure: Figure| [figure.key.clone(), figure.value, behind(rule, &figure.key)];
-    rule.figures().into_iter().map(named).collect()
-}
-
-/// What stands behind a figure.
-fn behind(rule: &Rule, key: &str) -> String {
-    let said: Vec<String> = rule.behind(key).map(sources::from_where).collect();
-    if said.is_empty() { NOBODY.to_owned() } else { said.join("; ") }
-}
-
-/// Every figure of the cameras that the rule states, and the known cameras that stand behind the others.
-fn figures_of_cameras(answer: &RuleAnswer) -> Vec<[String; 4]> {
-    let rule = &answer.rule;
-    let mut rows = Vec::new();
-    for (index, (camera, own)) in answer.cameras.iter().zip(&rule.cameras).enumerate() {
-        if let Some(preset) = &own.spec.preset {
-            let own = rule.own_document(index).map(|named| named.map(str::to_owned));
-            let known = || {
-                let known = presets::find(preset).ok()?;
-                known.document.or_else(|| known.provenance.into_iter().next())
-            };
-            let from = own.unwrap_or_else(known).unwrap_or_else(|| behind(rule, &rule.cameras[index].key));
-            rows.push([camera.name.clone(), "preset".into(), preset.clone(), from]);
-        }
-        for figure in rule.camera_figures(index) {
-            let key = figure.key.split_once('.').map_or(figure.key.as_str(), |(_, key)| key).to_owned();
-            rows.push([camera.name.clone(), key, figure.value, behind(rule, &figure.key)]);
-        }
-    }
-    rows
 }
 
 /// When a rule holds.

@@ -1,8 +1,9 @@
 //! The answer to a rule cell by cell, for a page that sets tables of its own. Every word of it is that of the certificate or of the text.
 
-use super::certificate::{about_the_rule, in_a_word, passed, said, title, what_it_is};
+use super::certificate::{about_the_rule, in_a_word, title, what_it_is};
 use super::hardest::scene_in_words;
 use super::market::of_market;
+use super::reasons::{passed, said};
 use super::reforms::verdict;
 use super::stop::decisions;
 use super::{in_words_of_kind, measured, sources, text};

@@ -2,9 +2,10 @@
 
 use super::text::idle;
 use crate::text::significant;
+use hadar::instrument::presets;
 use hadar_scenario::Rule;
 use hadar_scenario::rule::{Figure, Ground};
-use hadar_study::{NotInForce, TestResult, Told};
+use hadar_study::{NotInForce, RuleAnswer, TestResult, Told};
 use std::fmt::Write as _;
 
 /// Every figure below what stands behind it.
@@ -55,6 +56,42 @@ pub(super) fn from_where(ground: &Ground) -> String {
         }
         Ground::Choice(reason) => format!("a choice: {reason}"),
     }
+}
+
+const NOBODY: &str = "nobody says from where";
+
+/// Every number of the rule with what stands behind it.
+pub(super) fn numbers_of(rule: &Rule) -> Vec<[String; 3]> {
+    let named = |figure: Figure| [figure.key.clone(), figure.value, behind(rule, &figure.key)];
+    rule.figures().into_iter().map(named).collect()
+}
+
+/// What stands behind a figure.
+fn behind(rule: &Rule, key: &str) -> String {
+    let said: Vec<String> = rule.behind(key).map(from_where).collect();
+    if said.is_empty() { NOBODY.to_owned() } else { said.join("; ") }
+}
+
+/// Every figure of the cameras that the rule states, and the known cameras that stand behind the others.
+pub(super) fn figures_of_cameras(answer: &RuleAnswer) -> Vec<[String; 4]> {
+    let rule = &answer.rule;
+    let mut rows = Vec::new();
+    for (index, (camera, own)) in answer.cameras.iter().zip(&rule.cameras).enumerate() {
+        if let Some(preset) = &own.spec.preset {
+            let own = rule.own_document(index).map(|named| named.map(str::to_owned));
+            let known = || {
+                let known = presets::find(preset).ok()?;
+                known.document.or_else(|| known.provenance.into_iter().next())
+            };
+            let from = own.unwrap_or_else(known).unwrap_or_else(|| behind(rule, &rule.cameras[index].key));
+            rows.push([camera.name.clone(), "preset".into(), preset.clone(), from]);
+        }
+        for figure in rule.camera_figures(index) {
+            let key = figure.key.split_once('.').map_or(figure.key.as_str(), |(_, key)| key).to_owned();
+            rows.push([camera.name.clone(), key, figure.value, behind(rule, &figure.key)]);
+        }
+    }
+    rows
 }
 
 /// Whose the rule is and when it holds, a line each.
