@@ -22,6 +22,14 @@ use std::path::Path;
 /// # Ok::<(), hadar::Error>(())
 /// ```
 pub fn bands(path: &Path) -> Result<Bands> {
+    listed_bands(path).map(|(bands, _)| bands)
+}
+
+/// The same with their centres in the order of the rows, cm⁻¹.
+///
+/// # Errors
+/// As [`bands`].
+pub fn listed_bands(path: &Path) -> Result<(Bands, Vec<f64>)> {
     let text = text_of_file(path, "read the bands")?;
     rows(&text).map_err(|error| error.in_file(path))
 }
@@ -43,7 +51,7 @@ pub fn filter_curves(path: &Path) -> Result<Vec<FilterCurve>> {
     curves(&text).map_err(|error| error.in_file(path))
 }
 
-fn rows(text: &str) -> Result<Bands> {
+fn rows(text: &str) -> Result<(Bands, Vec<f64>)> {
     // A single column has no comma, so the widths' column is what tells a table from a list.
     let listed = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#'));
     let padded;
@@ -69,7 +77,7 @@ fn rows(text: &str) -> Result<Bands> {
     match width {
         "width_cm1" | "width_um" => {}
         same if grid.header.first().is_some_and(|first| first == same) => {
-            return Bands::from_centers(&centers);
+            return Ok((Bands::from_centers(&centers)?, centers));
         }
         other => {
             return Err(Error::malformed(
@@ -89,7 +97,8 @@ fn rows(text: &str) -> Result<Bands> {
             .map_err(|error| error.for_key(width).on_line(*line))?;
         Ok((center, width_cm1))
     });
-    Bands::from_rows(banded.collect::<Result<Vec<_>>>()?)
+    let bands = Bands::from_rows(banded.collect::<Result<Vec<_>>>()?)?;
+    Ok((bands, centers))
 }
 
 /// A column of this ending is the reflectance of the filter before it.
@@ -136,11 +145,12 @@ mod tests {
 
     #[test]
     fn rows_with_and_without_widths_in_either_unit() {
-        let bands = rows("wavenumber_cm1,width_cm1\n900,2\n800,4\n").unwrap();
+        let (bands, listed) = rows("wavenumber_cm1,width_cm1\n900,2\n800,4\n").unwrap();
+        assert_eq!(listed, [900.0, 800.0]);
         assert_eq!((bands.nodes_cm1(), bands.widths_cm1()), ([800.0, 900.0].as_slice(), vec![4.0, 2.0]));
-        let bands = rows("# centres\nwavenumber_cm1\n800\n810\n").unwrap();
+        let (bands, _) = rows("# centres\nwavenumber_cm1\n800\n810\n").unwrap();
         assert_eq!(bands.widths_cm1(), [10.0, 10.0]);
-        let bands = rows("wavelength_um,width_um\n10,0.1\n").unwrap();
+        let (bands, _) = rows("wavelength_um,width_um\n10,0.1\n").unwrap();
         assert!((bands.widths_cm1()[0] - 10.0).abs() < 1e-12);
     }
 

@@ -10,7 +10,7 @@
 //! use hadar_formats::cube;
 //!
 //! let street = cube::open("street.npy".as_ref(), None)?;
-//! let noise = hadar_formats::noise_variance("read_noise.csv".as_ref(), street.shape())?;
+//! let noise = hadar_formats::noise_variance("read_noise.csv".as_ref(), street.shape(), None)?;
 //! # Ok::<(), hadar::Error>(())
 //! ```
 
@@ -25,7 +25,7 @@ mod noise_variance;
 pub mod spectra;
 pub mod spectral_unit;
 
-pub use bands::{bands, filter_curves, filters};
+pub use bands::{bands, filter_curves, filters, listed_bands};
 pub use library::ReadLibrary;
 pub use members::{Class, Member, members};
 pub use noise_variance::noise_variance;

@@ -3,7 +3,7 @@
 //! A CSV file has a column `variance_counts2` and, if wanted, `band` (in steps of 1) or `wavenumber_cm1` (rising or
 //! falling, and then turned round); one row per band, bands counted in rising wavenumber. An NPY or MATLAB file has one variance per sample.
 
-use crate::cube::{is_cube, open};
+use crate::cube::{is_cube, open_as};
 use crate::file::text_of_file;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result, check};
@@ -17,7 +17,8 @@ const VARIANCE: &str = "variance_counts2";
 const EXAMPLE: &str = "begin it with a line such as band,variance_counts2, and give one row per band";
 
 /// Reads the variances for a cube of this shape: one per band from a CSV file, or one per sample from an NPY or
-/// MATLAB file as [`cube::open`](open) reads it.
+/// MATLAB file as [`cube::open_as`](open_as) reads it. Samples of a file that does not state its bands are in the order of the cube's
+/// own file, of which each band in rising wavenumber is one of `order`.
 ///
 /// # Errors
 /// A file that cannot be read, columns of another name, a variance that is negative or no number, bands out of
@@ -25,12 +26,14 @@ const EXAMPLE: &str = "begin it with a line such as band,variance_counts2, and g
 ///
 /// ```no_run
 /// use hadar::cube::Shape;
-/// let noise = hadar_formats::noise_variance("read_noise.csv".as_ref(), Shape::new(480, 640, 54)?)?;
+/// let noise = hadar_formats::noise_variance("read_noise.csv".as_ref(), Shape::new(480, 640, 54)?, None)?;
 /// # Ok::<(), hadar::Error>(())
 /// ```
-pub fn noise_variance(path: &Path, shape: Shape) -> Result<NoiseVariance> {
+pub fn noise_variance(path: &Path, shape: Shape, order: Option<&[usize]>) -> Result<NoiseVariance> {
     if !path.is_dir() && path.exists() && is_cube(path)? {
-        let noise = NoiseVariance::PerSample(open(path, None)?);
+        let opened = open_as(path, None, None)?;
+        let bands = opened.found.rising_bands(order);
+        let noise = NoiseVariance::PerSample(opened.cube.with_bands(bands)?);
         noise.check(shape).map_err(|error| error.in_file(path))?;
         return Ok(noise);
     }
@@ -169,14 +172,14 @@ mod tests {
         let path = folder.path().join("noise");
         let shape = Shape::new(2, 1, 2).unwrap();
         write_npy(&path, shape, &[1.0_f32, 2.0, 3.0, 4.0]).unwrap();
-        assert!(matches!(noise_variance(&path, shape).unwrap(), NoiseVariance::PerSample(_)));
-        let error = noise_variance(&path, Shape::new(2, 2, 2).unwrap()).unwrap_err().to_string();
+        assert!(matches!(noise_variance(&path, shape, None).unwrap(), NoiseVariance::PerSample(_)));
+        let error = noise_variance(&path, Shape::new(2, 2, 2).unwrap(), None).unwrap_err().to_string();
         assert!(error.contains("2 x 1 x 2 samples, the cube has 2 x 2 x 2"), "{error}");
         std::fs::write(&path, "variance_counts2\n1\n2\n").unwrap();
-        assert!(matches!(noise_variance(&path, shape).unwrap(), NoiseVariance::PerBand(_)));
-        let missing = noise_variance(&folder.path().join("none"), shape).unwrap_err().to_string();
+        assert!(matches!(noise_variance(&path, shape, None).unwrap(), NoiseVariance::PerBand(_)));
+        let missing = noise_variance(&folder.path().join("none"), shape, None).unwrap_err().to_string();
         assert!(missing.contains("there is no such file"), "{missing}");
-        let directory = noise_variance(folder.path(), shape).unwrap_err().to_string();
+        let directory = noise_variance(folder.path(), shape, None).unwrap_err().to_string();
         assert!(directory.contains("this is a directory"), "{directory}");
     }
 }

@@ -7,13 +7,16 @@ pub use figures::scene;
 
 use crate::bundle::Bundle;
 use crate::cube_format::CubeFormat;
-use crate::table::{Table, optional};
+use crate::table::{Column, Table, optional};
 use hadar::error::Result;
+use hadar::order;
+use hadar::spectrum::{Band, Bands};
+use hadar::units::Spectral;
 use hadar_formats::cube::{mat_file, npy_map};
-use hadar_scenario::DecomposeScenario;
 use hadar_scenario::decompose::{
     Bad, CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
+use hadar_scenario::{BandSource, BandsSpec, DecomposeScenario, Filters};
 use hadar_study::render::{Picture, Rendered};
 use std::path::PathBuf;
 
@@ -64,6 +67,14 @@ pub fn bundle(result: &Rendered, layout: Layout, format: CubeFormat) -> Result<B
             Layout::Npy => npy(&mut bundle, result, view, (prefix, format))?,
             Layout::Hadar => database(&mut bundle, result, view, side)?,
         }
+    }
+    if matches!(result.scenario.bands.source, BandSource::Rows(_)) {
+        let rows = result.bands.bands();
+        let columns: [Column<'_, Band>; 2] = [
+            ("wavenumber_cm1", &|band| band.center_cm1.to_string()),
+            ("width_cm1", &|band| (band.high_cm1 - band.low_cm1).to_string()),
+        ];
+        bundle.add_table(BANDS, Table::of(rows, &columns))?;
     }
     bundle.add("decompose.toml", decomposition(result, layout, format).to_toml());
     bundle.add_plots(&[figures::scene(result)])?;
@@ -149,7 +160,10 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat) -> Decom
             bad_pixels: None,
             bad: Bad::default(),
         },
-        bands: Some(result.scenario.bands.clone()),
+        bands: Some(BandsSpec {
+            source: rising(&result.scenario.bands.source, &result.bands),
+            ..result.scenario.bands.clone()
+        }),
         camera: Some(result.scenario.camera.clone()),
         atmosphere: None,
         environment: result
@@ -187,6 +201,28 @@ fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat) -> Decom
         segmentation: Default::default(),
         // Files of its camera and bands are those of this scenario.
         source: result.scenario.source.clone(),
+    }
+}
+
+/// The table of bands that a scenario of bands in a file has in its place.
+const BANDS: &str = "bands.csv";
+
+/// The same bands in rising wavenumber, as the cube has them, which a list says.
+fn rising(asked: &BandSource, bands: &Bands) -> BandSource {
+    match asked {
+        BandSource::Unsaid | BandSource::Grid { .. } => asked.clone(),
+        BandSource::Rows(_) => BandSource::Rows(PathBuf::from(BANDS)),
+        BandSource::Filters(filters) => {
+            let names = bands.bands().iter().filter_map(|band| band.name.clone()).collect();
+            BandSource::Filters(Filters { names: Some(names), ..filters.clone() })
+        }
+        BandSource::Ranges(ranges) => {
+            let mut ranges = ranges.clone();
+            let ends = |[a, b]: &[Spectral; 2]| (a.wavenumber_cm1(), b.wavenumber_cm1());
+            order::ascending(&mut ranges, |range| ends(range).0.max(ends(range).1));
+            order::ascending(&mut ranges, |range| ends(range).0.min(ends(range).1));
+            BandSource::Ranges(ranges)
+        }
     }
 }
 

@@ -176,18 +176,6 @@ impl BandSource {
     }
 }
 
-impl BandSource {
-    /// Whether bands are written by their wavelengths, of which the first may be meant as that of the cube.
-    pub fn is_in_wavelength(&self) -> bool {
-        let wavelength = |value: &Spectral| matches!(value, Spectral::Wavelength(_));
-        match self {
-            Self::Grid { start, .. } => wavelength(start),
-            Self::Ranges(ranges) => ranges.first().is_some_and(|[low, _]| wavelength(low)),
-            Self::Unsaid | Self::Filters(_) | Self::Rows(_) => false,
-        }
-    }
-}
-
 impl BandsSpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
         let section = entry.section()?;

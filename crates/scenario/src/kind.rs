@@ -26,6 +26,8 @@ enum Form {
     Any,
     /// `[[key]]`.
     Tables,
+    /// `[key]` with a key `left`: of two views, which only ranging has.
+    WithLeft,
 }
 
 /// What a file is, by one of the keys of which only it has any; those of an earlier row win.
@@ -55,7 +57,12 @@ const TABLE: &[Row] = &[
     },
     Row {
         kind: Kind::Range,
-        told_by: &[("signal", Form::Any), ("scene", Form::Any), ("cube", Form::Any), ("stereo", Form::Any)],
+        told_by: &[
+            ("signal", Form::Any),
+            ("scene", Form::Any),
+            ("cube", Form::WithLeft),
+            ("stereo", Form::Any),
+        ],
         name: "a ranging scenario",
     },
     Row {
@@ -94,7 +101,12 @@ impl Kind {
                     matches!(value, DeValue::Array(items)
                         if items.iter().any(|item| matches!(item.get_ref(), DeValue::Table(_))))
                 };
-                value.is_some_and(|value| *form == Form::Any || tables(value))
+                let with_left = |value: &DeValue<'_>| matches!(value, DeValue::Table(table) if table.contains_key("left"));
+                value.is_some_and(|value| match form {
+                    Form::Any => true,
+                    Form::Tables => tables(value),
+                    Form::WithLeft => with_left(value),
+                })
             };
             row.told_by.iter().find(is_there).map(|(key, _)| (row, *key))
         };

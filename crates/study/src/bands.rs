@@ -2,6 +2,7 @@
 
 use hadar::error::{Error, Result};
 use hadar::instrument::{Camera, catalogue};
+use hadar::order;
 use hadar::spectrum::{Band, Bands, FilterCurve};
 use hadar::units::Spectral;
 use hadar_scenario::{BandSource, FilterList, FilterPlace, Filters, Scenario, Source};
@@ -28,6 +29,40 @@ pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
         }
     };
     made.map_err(|error| error.at(source.place("bands")))
+}
+
+/// Which place in the list that states them each of the bands has, in rising wavenumber; none of a grid, which is no list.
+pub(super) fn as_listed(spec: &BandSource) -> Result<Option<Vec<usize>>> {
+    let by = |numbers: &[f64]| {
+        let mut places: Vec<usize> = (0..numbers.len()).collect();
+        order::ascending(&mut places, |place| numbers.get(*place).copied().unwrap_or(f64::NAN));
+        Some(places)
+    };
+    Ok(match spec {
+        BandSource::Unsaid | BandSource::Grid { .. } => None,
+        BandSource::Rows(path) => by(&hadar_formats::listed_bands(path)?.1),
+        BandSource::Filters(filters) => {
+            let curves = curves(&filters.list)?;
+            let low = |name: &str| {
+                let found = curves.iter().find(|curve| curve.name() == name);
+                found.map_or(f64::NAN, |curve| curve.range_cm1().0)
+            };
+            match &filters.names {
+                Some(names) => by(&names.iter().map(|name| low(name)).collect::<Vec<_>>()),
+                None => by(&curves.iter().map(|curve| curve.range_cm1().0).collect::<Vec<_>>()),
+            }
+        }
+        BandSource::Ranges(ranges) => {
+            let edges = |[a, b]: &[Spectral; 2]| (a.wavenumber_cm1(), b.wavenumber_cm1());
+            let edges: Vec<(f64, f64)> =
+                ranges.iter().map(edges).map(|(a, b)| (a.min(b), a.max(b))).collect();
+            let mut places: Vec<usize> = (0..edges.len()).collect();
+            // Ranges that begin alike stand by their ends.
+            order::ascending(&mut places, |place| edges.get(*place).map_or(f64::NAN, |edges| edges.1));
+            order::ascending(&mut places, |place| edges.get(*place).map_or(f64::NAN, |edges| edges.0));
+            Some(places)
+        }
+    })
 }
 
 /// The same as a camera sees them: filters before its sensor in the cone of light of its lens, `sine` that of the angle of its rim.

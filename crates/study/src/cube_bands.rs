@@ -4,19 +4,25 @@
 //! band of [bands], off it by no more than half that band's width; the others are absent, missing in every pixel.
 //!
 //! Bands are always counted in rising wavenumber here. A file that says its bands may have them in any order, as one of rising
-//! wavelength has; it is put right. Of a file that says nothing, that order is expected.
+//! wavelength has; it is put right. The bands of a file that says nothing are in the order of the list in [bands], rows, filters or
+//! ranges; beside a grid they rise in wavenumber.
 
-use crate::Warning;
+use crate::{Warning, bands};
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
-use hadar::order;
 use hadar::spectrum::Bands;
+use hadar::units::Spectral;
 use hadar::words::significant;
 use hadar_formats::cube::{Axes, Found, Opened};
+use hadar_scenario::BandSource;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 /// Neighbouring distances of bands that differ by more than this factor are no widths.
 const UNEVEN: f64 = 1.4;
+
+/// Bands of any thermal camera, 0.5 to 500 µm, cm⁻¹: a unit that is off by 1000 leaves them.
+const BANDS_CM1: RangeInclusive<f64> = 20.0..=2e4;
 
 /// A cube with its bands in rising wavenumber.
 #[derive(Debug)]
@@ -27,14 +33,43 @@ pub(super) struct InOrder {
     pub(super) order: Vec<Option<usize>>,
 }
 
+/// The order in which [bands] state their bands.
+#[derive(Debug)]
+pub(super) struct Stated {
+    /// Which place in its list each band has, in rising wavenumber; none of a grid.
+    pub(super) listed: Option<Vec<usize>>,
+    /// Whether they begin with the shortest wavelength, as the bands of a cube may.
+    begins_short: bool,
+}
+
+impl Stated {
+    pub(super) fn of(asked: &BandSource) -> Result<Self> {
+        let listed = bands::as_listed(asked)?;
+        let rises = |places: &Vec<usize>| places.windows(2).all(|pair| pair[0] < pair[1]);
+        let begins_short = match &listed {
+            Some(places) => !rises(places),
+            None => matches!(asked, BandSource::Grid { start: Spectral::Wavelength(_), .. }),
+        };
+        Ok(Self { listed, begins_short })
+    }
+
+    /// What is not sure of the bands of a file that does not state them.
+    pub(super) fn warning(&self, found: &Found) -> Option<Warning> {
+        let doubt = self.begins_short && found.centres_cm1.is_none() && found.shape.bands() > 1;
+        doubt.then_some(Warning::BandOrderTaken { listed: self.listed.is_some() })
+    }
+}
+
 impl InOrder {
-    pub(super) fn open(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Result<Self> {
+    /// `listed`: which place in its list each band has, in rising wavenumber.
+    pub(super) fn open(
+        path: &Path,
+        variable: Option<&str>,
+        axes: Option<Axes>,
+        listed: Option<&[usize]>,
+    ) -> Result<Self> {
         let Opened { cube, found } = hadar_formats::cube::open_as(path, variable, axes)?;
-        let mut order: Vec<usize> = (0..cube.shape().bands()).collect();
-        if let Some(centres) = &found.centres_cm1 {
-            let centre = |band: &usize| centres.get(*band).copied().unwrap_or(f64::NAN);
-            order::ascending(&mut order, centre);
-        }
+        let order = found.rising_bands(listed);
         let cube = cube.with_bands(order.clone())?;
         Ok(Self { cube, found, order: order.into_iter().map(Some).collect() })
     }
@@ -137,8 +172,20 @@ impl InOrder {
     /// The bands as the file says them.
     ///
     /// # Errors
-    /// A file that does not, bands that are there twice.
-    pub(super) fn bands(&self) -> Result<Bands> {
+    /// A file that does not, bands that are there twice or that no thermal camera has.
+    pub(super) fn bands(&self, path: &Path) -> Result<Bands> {
+        let centres = self.found.centres_cm1.iter().flatten();
+        if let Some(band) = centres.clone().position(|nu| !BANDS_CM1.contains(nu)) {
+            let centre_cm1 = centres.clone().nth(band).copied().unwrap_or(f64::NAN);
+            let found = format!(
+                "band {band} of the cube is at {} um by its file, where nothing is seen by heat",
+                significant(1e4 / centre_cm1, 3)
+            );
+            return Err(Error::malformed(
+                found,
+                "mend the unit of the wavelengths in the file, or write [bands]",
+            ));
+        }
         match (&self.found.centres_cm1, &self.found.widths_cm1) {
             (Some(centres), Some(widths)) => {
                 Bands::from_rows(centres.iter().copied().zip(widths.iter().copied()))

@@ -9,7 +9,7 @@ pub(super) use self::lights::{columns, sent, spectrum};
 pub(super) use self::said::Said;
 use self::scale::{Scale, noise_of_left_out};
 use super::cube_bad::{self, BadBand, BadFound};
-use super::cube_bands::{InOrder, axes_in_doubt};
+use super::cube_bands::{InOrder, Stated, axes_in_doubt};
 use super::cube_noise::{NoiseOfBands, of_bands};
 use super::cube_unit::{self, check_light};
 use super::cube_without::without;
@@ -24,7 +24,6 @@ use hadar::planck;
 use hadar::spectrum::Bands;
 use hadar_estimate::decompose::Light;
 use hadar_formats::cube::Found;
-use hadar_scenario::BandSource;
 use hadar_scenario::decompose::{Bad, CubeNoise, CubeUnit};
 
 /// A cube that is open, and what its samples are.
@@ -138,27 +137,26 @@ impl Said<'_> {
             return Err(at("bands.integrate")(Error::malformed(found, instead)));
         }
         let (path, variable) = (&self.cube.data, self.cube.variable.as_deref());
-        let opened = InOrder::open(path, variable, self.cube.axes).map_err(at("cube.data"))?;
-        let (asked, mut bands) = match self.bands {
-            Some(spec) => {
-                let asked = camera_bands::asked(&spec.source, camera.zip(self.camera));
-                let bands = bands::at_centres(&asked, self.source)?;
-                (asked, bands)
-            }
-            None => (BandSource::Rows(path.clone()), opened.bands().map_err(at("bands"))?),
+        let asked = self.bands.map(|spec| camera_bands::asked(&spec.source, camera.zip(self.camera)));
+        let said = asked.as_ref().map(|asked| bands::at_centres(asked, self.source)).transpose()?;
+        let stated = asked.as_ref().map(Stated::of).transpose().map_err(at("bands"))?;
+        let listed = stated.as_ref().and_then(|stated| stated.listed.as_deref());
+        let opened = InOrder::open(path, variable, self.cube.axes, listed);
+        let opened = opened.map_err(at("cube.data"))?;
+        let mut bands = match said {
+            Some(bands) => bands,
+            None => opened.bands(path).map_err(at("bands"))?,
         };
         let opened =
             check_light(&opened.found).and_then(|()| opened.among(&bands)).map_err(at("cube.data"))?;
         let doubt = axes_in_doubt(&opened.found, self.bands.map(|_| &bands));
         let mut warnings: Vec<Warning> = doubt.into_iter().collect();
-        if asked.is_in_wavelength() && opened.found.centres_cm1.is_none() && bands.len() > 1 {
-            warnings.push(Warning::BandOrderTaken);
-        }
+        warnings.extend(stated.and_then(|stated| stated.warning(&opened.found)));
         if opened.found.axis_without_unit {
             warnings.push(Warning::WavelengthsUnused);
         }
-        if let (Some(camera), Some(spec)) = (camera, self.camera) {
-            camera_bands::check(camera, spec, &asked, &bands, &|key| self.source.place(key))?;
+        if let (Some(camera), Some(spec), Some(asked)) = (camera, self.camera, &asked) {
+            camera_bands::check(camera, spec, asked, &bands, &|key| self.source.place(key))?;
             bands = camera.received(&bands);
         }
         Ok((opened, bands, warnings))

@@ -188,6 +188,57 @@ fn axes_are_as_the_scenario_says() {
     );
 }
 
+/// Whatever order a list of bands has, a file that does not say its bands has the same: the answer is that of rising wavenumber.
+#[test]
+fn a_list_of_bands_is_in_the_order_of_the_file() {
+    let folder = with(SCENARIO);
+    let counts = counts(&folder);
+    let warned = |found: &serde_json::Value| {
+        found["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "band-order-taken")
+    };
+    let whole = folder.json(&["decompose", "a.toml"]);
+    assert!(!warned(&whole));
+    let shape = Shape::new(2, 3, 21).unwrap();
+    for step in [1, 20, 2, 5, 13] {
+        // A permutation of 21 bands: 20 turns them round.
+        let order: Vec<usize> = (0..21).map(|band| (band * step + step / 20 * 20) % 21).collect();
+        let of_order: Vec<f64> = (0..6)
+            .flat_map(|pixel| order.iter().map(move |band| (pixel, *band)))
+            .map(|(p, b)| counts[p * 21 + b])
+            .collect();
+        write_npy(&folder.path().join("turned.npy"), shape, &of_order).unwrap();
+        let rows: String = order.iter().map(|band| format!("{}\n", 800 + 20 * band)).collect();
+        folder.file("bands.csv", &format!("wavenumber_cm1\n{rows}"));
+        let text =
+            SCENARIO.replace("counts.npy", "turned.npy").replace(BANDS, "[bands]\nrows = \"bands.csv\"\n");
+        folder.file("b.toml", &text);
+        let found = folder.json(&["decompose", "b.toml"]);
+        assert_eq!(rmse(&found), rmse(&whole), "{order:?}");
+        assert_eq!(warned(&found), step != 1, "{order:?}");
+        // Another order of the list is another cube.
+        folder.file(
+            "bands.csv",
+            &format!("wavenumber_cm1\n{}", rows.lines().rev().collect::<Vec<_>>().join("\n")),
+        );
+        let other = folder.json(&["decompose", "b.toml"]);
+        assert!(other["truth"]["temperature_rmse_k"].as_f64().unwrap() > 0.1, "{other}");
+    }
+}
+
+/// A unit that is off by a thousand is told by the file that has it, not by the spectrum that does not reach there.
+#[test]
+fn bands_that_nobody_has_are_refused_by_their_file() {
+    let folder = with(&SCENARIO.replace("counts.npy", "scene.hdr").replace(BANDS, ""));
+    envi(&folder, "", |_, _, count| count);
+    let header = fs::read_to_string(folder.path().join("scene.hdr")).unwrap();
+    folder.file("scene.hdr", &header.replace("Micrometers", "Nanometers"));
+    let refused = folder.refusal(&["decompose", "a.toml"]);
+    assert!(
+        refused.contains("scene.hdr: bands: band 0 of the cube is at 0.00833 um by its file"),
+        "{refused}"
+    );
+}
+
 /// Bands as wavelengths of a file that says none, and a first axis that may be the bands: nothing is refused, both are said.
 #[test]
 fn what_cannot_be_known_is_warned_of() {

@@ -2,6 +2,7 @@
 
 use super::Axes;
 use hadar::cube::{Cube, Shape};
+use hadar::order;
 use serde::Serialize;
 use std::fmt;
 
@@ -101,6 +102,22 @@ impl Found {
             ([], []) => Some(largest),
             _ => None,
         }
+    }
+
+    /// Bands of the file in rising wavenumber: by the centres that it states, else as `listed` has them, else as they are.
+    #[must_use]
+    pub fn rising_bands(&self, listed: Option<&[usize]>) -> Vec<usize> {
+        let bands = self.shape.bands();
+        let mut order: Vec<usize> = (0..bands).collect();
+        match (&self.centres_cm1, listed) {
+            (Some(centres), _) => {
+                order::ascending(&mut order, |band| centres.get(*band).copied().unwrap_or(f64::NAN));
+            }
+            // Of another length it is refused where the bands are counted.
+            (None, Some(listed)) if listed.len() == bands => order = listed.to_vec(),
+            (None, _) => {}
+        }
+        order
     }
 
     /// The axes by which the array has so many bands, where one of its sides alone is so long.

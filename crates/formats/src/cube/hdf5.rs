@@ -7,6 +7,7 @@
 
 mod array;
 mod dimensions;
+mod links;
 mod packed;
 mod sound;
 mod source;

@@ -5,7 +5,7 @@ use super::scene_radiance::{DEAD, SceneFound, Spectrometer, beyond};
 use super::stated::{taken_as_black, uncertainty_not_stated};
 use super::whole::{at, means};
 use crate::cube_bad::BadBand;
-use crate::cube_bands::InOrder;
+use crate::cube_bands::{InOrder, Stated};
 use crate::{Warning, bands};
 use hadar::calibration::blackbody::{Blackbodies, Parts};
 use hadar::calibration::sent::Deviations;
@@ -41,6 +41,7 @@ pub struct BlackbodyStudy {
     /// Of all bands, those left out among them.
     centres_cm1: Vec<f64>,
     left_out: LeftOut,
+    order_taken: Option<Warning>,
     cubes: Vec<Cube>,
     scene: Option<Cube>,
 }
@@ -123,12 +124,15 @@ impl BlackbodyStudy {
             let instead = "write start, stop and step, or rows; filters are for hadar calibrate response";
             return Err(at(source, "bands")(Error::malformed(found, instead)));
         }
-        let (mut named, mut absent) = (Vec::new(), Vec::new());
+        let stated = Stated::of(&scenario.bands.source).map_err(at(source, "bands"))?;
+        let (mut named, mut absent, mut order_taken) = (Vec::new(), Vec::new(), None);
         let mut opened = |file: &CubeFile, key: &str| -> Result<Cube> {
-            let opened = InOrder::open(&file.path, file.variable.as_deref(), file.axes)
-                .and_then(|opened| opened.among(&bands))
-                .map_err(at(source, &format!("{key}.data")))?;
+            let opened =
+                InOrder::open(&file.path, file.variable.as_deref(), file.axes, stated.listed.as_deref())
+                    .and_then(|opened| opened.among(&bands))
+                    .map_err(at(source, &format!("{key}.data")))?;
             absent.extend(opened.absent());
+            order_taken = order_taken.take().or_else(|| stated.warning(&opened.found));
             named.extend(opened.bad_bands(&file.bad_bands).map_err(at(source, &format!("{key}.bad_bands")))?);
             Ok(opened.cube)
         };
@@ -151,6 +155,7 @@ impl BlackbodyStudy {
                 .collect(),
             centres_cm1: bands.nodes_cm1().to_vec(),
             left_out,
+            order_taken,
             scenario: scenario.clone(),
         })
     }
@@ -164,6 +169,7 @@ impl BlackbodyStudy {
         let nu = &self.wavenumbers_cm1;
         let (mut counts, mut sigma, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
         let mut samples = 0;
+        warnings.extend(self.order_taken.iter().cloned());
         warnings.extend(self.left_out.warnings());
         for (k, cube) in self.cubes.iter().enumerate() {
             let (mean, scatter) = means(cube).map_err(at(source, &format!("blackbody[{k}].data")))?;

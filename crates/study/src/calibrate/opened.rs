@@ -27,7 +27,7 @@ impl Measured {
         let many = frames.data.len() > 1;
         let open = |(i, path): (usize, &std::path::PathBuf)| {
             let key = if many { format!("cube.data[{i}]") } else { "cube.data".to_owned() };
-            let opened = InOrder::open(path, frames.variable.as_deref(), frames.axes);
+            let opened = InOrder::open(path, frames.variable.as_deref(), frames.axes, None);
             opened.map_err(|error| match (&error, &source.path) {
                 (Error::At { place, .. }, Some(_)) if place.path.is_some() => error.for_key(key),
                 (_, Some(_)) => error.at(source.place(&key)),

@@ -3,7 +3,7 @@
 use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use super::watched::Watch;
-use crate::cube_bands::{InOrder, axes_in_doubt};
+use crate::cube_bands::{InOrder, Stated, axes_in_doubt};
 use crate::cube_outliers::Picture;
 use crate::cube_unit::check_counts;
 use crate::cube_without::without;
@@ -115,10 +115,13 @@ fn cube(
             _ => error.at(scenario.place(key)),
         }
     };
+    let asked = scenario.bands.as_ref().map(|spec| &spec.source);
+    let stated = asked.map(Stated::of).transpose().map_err(at("bands"))?;
+    let listed = stated.as_ref().and_then(|stated| stated.listed.as_deref());
     let by_band = bands.filter(|_| spec.noise.is_none() && camera.is_some());
     let open = |key: &'static str, path: &std::path::Path| {
         let variable = spec.variable.as_deref();
-        let opened = InOrder::open(path, variable, spec.axes).and_then(|opened| {
+        let opened = InOrder::open(path, variable, spec.axes, listed).and_then(|opened| {
             by_band.map_or(Ok(()), |bands| opened.check(bands))?;
             check_counts(&opened.found, spec.photons_per_unit.is_some())?;
             Ok(Opened { cube: opened.cube, found: opened.found })
@@ -126,7 +129,8 @@ fn cube(
         opened.map_err(at(key))
     };
     let Opened { cube: left, found: read } = open("cube.left", &spec.left)?;
-    let warnings = axes_in_doubt(&read, bands).into_iter().collect();
+    let order_taken = stated.as_ref().filter(|_| by_band.is_some()).and_then(|stated| stated.warning(&read));
+    let warnings = axes_in_doubt(&read, bands).into_iter().chain(order_taken).collect();
     let shape = left.shape();
     let right = spec.right.as_deref().map(|path| open("cube.right", path)).transpose()?;
     let right = right.map(|opened| opened.cube);
@@ -152,7 +156,8 @@ fn cube(
         (Some(NoiseSource::Uniform(0.0)), _) => NoiseVariance::None,
         (Some(NoiseSource::Uniform(var)), _) => NoiseVariance::Uniform(*var),
         (Some(NoiseSource::File(path)), _) => {
-            hadar_formats::noise_variance(path, shape).map_err(at("cube.noise_variance"))?
+            hadar_formats::noise_variance(path, shape, Some(&read.rising_bands(listed)))
+                .map_err(at("cube.noise_variance"))?
         }
         (None, Some(camera)) => {
             let Some(bands) = bands else {

@@ -82,8 +82,8 @@ warnings! {
     AxesInDoubt { rows: usize, columns: usize, bands: usize } = "axes-in-doubt";
     /// A cube whose samples are in another unit by its file than by the scenario.
     UnitConverted { file: String, scenario: String, of_mean: f64 } = "unit-converted";
-    /// Bands said as wavelengths, of a cube whose file does not say their order.
-    BandOrderTaken = "band-order-taken";
+    /// Bands that begin with the shortest wavelength, of a cube whose file does not say their order; and whether they are a list, which says it.
+    BandOrderTaken { listed: bool } = "band-order-taken";
     /// The file of a cube lists wavelengths without a unit.
     WavelengthsUnused = "wavelengths-unused";
     /// Pixels that are 0 in all bands, of so many that were looked at.

@@ -4,6 +4,7 @@
 //! would go beyond the end, and no step of the work reads more than some times the file: what is kept of each byte is bounded, so
 //! that is, too.
 
+use super::links::without_soft;
 use crate::cube::raw::read_at;
 use hdf5_pure::{Chunk, Dataset, FormatError, Layout, Source};
 use std::cell::Cell;
@@ -45,6 +46,11 @@ impl Source for Bounded {
         }
         let failed = |error: std::io::Error| FormatError::Source(error.to_string());
         read_at(&self.file, &self.path, bytes, offset).map_err(failed)
+    }
+
+    fn read_metadata_at(&self, offset: u64, len: usize) -> Result<Vec<u8>, FormatError> {
+        let bytes = self.read_exact_at(offset, len)?;
+        without_soft(bytes, len, |len| self.read_exact_at(offset, len))
     }
 }
 

@@ -22,11 +22,11 @@ words! {
         ),
     }
     BandOrderTaken {
-        meaning: "Bands are stated as wavelengths, and the file of the cube does not say in which order it \
-            has them.",
-        remedy: "Write the cube with its wavelengths, as an ENVI file, or turn its bands round if they \
-            begin with the shortest.",
-        BandOrderTaken => "the bands are written as wavelengths, but the cube's file does not say them: its first band was taken as that of the \
+        meaning: "The file of a cube does not say in which order it has its bands, and [bands] do not begin with the smallest wavenumber. A list (rows, filters, \
+            ranges) was taken to be in the order of the file; beside a grid the file's bands were taken in rising wavenumber.",
+        remedy: "Write the cube with its wavelengths, as an ENVI file, or put the list, or the bands, into that order.",
+        BandOrderTaken { listed: true } => "the cube's file does not say where its bands are: they were taken in the order in which [bands] list them",
+        BandOrderTaken { .. } => "the bands are written as wavelengths, but the cube's file does not say them: its first band was taken as that of the \
              longest wavelength",
     }
     WavelengthsUnused {
