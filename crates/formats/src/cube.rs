@@ -1,25 +1,35 @@
-//! Heat cubes from files and to files: NPY, NPZ, ENVI, MATLAB, HDF5 and NetCDF-4.
+//! Heat cubes from files and to files: NPY, NPZ, ENVI, MATLAB, HDF5, NetCDF, Zarr, FITS, TIFF and radiometric files of cameras.
 //!
 //! From a file: [`open`], or [`open_as`], which says what the file was read as; to one: [`write_npy`], or by rows [`NpyRows`],
 //! [`envi_files`] and [`mat_file`]. A cube that is not packed is left in its file and read by rows where they are asked for.
 
 mod arrange;
+mod attributes;
 mod axes;
 mod band_list;
 mod blocks;
+mod choice;
 mod envi;
+mod fits;
+mod flir;
 mod found;
+mod geotiff;
 #[cfg(feature = "hdf5")]
 mod hdf5;
+mod image;
 mod mat;
+mod netcdf3;
 mod npy;
 mod npy_rows;
 mod npz;
 mod open;
+mod packed;
 mod raw;
 mod sample_unit;
 mod stored;
+mod telops;
 mod values;
+mod zarr;
 
 pub use axes::Axes;
 pub use envi::{EnviBands, envi_files};
@@ -30,6 +40,7 @@ pub use npy_rows::NpyRows;
 pub(crate) use open::is_cube;
 pub use open::{open, open_as};
 pub use sample_unit::SampleUnit;
+pub use zarr::is_one as is_zarr;
 
 /// What opening a cube is called in messages.
 const READ_CUBE: &str = "read the cube";

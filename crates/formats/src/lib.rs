@@ -1,6 +1,7 @@
 //! Files to values: what `hadar` computes with, read from the files of a user.
 //!
-//! * [`cube`]: heat cubes, NPY, NPZ, ENVI, MATLAB, HDF5 and NetCDF-4 (feature `hdf5`, which is a default);
+//! * [`cube`]: heat cubes, NPY, NPZ, ENVI, MATLAB, FITS, TIFF, Zarr, NetCDF, radiometric files of cameras, HDF5 and NetCDF-4 (feature `hdf5`,
+//!   which is a default);
 //! * [`spectra`]: emissivities, in CSV and other text, ECOSTRESS, JCAMP-DX and ENVI files; [`ReadLibrary`] adds those of a file, a
 //!   folder or a manifest to a library, [`members`] reads those of a class;
 //! * [`bands`] and [`filters`]: where a camera's bands are, and what its filters transmit;
@@ -18,6 +19,7 @@ mod bands;
 pub mod cube;
 pub mod envi_header;
 pub mod file;
+mod foreign;
 pub mod hash;
 mod library;
 mod members;

@@ -90,8 +90,10 @@ pub(super) fn axes(section: &Section<'_>) -> Result<Option<Axes>> {
 }
 
 /// Endings of files that hold a cube and nothing else.
-pub(super) const CUBES: [&str; 13] =
-    ["npy", "npz", "mat", "hdr", "img", "dat", "bsq", "bil", "bip", "h5", "hdf5", "nc", "nc4"];
+pub(super) const CUBES: [&str; 26] = [
+    "npy", "npz", "mat", "hdr", "img", "dat", "bsq", "bil", "bip", "h5", "hdf5", "nc", "nc4", "cdf", "zarr",
+    "fits", "fit", "fts", "tif", "tiff", "jpg", "jpeg", "fff", "seq", "csq", "hcc",
+];
 
 /// Whether a path names a cube by its ending.
 pub(super) fn is_cube(path: &Path) -> bool {

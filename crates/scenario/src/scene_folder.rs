@@ -11,6 +11,7 @@ use super::decompose::TruthSpec;
 use super::paths::file;
 use super::section::Entry;
 use hadar::error::{Error, Result};
+use hadar_formats::cube::is_zarr;
 use std::path::{Path, PathBuf};
 
 const CUBES: &str = "HeatCubes";
@@ -21,7 +22,7 @@ const NAMED: usize = 4;
 /// A path to a cube; of a folder the cube in it whose name begins so, or the only one.
 pub(super) fn cube_file(entry: &Entry<'_>, side: &str) -> Result<PathBuf> {
     let path = file(entry)?;
-    if !path.is_dir() {
+    if !path.is_dir() || is_zarr(&path) {
         return Ok(path);
     }
     of_folder(&path, side).map_err(|error| entry.fail(error))

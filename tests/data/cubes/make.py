@@ -1,14 +1,21 @@
-"""Small cubes as other programs write them: numpy, spectral, scipy, h5py, netCDF4.
+"""Small cubes as other programs write them: numpy, spectral, scipy, h5py, netCDF4, astropy, tifffile, zarr, fasthcc.
 
 A sample is 100 row + 10 column + band (for signed bytes 120 less) of 3 rows, 4 columns, 5 bands, unless a line says otherwise.
 Run in this folder: python make.py
 """
 
+import struct
+
+import fasthcc
 import h5py
 import netCDF4
+import numcodecs
 import numpy as np
 import scipy.io
 import spectral.io.envi as envi
+import tifffile
+import zarr
+from astropy.io import fits
 
 ROWS, COLUMNS, BANDS = 3, 4, 5
 r, c, b = np.meshgrid(np.arange(ROWS), np.arange(COLUMNS), np.arange(BANDS), indexing="ij")
@@ -172,3 +179,150 @@ with netCDF4.Dataset("netcdf_dimensions.nc", "w") as f:
     square.createDimension("bands", 4)
     square.createDimension("columns", 7)
     square.createVariable("s", "f4", ("bands", "side_a", "columns"))[:] = np.ones((4, 4, 7))
+
+# A group of the older kind with a soft link, and one of the newer
+for name, libver in [("h5py_links.h5", "earliest"), ("h5py_links_new.h5", "latest")]:
+    with h5py.File(name, "w", libver=libver) as f:
+        f["radiance"] = CUBE.astype("<f4")
+        f["wavelength"] = LISTED_UM
+        f["wavelength"].attrs["units"] = "um"
+        f["alias"] = h5py.SoftLink("/radiance")
+        f["away"] = h5py.ExternalLink("other.h5", "/radiance")
+# Wavelengths in a group of their own, with widths and the list of good bands
+with netCDF4.Dataset("netcdf_group.nc", "w") as f:
+    for name, size in [("downtrack", ROWS), ("crosstrack", COLUMNS), ("bands", BANDS)]:
+        f.createDimension(name, size)
+    f.createVariable("radiance", "f4", ("downtrack", "crosstrack", "bands"))[:] = CUBE
+    group = f.createGroup("sensor_band_parameters")
+    for name, values, unit in [
+        ("wavelengths", 1000 * LISTED_UM, "nm"),
+        ("fwhm", np.full(BANDS, 50.0), "nm"),
+        ("good_wavelengths", [1, 1, 0, 1, 1], "1"),
+    ]:
+        v = group.createVariable(name, "f4", ("bands",))
+        v.units = unit
+        v[:] = values
+
+# Classic NetCDF: fixed variables and records, in turns with others and alone
+for kind in ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"]:
+    with netCDF4.Dataset(kind.lower() + ".nc", "w", format=kind) as f:
+        for name, size in [("wavelength", BANDS), ("y", None), ("x", COLUMNS), ("row", ROWS)]:
+            f.createDimension(name, size)
+        axis = f.createVariable("wavelength", "f8", ("wavelength",))
+        axis.units = "um"
+        axis[:] = LISTED_UM
+        v = f.createVariable("fixed", "i2", ("wavelength", "row", "x"), fill_value=-1)
+        v.scale_factor, v.add_offset, v.units = 0.5, -3.0, "W m-2 sr-1 um-1"
+        data = np.ma.array(IMAGES)
+        data[3, 1, 2] = np.ma.masked
+        v[:] = data
+        f.createVariable("records", "f4", ("y", "x", "wavelength"))[:] = CUBE
+        f.createVariable("odd", "i1", ("y", "x"))[:] = np.arange(ROWS * COLUMNS).reshape(ROWS, COLUMNS)
+with scipy.io.netcdf_file("scipy_records.nc", "w") as f:
+    for name, size in [("y", None), ("x", COLUMNS), ("band", BANDS)]:
+        f.createDimension(name, size)
+    f.createVariable("cube", "i2", ("y", "x", "band"))[:] = CUBE
+
+# astropy: FITS
+header = fits.Header()
+header["CTYPE3"], header["CUNIT3"], header["BUNIT"] = "WAVE", "um", "W m-2 sr-1 um-1"
+header["CRVAL3"], header["CRPIX3"], header["CDELT3"] = 8.0, 1.0, 1.0
+fits.writeto("astropy_f4.fits", IMAGES.astype(">f4"), header, overwrite=True)
+fits.writeto("astropy_u2.fits", IMAGES.astype("u2"), overwrite=True)
+spectral_first = fits.Header()
+spectral_first["CTYPE1"], spectral_first["CRVAL1"], spectral_first["CRPIX1"], spectral_first["CD1_1"] = "WAVN", 80000.0, 1.0, 10000.0
+numbers = CUBE.astype("i2")
+numbers[1, 2, 3] = -32768
+hdu = fits.ImageHDU(numbers, spectral_first, name="SCENE")
+hdu.header["BLANK"] = -32768
+fits.HDUList([fits.PrimaryHDU(), hdu, fits.ImageHDU(CUBE[:, :, 0], name="MAP")]).writeto("astropy_extensions.fits", overwrite=True)
+fits.HDUList([fits.PrimaryHDU(), fits.CompImageHDU(IMAGES.astype("i4"))]).writeto("astropy_packed.fits", overwrite=True)
+
+# tifffile: samples and pages, planes, tiles, packed, of either order of bytes
+tifffile.imwrite("tiff_samples.tif", CUBE.astype("f4"), photometric="minisblack", planarconfig="contig")
+tifffile.imwrite("tiff_planes.tif", IMAGES.astype("u2"), photometric="minisblack", planarconfig="separate", byteorder=">")
+tifffile.imwrite("tiff_pages.tif", IMAGES.astype("f8"), photometric="minisblack", compression="zlib", predictor=False, metadata=None)
+tifffile.imwrite("tiff_big.tif", CUBE.astype("i2"), bigtiff=True, photometric="minisblack", planarconfig="contig", compression="lzw", tile=(16, 16))
+tifffile.imwrite("tiff_one.tif", CUBE[:, :, 0].astype("u2"), photometric="minisblack")
+tifffile.imwrite("tiff_colours.tif", np.zeros((3, 4, 3), "u1"), photometric="rgb")
+items = "".join(
+    f'<Item name="SCALE" sample="{i}" role="scale">2</Item><Item name="OFFSET" sample="{i}" role="offset">-1</Item>'
+    f'<Item name="UNITTYPE" sample="{i}" role="unittype">W m-2 sr-1 um-1</Item>'
+    f'<Item name="CENTRAL_WAVELENGTH_UM" sample="{i}" domain="IMAGERY">{um}</Item><Item name="FWHM_UM" sample="{i}" domain="IMAGERY">0.5</Item>'
+    for i, um in enumerate(LISTED_UM)
+)
+tifffile.imwrite(
+    "tiff_gdal.tif",
+    ((CUBE + 1) / 2).astype("f4"),
+    photometric="minisblack",
+    planarconfig="contig",
+    extratags=[(42112, "s", 0, f"<GDALMetadata>{items}</GDALMetadata>", True), (42113, "s", 0, "6", True)],
+)
+
+# zarr: both versions, every codec, chunks at the border, one that was never written
+for version, codec, compressors in [
+    (2, "none", None),
+    (2, "blosc", numcodecs.Blosc("lz4", shuffle=1, blocksize=256)),
+    (2, "zstd", numcodecs.Zstd()),
+    (2, "lz4", numcodecs.LZ4()),
+    (2, "zlib", numcodecs.Zlib()),
+    (3, "none", None),
+    (3, "zstd", zarr.codecs.ZstdCodec()),
+    (3, "gzip", zarr.codecs.GzipCodec()),
+    (3, "blosc", zarr.codecs.BloscCodec(cname="zstd", shuffle="shuffle", typesize=4)),
+]:
+    a = zarr.create_array(
+        f"zarr{version}_{codec}.zarr", shape=CUBE.shape, chunks=(2, 4, 4), dtype="f4", compressors=compressors, zarr_format=version, overwrite=True
+    )
+    a[:] = CUBE
+group = zarr.open_group("zarr_group.zarr", mode="w", zarr_format=2)
+cube = group.create_array("radiance", shape=IMAGES.shape, chunks=(5, 2, 4), dtype=">i2", order="F", fill_value=-1, compressors=None)
+cube[:, :2] = IMAGES[:, :2]
+cube.attrs.update({"_ARRAY_DIMENSIONS": ["wavelength", "y", "x"], "units": "W m-2 sr-1 um-1", "scale_factor": 0.5})
+axis = group.create_array("wavelength", shape=(BANDS,), chunks=(BANDS,), dtype="f8", compressors=None)
+axis[:] = LISTED_UM
+axis.attrs.update({"_ARRAY_DIMENSIONS": ["wavelength"], "units": "um"})
+
+# fasthcc: Telops, temperatures and counts of two frames
+HCC = np.array([np.arange(12 * 5).reshape(5, 12), 7 + np.arange(12 * 5).reshape(5, 12)], "u2")
+fasthcc.write_hcc("telops_rt.hcc", HCC, data_offset=273.15, data_exp=-8, calibration_mode=2)
+fasthcc.write_hcc("telops_raw.hcc", HCC[:1], calibration_mode=0)
+
+# FLIR: blocks as ExifTool describes them (its reading of these files is that of the tests), alone, in a row and in a picture
+R1, R2, B, F, O = 17096.453, 0.046642166, 1428.0, 1.0, -342
+READINGS = np.array([[14000, 14100, 14200], [15000, 16000, 17000]], "u2")
+
+
+def block(order, readings, number=0):
+    camera = bytearray(0x470)
+    struct.pack_into(order + "H", camera, 0, 2)
+    struct.pack_into(order + "3f", camera, 0x58, R1, B, F)
+    struct.pack_into(order + "if", camera, 0x308, O, R2)
+    raw = bytearray(32)
+    struct.pack_into(order + "3H", raw, 0, 2, readings.shape[1], readings.shape[0])
+    raw += readings.astype(order + "u2").tobytes()
+    records = [(1, raw), (0x20, camera)]
+    place = 64 + 32 * 3
+    lines, content = b"", b""
+    for kind, record in records:
+        lines += struct.pack(order + "2H6I", kind, 0, 100, 0, place, len(record), 0, 0)[:32].ljust(32, b"\0")
+        content += bytes(record)
+        place += len(record)
+    lines += bytes(32)
+    head = b"FFF\0" + b"make".ljust(16, b"\0") + struct.pack(order + "3I", 101, 64, 3)
+    return head.ljust(64, b"\0") + lines + content
+
+
+little = block("<", READINGS)
+open("flir.fff", "wb").write(little)
+open("flir.seq", "wb").write(little + block("<", READINGS + 100))
+big = block(">", READINGS)
+parts = [big[:500], big[500:]]
+jpeg = b"\xff\xd8"
+# The parts in the wrong order, and something else between.
+for number in (1, 0):
+    content = b"FLIR\0\x01" + bytes([number, 1]) + parts[number]
+    jpeg += b"\xff\xe1" + struct.pack(">H", len(content) + 2) + content
+    jpeg += b"\xff\xe1" + struct.pack(">H", 8) + b"Exif\0\0"
+open("flir.jpg", "wb").write(jpeg + b"\xff\xda\x00\x02\xff\xd9")
+open("picture.jpg", "wb").write(b"\xff\xd8\xff\xe0\x00\x04JF\xff\xda\x00\x02\xff\xd9")

@@ -13,7 +13,6 @@ pub(super) enum Axis {
 }
 
 /// What dimensions are called, in lower case.
-#[cfg(feature = "hdf5")]
 const NAMES: [(Axis, &[&str]); 3] = [
     (
         Axis::Bands,
@@ -105,7 +104,6 @@ impl Axes {
 
     /// Axes from what their dimensions are called, outermost first, each by one name or by several that it may have: one of them
     /// has to be that of the bands; rows come before columns unless their names say otherwise.
-    #[cfg(feature = "hdf5")]
     pub(super) fn of_dimensions(names: [&[String]; 3]) -> Option<Self> {
         let axis = |names: &&[String]| {
             let of = |name: &String| {

@@ -14,12 +14,17 @@ const NAMES: [(&str, &str); 4] = [
     ("wavenumbers", "wavenumber"),
     ("wavenumber", "wavenumber"),
 ];
+/// Lists in µm by the description of the data that call them so (TeX-1500, 'Data format').
+const MICROMETRES: [&str; 2] = ["working_wav", "hsi_wav"];
 /// By how much two lists may differ (relative), which rounding explains.
 const ROUNDED: f64 = 1e-3;
 
 /// Whether an array is called as a list is, and the unit behind its name.
 pub(super) fn unit_of(name: &str) -> Option<Option<SpectralUnit>> {
     let lower = name.to_lowercase();
+    if MICROMETRES.contains(&lower.as_str()) {
+        return Some(Some(SpectralUnit::Micrometre));
+    }
     let (rest, quantity) =
         NAMES.iter().find_map(|(name, quantity)| Some((lower.strip_prefix(name)?, *quantity)))?;
     if rest.is_empty() {
@@ -27,6 +32,31 @@ pub(super) fn unit_of(name: &str) -> Option<Option<SpectralUnit>> {
     }
     // A unit of something else is none.
     SpectralUnit::spelt(rest).map(|unit| Some(unit).filter(|unit| unit.quantity() == quantity))
+}
+
+/// What the spectral axis of a file is called, in lower case.
+pub(super) const AXIS: [&str; 5] = ["wavelength", "wavelengths", "wavenumber", "wavenumbers", "lambda"];
+
+/// Whether an array is called as a spectral axis is.
+pub(super) fn is_axis(name: &str) -> bool {
+    AXIS.contains(&name.to_lowercase().as_str())
+}
+
+/// Centres of bands, cm⁻¹, from their numbers in a unit; none where it is no unit, or a number none of a band.
+pub(super) fn in_unit(unit: &str, numbers: &[f64]) -> Option<Vec<f64>> {
+    let unit = SpectralUnit::spelt(unit)?;
+    let centres: Vec<f64> = numbers.iter().map(|number| unit.wavenumber_cm1(*number)).collect();
+    centres.iter().all(|centre| *centre > 0.0 && centre.is_finite()).then_some(centres)
+}
+
+/// Widths of bands, cm⁻¹, from their centres and widths in a unit; none where one is no width of a band.
+pub(super) fn widths_cm1(unit: SpectralUnit, centres: &[f64], widths: &[f64]) -> Option<Vec<f64>> {
+    let width = |(centre, width): (&f64, &f64)| {
+        let [a, b] = [-0.5, 0.5].map(|half| unit.wavenumber_cm1(centre + half * width));
+        (*width > 0.0 && *width < 2.0 * centre).then(|| (a - b).abs())
+    };
+    let widths: Option<Vec<f64>> = centres.iter().zip(widths).map(width).collect();
+    widths.filter(|widths| widths.iter().all(|width| *width > 0.0 && width.is_finite()))
 }
 
 /// Centres of the bands by lists with their names, cm⁻¹; and whether there are only lists without a unit.

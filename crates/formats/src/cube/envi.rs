@@ -11,6 +11,7 @@ pub use write::{EnviBands, envi_files};
 
 use super::READ_CUBE;
 use super::axes::Axes;
+use super::band_list;
 use super::found::{Found, Opened};
 use super::raw::Raw;
 use super::stored::Stored;
@@ -140,21 +141,15 @@ fn bands(header: &EnviHeader, bands: usize) -> Result<[Option<Vec<f64>>; 2]> {
     positive("wavelength", &centres)?;
     let widths = header.numbers_for("fwhm", bands, "bands")?;
     positive("fwhm", widths.as_deref().unwrap_or_default())?;
-    let width = |(centre, width): (&f64, &f64)| {
-        let [a, b] = [-0.5, 0.5].map(|half| unit.wavenumber_cm1(centre + half * width));
-        (a - b).abs()
-    };
-    let widths_cm1: Option<Vec<f64>> =
-        widths.as_ref().map(|widths| centres.iter().zip(widths).map(width).collect());
     let centres_cm1: Vec<f64> = centres.iter().map(|centre| unit.wavenumber_cm1(*centre)).collect();
+    let widths_cm1 = widths.as_deref().map(|widths| band_list::widths_cm1(unit, &centres, widths));
     // Such as bands that reach below 0, or beyond what numbers can tell apart.
-    let sound = |list: &[f64]| list.iter().all(|value| value.is_finite() && *value > 0.0);
-    let reach = |widths: &Vec<f64>| centres.iter().zip(widths).all(|(centre, width)| *width < 2.0 * centre);
-    if !sound(&centres_cm1) || !widths_cm1.as_deref().is_none_or(sound) || !widths.as_ref().is_none_or(reach)
-    {
+    let sound = centres_cm1.iter().all(|value| value.is_finite() && *value > 0.0);
+    if !sound || widths_cm1 == Some(None) {
         let found =
             Error::malformed("these are no bands", "give wavelength and fwhm in the unit that is named");
         return Err(header.wrong("wavelength", found));
     }
+    let widths_cm1 = widths_cm1.flatten();
     Ok([Some(centres_cm1), widths_cm1])
 }

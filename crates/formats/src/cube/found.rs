@@ -9,6 +9,11 @@ use std::fmt;
 /// A short first axis before two of this many times its length may be the bands.
 const SHORT: usize = 2;
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "a field is lent to be asked")]
+const fn none(count: &usize) -> bool {
+    *count == 0
+}
+
 /// A cube, and what its file was read as.
 #[derive(Debug)]
 pub struct Opened {
@@ -56,6 +61,9 @@ pub struct Found {
     pub widths_cm1: Option<Vec<f64>>,
     /// Whether the file lists wavelengths or wavenumbers without their unit, so that they are not used.
     pub axis_without_unit: bool,
+    /// Chunks of a file that were never written; their samples are missing.
+    #[serde(skip_serializing_if = "none")]
+    pub absent_chunks: usize,
     /// Sides of the array as the file has them.
     #[serde(skip)]
     pub(super) sides: Vec<usize>,
@@ -81,6 +89,7 @@ impl Found {
             centres_cm1: None,
             widths_cm1: None,
             axis_without_unit: false,
+            absent_chunks: 0,
             sides: sides.to_vec(),
         }
     }
@@ -180,6 +189,9 @@ impl fmt::Display for Found {
         if !self.bad_bands.is_empty() {
             let bands: Vec<String> = self.bad_bands.iter().map(usize::to_string).collect();
             more.push(format!("bands {} bad by its list", bands.join(", ")));
+        }
+        if self.absent_chunks > 0 {
+            more.push(format!("{} chunks never written, their samples missing", self.absent_chunks));
         }
         if let Some(bytes) = self.memory_bytes {
             more.push(format!("whole in memory, {:.1} MB", bytes as f64 / 1e6));

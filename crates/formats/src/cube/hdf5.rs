@@ -6,20 +6,22 @@
 //! Sources: The HDF Group, HDF5 File Format Specification 3.0; NetCDF Users Guide, Attribute Conventions.
 
 mod array;
+mod band_axis;
 mod dimensions;
 mod links;
-mod packed;
 mod sound;
 mod source;
 
-use self::array::{Array, listed, wavelengths};
+use self::array::{Array, listed};
+use self::band_axis::BandAxis;
 use self::sound::{damaged, sound};
 use self::source::{Bounded, check_chunks};
-use super::arrange;
 use super::axes::Axes;
+use super::choice::{Listed, choose};
 use super::found::{Found, Opened};
+use super::packed;
 use super::raw::Raw;
-use hadar::cube::{MemoryCube, Sample, Shape};
+use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hdf5_pure::Layout;
 use std::fs::File;
@@ -37,8 +39,15 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let axes = axes.or_else(|| sound(|| Ok(dimensions::axes(&source, &name, &array))).ok().flatten());
     let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
     let bands = opened.found.shape.bands();
-    let (centres_cm1, axis_without_unit) = sound(|| Ok(wavelengths(&source, &name, bands, len)))?;
-    let found = Found { variable: Some(name), centres_cm1, axis_without_unit, ..opened.found };
+    let axis = sound(|| Ok(BandAxis::of(&source, &name, bands, len)))?;
+    let found = Found {
+        variable: Some(name),
+        centres_cm1: axis.centres_cm1,
+        widths_cm1: axis.widths_cm1,
+        bad_bands: axis.bad,
+        axis_without_unit: axis.unused,
+        ..opened.found
+    };
     Ok(Opened { found, ..opened })
 }
 
@@ -57,30 +66,15 @@ fn chosen(source: &hdf5_pure::File, name: Option<&str>) -> Result<(String, Array
         .filter_map(|(name, dataset)| Array::of(dataset).ok().map(|array| (name, array)))
         .filter(|(_, array)| matches!(array.sides.len(), 2 | 3))
         .collect();
-    let deep = arrays.iter().filter(|(_, array)| array.sides.len() == 3).count();
-    let shown: Vec<String> = arrays
-        .iter()
-        .map(|(name, array)| {
-            let sides: Vec<String> = array.sides.iter().map(usize::to_string).collect();
-            format!("`{name}` ({} {})", sides.join(" x "), array.stored.name())
-        })
-        .collect();
-    let several = arrays.len();
-    let mut meant = arrays.into_iter().filter(|(_, array)| deep == 0 || array.sides.len() == 3);
-    match (meant.next(), meant.next()) {
-        (Some((name, array)), None) => {
-            let array = array.with_values().map_err(|error| error.for_key(name.clone()))?;
-            Ok((name, array))
-        }
-        (None, _) => Err(Error::malformed(
-            "the file has no array of numbers in two or three dimensions",
-            "write the cube as one of floats or whole numbers",
-        )),
-        _ => Err(Error::malformed(
-            format!("the file has {several} arrays that may be meant: {}", shown.join(", ")),
-            "name one of them as the variable",
-        )),
-    }
+    let listed = |(name, array): &(String, Array)| Listed {
+        name: name.clone(),
+        sides: array.sides.clone(),
+        stored: array.stored.name(),
+    };
+    let place = choose(&arrays.iter().map(listed).collect::<Vec<_>>(), None)?;
+    let Some((name, array)) = arrays.into_iter().nth(place) else { return Err(damaged("an array is lost")) };
+    let array = array.with_values().map_err(|error| error.for_key(name.clone()))?;
+    Ok((name, array))
 }
 
 fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>) -> Result<Opened> {
@@ -120,15 +114,9 @@ fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>)
         return Err(damaged("the array announces more than the file can stand for"));
     }
     let mut found = found(&array, shape, axes, &sides);
-    let cube = if order.place_of_rows() == 0 {
-        packed::cube(array, shape, order, usize::try_from(chunk).unwrap_or(usize::MAX))
-    } else if array.stored.is_double() {
-        found.memory_bytes = Some(8 * shape.len() as u64);
-        whole::<f64>(&array, shape, order)?.into()
-    } else {
-        found.memory_bytes = Some(4 * shape.len() as u64);
-        whole::<f32>(&array, shape, order)?.into()
-    };
+    let chunk = usize::try_from(chunk).unwrap_or(usize::MAX);
+    let (cube, memory_bytes) = packed::cube(array, shape, order, chunk)?;
+    found.memory_bytes = memory_bytes;
     Ok(Opened { found, cube })
 }
 
@@ -138,19 +126,4 @@ fn found(array: &Array, shape: Shape, axes: Option<Axes>, sides: &[usize]) -> Fo
     let mut found = Found { axes, unit, ..Found::array(format, shape, array.stored.name(), sides) };
     array.values.iter().for_each(|values| values.tell(&mut found));
     found
-}
-
-fn whole<S: Sample>(array: &Array, shape: Shape, order: Axes) -> Result<MemoryCube<S>> {
-    let [_, middle, inner] = order.sides(shape);
-    let mut first = 0;
-    let mut samples = arrange::whole(shape, order, |out: &mut [S]| {
-        let count = out.len() / (middle * inner);
-        array.slices(first, count, out)?;
-        first += count;
-        Ok(())
-    })?;
-    if let Some(values) = &array.values {
-        values.of_stored(&mut samples, shape.bands());
-    }
-    MemoryCube::new(shape, samples)
 }

@@ -4,9 +4,10 @@ use super::axes::Axes;
 use super::found::{Found, Opened};
 #[cfg(feature = "hdf5")]
 use super::hdf5;
-use super::{READ_CUBE, envi, mat, npy, npz};
+use super::{READ_CUBE, envi, fits, flir, geotiff, mat, netcdf3, npy, npz, telops, zarr};
 use crate::envi_header;
 use crate::file;
+use crate::foreign;
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use std::fs::File;
@@ -23,6 +24,12 @@ enum Kind {
     /// Version 7.3 of MATLAB is one too, behind a header of its own.
     Hdf5,
     Zip,
+    NetCdf3,
+    Fits,
+    Tiff,
+    FlirJpeg,
+    FlirBlock,
+    Telops,
     EnviHeader,
     Other,
 }
@@ -43,6 +50,12 @@ impl Kind {
             _ if HDF5_PLACES.iter().any(hdf5) => Self::Hdf5,
             Some([0, 1, b'I', b'M']) => Self::Mat5 { little_endian: true },
             Some([1, 0, b'M', b'I']) => Self::Mat5 { little_endian: false },
+            _ if start.starts_with(netcdf3::MAGIC) => Self::NetCdf3,
+            _ if start.starts_with(fits::MAGIC) => Self::Fits,
+            _ if geotiff::MAGICS.iter().any(|magic| start.starts_with(magic)) => Self::Tiff,
+            _ if start.starts_with(flir::JPEG) => Self::FlirJpeg,
+            _ if start.starts_with(flir::BLOCK) => Self::FlirBlock,
+            _ if telops::is_one(start) => Self::Telops,
             _ if start.starts_with(b"ENVI") => Self::EnviHeader,
             _ => Self::Other,
         }
@@ -70,6 +83,10 @@ pub fn open(path: &Path, variable: Option<&str>) -> Result<Cube> {
 /// * NPY (versions 1 to 3, either order) and NPZ of NumPy;
 /// * ENVI (BSQ, BIL, BIP), by its header or by the data beside one: numbers to be ignored become NaN, gains and offsets
 ///   are applied, the bands' wavelengths and the list of bad ones are read;
+/// * FITS, the image of the file or an extension: `BSCALE`, `BZERO`, `BLANK`, `BUNIT` and a linear spectral axis are read;
+/// * NetCDF of the classic kinds and Zarr of versions 2 and 3, with the attributes of NetCDF;
+/// * TIFF and GeoTIFF: samples of a page, or pages, are bands;
+/// * radiometric JPEG, FFF and SEQ of FLIR (`variable` is `raw` or `temperature`), HCC of Telops: one frame is one band;
 /// * MATLAB of version 5 (`save` with `-v6` or `-v7`); in NPZ and MATLAB a list `wavelengths_um`, `wavenumbers_cm1` or in another
 ///   unit, of as many numbers as there are bands, says where they are;
 /// * with the feature `hdf5`, HDF5, NetCDF-4 and MATLAB of version 7.3: `_FillValue`, `scale_factor` and `add_offset` are
@@ -85,9 +102,14 @@ pub fn open(path: &Path, variable: Option<&str>) -> Result<Cube> {
 /// The values themselves are not checked; see [`first_invalid`](hadar::cube::first_invalid).
 ///
 /// # Errors
-/// No such file, one of another kind, one that is shorter or longer than its header says, samples of another
+/// No such file, one of another kind (it is named if it is known), one that is shorter or longer than its header says, samples of another
 /// type, a number of dimensions other than 2 or 3, a dimension of 0, no array or several to choose from.
 pub fn open_as(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    if zarr::is_one(path) {
+        let opened = zarr::open(path, variable, axes).map_err(|error| error.in_file(path))?;
+        return Ok(Opened { found: Found { file: name, ..opened.found }, ..opened });
+    }
     let (file, start) = opened(path)?;
     let kind = Kind::of(&start);
     let alone = |what: &str| match variable {
@@ -111,6 +133,12 @@ pub fn open_as(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Resul
             "this is an HDF5 file, such as MATLAB writes with -v7.3",
             "build with the feature hdf5, or write it with save('cube.mat', 'name', '-v7') or np.save('cube.npy', a)",
         )),
+        Kind::NetCdf3 => netcdf3::open(file, path, variable, axes),
+        Kind::Fits => fits::open(file, path, variable, axes),
+        Kind::Tiff => geotiff::open(file, variable, axes),
+        Kind::FlirJpeg => flir::open_jpeg(file, path, variable, axes),
+        Kind::FlirBlock => flir::open(file, path, variable, axes),
+        Kind::Telops => telops::open(file, path, variable, axes),
         Kind::EnviHeader => alone("an ENVI file").and_then(|()| {
             let data = envi_header::data_of(path)?;
             envi::open(file::open(&data, READ_CUBE)?, &data, path, axes)
@@ -121,7 +149,6 @@ pub fn open_as(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Resul
         },
     }
     .map_err(|error| error.in_file(path))?;
-    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     Ok(Opened { found: Found { file: name, ..opened.found }, ..opened })
 }
 
@@ -142,7 +169,15 @@ fn opened(path: &Path) -> Result<(File, Vec<u8>)> {
 }
 
 fn unknown(path: &Path, start: &[u8]) -> Error {
+    const WRITE: &str =
+        "write one with np.save('cube.npy', a), or in MATLAB with save('cube.mat', 'name', '-v7')";
+    if let Some((what, instead)) = foreign::kind(start) {
+        return Error::malformed(format!("this is {what}, which is not read"), instead);
+    }
     let extension = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
+    // A table of text: letters, numbers and what stands between them.
+    let is_text =
+        !start.is_empty() && start.iter().all(|byte| matches!(byte, b'\t' | b'\n' | b'\r' | 0x20..0x7f));
     let found = match extension.as_deref() {
         _ if start.is_empty() => "the file is empty",
         Some("npy") => "this is not an NPY file: it does not begin with \\x93NUMPY",
@@ -151,10 +186,14 @@ fn unknown(path: &Path, start: &[u8]) -> Error {
         Some("img" | "dat" | "bsq" | "bil" | "bip" | "raw" | "sc") => {
             "there is no ENVI header beside this file, of the same name with .hdr"
         }
-        _ => "this is none of the files a cube is read from: NPY, NPZ, ENVI, MATLAB, HDF5, NetCDF-4",
+        _ if is_text => {
+            let instead = "write its numbers as an array: np.save('cube.npy', np.loadtxt('it.csv', delimiter=',', skiprows=1))";
+            return Error::malformed("this is text, not an array of a cube", instead);
+        }
+        _ => {
+            "this is none of the files a cube is read from: NPY, NPZ, ENVI, MATLAB, HDF5, NetCDF, Zarr, FITS, TIFF, \
+             radiometric JPEG, SEQ and FFF of FLIR, HCC of Telops"
+        }
     };
-    Error::malformed(
-        found,
-        "write one with np.save('cube.npy', a), or in MATLAB with save('cube.mat', 'name', '-v7')",
-    )
+    Error::malformed(found, WRITE)
 }

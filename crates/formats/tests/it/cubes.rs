@@ -5,20 +5,20 @@ use hadar_formats::cube::{Axes, EnviBands, Opened, envi_files};
 use hadar_formats::envi_header::Interleave;
 use std::path::PathBuf;
 
-fn path(name: &str) -> PathBuf {
+pub(crate) fn path(name: &str) -> PathBuf {
     hadar_testing::repository().join("tests/data/cubes").join(name)
 }
 
-fn open(name: &str, variable: Option<&str>, axes: Option<&str>) -> hadar::Result<Opened> {
+pub(crate) fn open(name: &str, variable: Option<&str>, axes: Option<&str>) -> hadar::Result<Opened> {
     hadar_formats::cube::open_as(&path(name), variable, axes.map(|axes| Axes::named(axes).unwrap()))
 }
 
-fn refusal(name: &str, variable: Option<&str>, axes: Option<&str>) -> String {
+pub(crate) fn refusal(name: &str, variable: Option<&str>, axes: Option<&str>) -> String {
     open(name, variable, axes).unwrap_err().to_string()
 }
 
 /// All samples, read in one piece and, the last row first, one by one.
-fn samples(cube: &Cube) -> Vec<f64> {
+pub(crate) fn samples(cube: &Cube) -> Vec<f64> {
     fn of<S: Sample>(cube: &dyn Rows<S>) -> Vec<f64> {
         let (shape, mut buffer) = (cube.shape(), Vec::new());
         let numbers = |samples: &[S]| samples.iter().map(|&sample| sample.into()).collect::<Vec<f64>>();
@@ -38,7 +38,7 @@ fn samples(cube: &Cube) -> Vec<f64> {
 }
 
 /// Equal, where a number for nothing is equal to another.
-fn same(a: &[f64], b: &[f64]) -> bool {
+pub(crate) fn same(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
 }
 
@@ -47,12 +47,12 @@ fn cube_of(value: impl Fn(usize, usize, usize) -> f64) -> Vec<f64> {
     (0..60).map(place).map(|(row, column, band)| value(row, column, band)).collect()
 }
 
-fn plain(row: usize, column: usize, band: usize) -> f64 {
+pub(crate) fn plain(row: usize, column: usize, band: usize) -> f64 {
     (100 * row + 10 * column + band) as f64
 }
 
 /// Opens a file that must hold these values, stored so, and is `f64` where it must be.
-fn check(
+pub(crate) fn check(
     name: &str,
     variable: Option<&str>,
     axes: Option<&str>,
