@@ -39,7 +39,7 @@ pub use npy::{Value, npy_map, write_npy, write_npy_to};
 pub use npy_rows::NpyRows;
 pub(crate) use open::is_cube;
 pub use open::{open, open_as};
-pub use sample_unit::SampleUnit;
+pub use sample_unit::{SampleUnit, TemperatureUnit};
 pub use zarr::is_one as is_zarr;
 
 /// What opening a cube is called in messages.

@@ -13,7 +13,7 @@ use hadar::radiance_unit::RadianceUnit;
 
 use super::{AtmosphereSpec, BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar_estimate::decompose::SpatialPrior;
-use hadar_formats::cube::Axes;
+use hadar_formats::cube::{Axes, TemperatureUnit};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -121,6 +121,13 @@ pub enum CubeUnit {
     CountsPerPhotonRadiance(f64),
     /// Counts of the scenario's camera.
     Camera,
+    /// Temperatures of blackbodies of the same radiance, with a noise that is stated in the same unit, of a blackbody at 300 K (NETD).
+    BrightnessTemperature {
+        /// The unit.
+        unit: TemperatureUnit,
+        /// As it is written.
+        written: String,
+    },
     /// Radiance, with a noise that is stated in the same unit.
     Radiance {
         /// The unit.

@@ -181,10 +181,9 @@ impl InOrder {
                 "band {band} of the cube is at {} um by its file, where nothing is seen by heat",
                 significant(1e4 / centre_cm1, 3)
             );
-            return Err(Error::malformed(
-                found,
-                "mend the unit of the wavelengths in the file, or write [bands]",
-            ));
+            let error =
+                Error::malformed(found, "mend the unit of the wavelengths in the file, or write [bands]");
+            return Err(error.in_file(path));
         }
         match (&self.found.centres_cm1, &self.found.widths_cm1) {
             (Some(centres), Some(widths)) => {

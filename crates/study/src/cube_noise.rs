@@ -51,7 +51,8 @@ pub(super) fn of_bands(
             Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), ..NoiseOfBands::default() })
         }
         Some(CubeNoise::File(path)) => {
-            let column = if matches!(unit, CubeUnit::Radiance { .. }) { "sigma" } else { "electronic_sigma" };
+            let whole = matches!(unit, CubeUnit::Radiance { .. } | CubeUnit::BrightnessTemperature { .. });
+            let column = if whole { "sigma" } else { "electronic_sigma" };
             table(path, column, centres_cm1, widths_cm1).map_err(|error| error.in_file(path))
         }
     }

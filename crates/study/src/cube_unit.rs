@@ -2,7 +2,7 @@
 
 use hadar::error::{Error, Result};
 use hadar::radiance_unit::RadianceUnit;
-use hadar_formats::cube::{Found, SampleUnit};
+use hadar_formats::cube::{Found, SampleUnit, TemperatureUnit};
 use hadar_scenario::decompose::CubeUnit;
 
 /// Refuses samples that are no counts by their file. What is in proportion to counts is taken where `scale_is_said`: how many counts a
@@ -42,6 +42,11 @@ pub(super) fn check_light(found: &Found) -> Result<()> {
 /// A file whose samples are something else than the scenario says.
 pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceUnit>> {
     let Some(of_file) = &found.unit else { return Ok(None) };
+    if let CubeUnit::BrightnessTemperature { written, .. } = said {
+        // As temperatures they are in their file's unit.
+        let is_other = temperature(found).is_none() && !SampleUnit::says_nothing(of_file);
+        return if is_other { Err(another(of_file, written)) } else { Ok(None) };
+    }
     let radiance = RadianceUnit::spelt(without_name(of_file)).ok();
     match (said, radiance) {
         (CubeUnit::Radiance { unit, .. }, Some(own)) => Ok((!own.is(*unit)).then_some(own)),
@@ -49,10 +54,7 @@ pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceU
             if SampleUnit::says_nothing(without_name(of_file)) {
                 return Ok(None);
             }
-            Err(Error::malformed(
-                format!("the samples are in `{of_file}` by their file, and in `{written}` by the scenario"),
-                "mend the one that is wrong; of a file that states no unit that of the scenario is taken",
-            ))
+            Err(another(of_file, written))
         }
         (_, Some(_)) => Err(Error::malformed(
             format!("the samples are radiances by their file, in `{of_file}`, and counts by the scenario"),
@@ -60,6 +62,18 @@ pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceU
         )),
         (_, None) => Ok(None),
     }
+}
+
+/// The unit of temperatures that a file states.
+pub(super) fn temperature(found: &Found) -> Option<TemperatureUnit> {
+    found.unit.as_deref().and_then(TemperatureUnit::spelt)
+}
+
+fn another(of_file: &str, written: &str) -> Error {
+    Error::malformed(
+        format!("the samples are in `{of_file}` by their file, and in `{written}` by the scenario"),
+        "mend the one that is wrong, or name another array of the file as the variable; of a file that states no unit that of the scenario is taken",
+    )
 }
 
 /// What is behind `Radiance`, as files write it before a unit or in its place.

@@ -1,5 +1,6 @@
 //! A heat cube with what is around it, its bands and its noise looked up: what every question about a cube begins with.
 
+mod brightness;
 mod lights;
 mod said;
 mod scale;
@@ -74,7 +75,16 @@ impl Said<'_> {
             warnings.push(Warning::UnitConverted { file, scenario: written.clone(), of_mean });
         }
         let absent = opened.absent();
-        let InOrder { cube, found: read, .. } = opened;
+        let InOrder { mut cube, found: read, .. } = opened;
+        if let CubeUnit::BrightnessTemperature { unit, written } = &self.cube.unit {
+            // The noise is in the scenario's unit, the samples in that of their file.
+            noise.scale(&brightness::radiances_of_kelvin(&bands, unit.kelvin_apart(1.0)));
+            let of_file = cube_unit::temperature(&read);
+            let called = read.unit.as_ref().filter(|_| of_file.is_some()).unwrap_or(written);
+            let unit = of_file.unwrap_or(*unit);
+            brightness::check(&cube, unit, called).map_err(at("cube.unit"))?;
+            cube = brightness::in_radiance(cube, unit, bands.clone());
+        }
         let lit = self.environment.iter().enumerate().map(|(k, source)| {
             sent(source, bands.nodes_cm1(), library).map_err(at(&format!("environment[{k}]")))
         });
@@ -147,8 +157,11 @@ impl Said<'_> {
             Some(bands) => bands,
             None => opened.bands(path).map_err(at("bands"))?,
         };
-        let opened =
-            check_light(&opened.found).and_then(|()| opened.among(&bands)).map_err(at("cube.data"))?;
+        let is_light = match &self.cube.unit {
+            CubeUnit::BrightnessTemperature { .. } => Ok(()),
+            _ => check_light(&opened.found),
+        };
+        let opened = is_light.and_then(|()| opened.among(&bands)).map_err(at("cube.data"))?;
         let doubt = axes_in_doubt(&opened.found, self.bands.map(|_| &bands));
         let mut warnings: Vec<Warning> = doubt.into_iter().collect();
         warnings.extend(stated.and_then(|stated| stated.warning(&opened.found)));

@@ -371,7 +371,8 @@ fn a_radiance_is_the_same_in_every_unit() {
         assert!(refused.contains(what), "{unit}: {refused}");
     }
     for (unit, what) in [
-        ("K", "what is `K`"),
+        ("K", "the samples are at least "),
+        ("m", "neither one power"),
         ("W m-2 sr-1 cm-1", "per cm^-1 is"),
         ("W m-2 um-1", "not per sr"),
         ("W m-2 sr-1 um-2", "not per area"),
@@ -380,6 +381,72 @@ fn a_radiance_is_the_same_in_every_unit() {
         let refused = folder.refusal(&["decompose", "b.toml"]);
         assert!(refused.contains(what) && refused.contains("cube.unit"), "{unit}: {refused}");
     }
+}
+
+/// Brightness temperatures, T of B(ν, T) = L, in several units, of the scenario or the file: the same temperatures as radiances, and the deviations of
+/// a noise of σ_L = σ_T hcν dB/dT(300 K), which the scenario of radiances has by band.
+#[test]
+fn a_brightness_temperature_is_a_radiance() {
+    let (h, c, k) = (6.626_070_15e-34, 299_792_458.0, 1.380_649e-23);
+    let joules = |nu: f64| h * c * 100.0 * nu;
+    let kelvin = |nu: f64, s: f64| joules(nu) / k / (200.0 * c * (100.0 * nu).powi(2) * 1.0 / s).ln_1p();
+    let slope = |nu: f64| {
+        let x = joules(nu) / (k * 300.0);
+        joules(nu) * 200.0 * c * (100.0 * nu).powi(2) * x / 300.0 * x.exp() / x.exp_m1().powi(2)
+    };
+    let folder = with(SCENARIO);
+    let shape = Shape::new(ROWS, COLUMNS, BANDS).unwrap();
+    let cube = |of: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+        (0..ROWS * COLUMNS)
+            .flat_map(|i| {
+                pixel(i).0.iter().enumerate().map(|(w, s)| of(wavenumber(w), *s)).collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    let rows: String = (0..BANDS).map(|w| format!("{w},{:e}\n", 0.05 * slope(wavenumber(w)))).collect();
+    folder.file("sigma.csv", &format!("band,sigma\n{rows}"));
+    write_npy(&folder.path().join("r.npy"), shape, &cube(&|nu, s| joules(nu) * s)).unwrap();
+    let said = |file: &str, lines: &str| {
+        SCENARIO.replace("counts.npy", file).replace("counts_per_photon_radiance = 1e-13", lines)
+    };
+    folder.file("r.toml", &said("r.npy", "unit = \"W m^-2 sr^-1 per cm^-1\"\nnoise = \"sigma.csv\""));
+    let radiances = folder.json(&["decompose", "r.toml"]);
+    let sigma = |found: &serde_json::Value| found["found"][0]["temperature_sigma_median_k"].as_f64().unwrap();
+    for (unit, number, noise) in [
+        ("K", &(|t| t) as &dyn Fn(f64) -> f64, 0.05),
+        ("0.01 K", &|t| 100.0 * t, 5.0),
+        ("mK", &|t| 1000.0 * t, 50.0),
+        ("degC", &|t| t - 273.15, 0.05),
+        ("degF", &|t| (t - 273.15) * 1.8 + 32.0, 0.09),
+    ] {
+        write_npy(&folder.path().join("t.npy"), shape, &cube(&|nu, s| number(kelvin(nu, s)))).unwrap();
+        folder.file("t.toml", &said("t.npy", &format!("unit = \"{unit}\"\nnoise = {noise}")));
+        let found = folder.json(&["decompose", "t.toml", "--out", "out", "--force"]);
+        assert!(found["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-6, "{unit}: {}", found["truth"]);
+        assert!((sigma(&found) / sigma(&radiances) - 1.0).abs() < 1e-6, "{unit}");
+        let again = folder.json(&["decompose", "out/scenario.toml"]);
+        assert_eq!(again["found"], found["found"], "{unit}");
+    }
+    // A file's unit is that of its samples, the noise keeps the scenario's.
+    let raw: Vec<u8> =
+        cube(&|nu, s| kelvin(nu, s) - 273.15).iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    fs::write(folder.path().join("t.img"), raw).unwrap();
+    let header = |unit: &str| {
+        format!(
+            "ENVI\nsamples = {COLUMNS}\nlines = {ROWS}\nbands = {BANDS}\ndata type = 5\ninterleave = bip\nbyte order = 0\ndata units = {unit}\n"
+        )
+    };
+    folder.file("t.hdr", &header("degC"));
+    folder.file("t.toml", &said("t.img", "unit = \"K\"\nnoise = 0.05"));
+    let found = folder.json(&["decompose", "t.toml"]);
+    assert!((sigma(&found) / sigma(&radiances) - 1.0).abs() < 1e-6);
+    folder.file("t.hdr", &header("W m-2 sr-1 um-1"));
+    let refused = folder.refusal(&["decompose", "t.toml"]);
+    assert!(refused.contains("in `W m-2 sr-1 um-1` by their file, and in `K` by the scenario"), "{refused}");
+    // Celsius that are called kelvin are none.
+    folder.file("t.hdr", &header("none"));
+    let refused = folder.refusal(&["decompose", "t.toml"]);
+    assert!(refused.contains("cube.unit: the samples are at most 21.1 K in the first row"), "{refused}");
 }
 
 /// Radiances in watts with a noise, a camera's counts, light from rows of the cube, some of the materials: the same temperatures.

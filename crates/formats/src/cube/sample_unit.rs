@@ -91,3 +91,68 @@ impl SampleUnit {
         }
     }
 }
+
+/// A unit of temperatures: T = zero + number · kelvin, K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TemperatureUnit {
+    kelvin: f64,
+    zero_k: f64,
+}
+
+impl TemperatureUnit {
+    /// The unit of a spelling, with a factor and with what the temperatures are of before it: `K`, `0.01 K`, `mK`, `degC`, `brightness temperature (K)`.
+    ///
+    /// ```
+    /// use hadar_formats::cube::TemperatureUnit;
+    /// assert_eq!(TemperatureUnit::spelt("0.01 K").unwrap().kelvin(30015.0), 300.15);
+    /// assert_eq!(TemperatureUnit::spelt("degC").unwrap().kelvin(27.0), 300.15);
+    /// assert_eq!(TemperatureUnit::spelt("brightness_temperature [degF]").unwrap().kelvin(32.0), 273.15);
+    /// assert!(TemperatureUnit::spelt("W m-2").is_none());
+    /// ```
+    #[must_use]
+    pub fn spelt(text: &str) -> Option<Self> {
+        let lower = text.to_lowercase().replace('℃', "°c");
+        let parts = lower.split(|char: char| char.is_whitespace() || "_-()[]{}*×·".contains(char));
+        let what = ["toa", "brightness", "apparent", "blackbody", "temperature", "temperatures", "in"];
+        let mut parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+        let named = parts.iter().any(|part| part.starts_with("temperature"));
+        parts.retain(|part| !what.contains(part));
+        let factor = match parts.first().map(|part| part.parse::<f64>()) {
+            Some(Ok(factor)) if factor > 0.0 && factor.is_finite() => {
+                parts.remove(0);
+                factor
+            }
+            _ => 1.0,
+        };
+        let degree = |unit: &str| {
+            unit.trim_start_matches("degrees")
+                .trim_start_matches("degree")
+                .trim_start_matches("deg")
+                .trim_start_matches('°')
+                .to_owned()
+        };
+        let (kelvin, zero_k) = match degree(&parts.concat()).as_str() {
+            "k" | "kelvin" | "kelvins" => (1.0, 0.0),
+            // Of CF's names the unit is K.
+            "" if named && factor == 1.0 => (1.0, 0.0),
+            "mk" | "millikelvin" => (1e-3, 0.0),
+            "ck" | "centikelvin" => (1e-2, 0.0),
+            "c" | "celsius" | "centigrade" => (1.0, 273.15),
+            "f" | "fahrenheit" => (5.0 / 9.0, 273.15 - 32.0 * 5.0 / 9.0),
+            _ => return None,
+        };
+        Some(Self { kelvin: kelvin * factor, zero_k })
+    }
+
+    /// The temperature of a number, K.
+    #[must_use]
+    pub fn kelvin(self, number: f64) -> f64 {
+        self.zero_k + number * self.kelvin
+    }
+
+    /// The difference of temperatures that a number is, K.
+    #[must_use]
+    pub fn kelvin_apart(self, number: f64) -> f64 {
+        number * self.kelvin
+    }
+}

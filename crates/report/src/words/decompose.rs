@@ -427,7 +427,7 @@ fn assumptions(result: &Decomposed) -> String {
     let [low, high] = scenario.unknown.temperature_k;
     let total = lighting_total(scenario.unknown.lighting_total);
     let model = match &scenario.cube.unit {
-        CubeUnit::Radiance { .. } => "",
+        CubeUnit::Radiance { .. } | CubeUnit::BrightnessTemperature { .. } => "",
         CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => ", variance from the model",
     };
     let noise = noise(&scenario.cube.unit).to_owned() + model;

@@ -17,6 +17,7 @@ use super::{
 use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
 use hadar::radiance_unit::RadianceUnit;
+use hadar_formats::cube::TemperatureUnit;
 use std::path::Path;
 
 /// Maps of the truth in files of their own.
@@ -92,8 +93,13 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
     let counts = section.number("counts_per_photon_radiance")?;
     let radiance = section.read("unit", |entry| {
         let written = entry.name("\"W m^-2 sr^-1 um^-1\"")?;
-        let unit = RadianceUnit::spelt(&written).map_err(|error| entry.fail(error))?;
-        Ok(CubeUnit::Radiance { unit, written })
+        match TemperatureUnit::spelt(&written) {
+            Some(unit) => Ok(CubeUnit::BrightnessTemperature { unit, written }),
+            None => {
+                let unit = RadianceUnit::spelt(&written).map_err(|error| entry.fail(error))?;
+                Ok(CubeUnit::Radiance { unit, written })
+            }
+        }
     })?;
     let noise = section.read("noise", |entry| match entry.text("\"noise.csv\"") {
         Ok(text) if is_path(text) => file(entry).map(CubeNoise::File),
@@ -106,7 +112,7 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
         }
         (Some(counts), ..) => CubeUnit::CountsPerPhotonRadiance(counts),
         (None, Some(_), _) if noise.is_none() => {
-            let found = "radiances alone do not say how they scatter";
+            let found = "samples in this unit alone do not say how they scatter";
             let instead = "write noise = 1e-4, the deviation of a sample in that unit";
             return Err(section.fail("unit", Error::malformed(found, instead)));
         }

@@ -59,7 +59,9 @@ pub(crate) fn cube_written(
     let (counts, unit) = match &cube.unit {
         CubeUnit::CountsPerPhotonRadiance(counts) => (Some(*counts), None),
         CubeUnit::Camera => (None, None),
-        CubeUnit::Radiance { written, .. } => (None, Some(written.as_str())),
+        CubeUnit::Radiance { written, .. } | CubeUnit::BrightnessTemperature { written, .. } => {
+            (None, Some(written.as_str()))
+        }
     };
     let whole = |numbers: &[usize]| numbers.iter().map(|n| *n as i64).collect::<Vec<_>>();
     let written = Entries::default()

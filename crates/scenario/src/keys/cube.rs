@@ -39,7 +39,7 @@ const CUBE_KEYS: &[Key] = &[
         Value::File,
         Refused,
         "\"counts.npy\"",
-        "Samples [row][column][band]; NPY, NPZ, ENVI, MATLAB, HDF5 or NetCDF; or the folder of a scene of the HADAR database.",
+        "Samples [row][column][band]; NPY, NPZ, ENVI, MATLAB, HDF5, NetCDF, Zarr, FITS, TIFF, or a radiometric file of FLIR (JPEG, SEQ, FFF) or Telops (HCC); or the folder of a scene of the HADAR database.",
         "S of every pixel (S44)",
     ),
     VARIABLE,
@@ -57,7 +57,7 @@ const CUBE_KEYS: &[Key] = &[
         Value::Text,
         Means("counts"),
         "\"W m^-2 sr^-1 per cm^-1\"",
-        "That samples are spectral radiances, of watts or photons, per wavenumber, wavelength or frequency; a noise in the same unit must stand beside it. Where the file states another such unit its samples are converted.",
+        "That samples are spectral radiances, of watts or photons, per wavenumber, wavelength or frequency, or brightness temperatures (K, degC): a noise in the same unit must stand beside it, of temperatures the NETD at 300 K. Where the file states another such unit its samples are converted.",
         "scale of the samples",
     ),
     Key::row(

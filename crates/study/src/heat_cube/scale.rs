@@ -41,8 +41,12 @@ impl Said<'_> {
                 var_added: added.to_vec(),
                 units_per_count: 1.0,
             },
-            CubeUnit::Radiance { unit, .. } => {
-                let unit = of_samples.unwrap_or(*unit);
+            CubeUnit::Radiance { .. } | CubeUnit::BrightnessTemperature { .. } => {
+                let own = match &self.cube.unit {
+                    CubeUnit::Radiance { unit, .. } => *unit,
+                    _ => RadianceUnit::PER_WAVENUMBER,
+                };
+                let unit = of_samples.unwrap_or(own);
                 // A variance so much larger than that of the photons that the noise alone counts.
                 // What is left out is worth nothing, whether it is a band of the file or not.
                 let used = |(band, value): (usize, f64)| (!bad_bands.contains(&band)).then_some(value);

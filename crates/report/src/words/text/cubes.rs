@@ -9,6 +9,9 @@ pub(crate) const AGAINST: &str = "Against what is there";
 pub(crate) const fn noise(unit: &CubeUnit) -> &'static str {
     match unit {
         CubeUnit::Radiance { .. } => "the stated noise, the same for all samples",
+        CubeUnit::BrightnessTemperature { .. } => {
+            "the stated noise, that of a blackbody at 300 K, the same in radiance for all samples"
+        }
         CubeUnit::CountsPerPhotonRadiance(_) | CubeUnit::Camera => {
             "Poisson counts with the stated electronic noise"
         }
