@@ -13,6 +13,7 @@ mod envi;
 mod fits;
 mod flir;
 mod found;
+#[cfg(feature = "tiff")]
 mod geotiff;
 #[cfg(feature = "hdf5")]
 mod hdf5;
@@ -23,12 +24,14 @@ mod npy;
 mod npy_rows;
 mod npz;
 mod open;
+#[cfg(any(feature = "hdf5", feature = "zarr"))]
 mod packed;
 mod raw;
 mod sample_unit;
 mod stored;
 mod telops;
 mod values;
+#[cfg(feature = "zarr")]
 mod zarr;
 
 pub use axes::Axes;
@@ -38,9 +41,8 @@ pub use mat::mat_file;
 pub use npy::{Value, npy_map, write_npy, write_npy_to};
 pub use npy_rows::NpyRows;
 pub(crate) use open::is_cube;
-pub use open::{open, open_as};
+pub use open::{is_zarr, open, open_as};
 pub use sample_unit::{SampleUnit, TemperatureUnit};
-pub use zarr::is_one as is_zarr;
 
 /// What opening a cube is called in messages.
 const READ_CUBE: &str = "read the cube";

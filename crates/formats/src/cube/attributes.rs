@@ -20,6 +20,8 @@ pub(super) enum Attribute {
     Text(String),
     Floating(Vec<f64>),
     Whole(Vec<f64>),
+    /// Neither text nor numbers, which other kinds of files have.
+    #[cfg(any(feature = "hdf5", feature = "zarr"))]
     Other,
 }
 
@@ -38,6 +40,7 @@ impl Attributes {
     }
 
     /// The same, of which a number means that nothing was measured.
+    #[cfg(feature = "zarr")]
     pub(super) fn with_missing(mut self, number: f64) -> Self {
         self.0.push(("missing_value".to_owned(), Attribute::Floating(vec![number])));
         self
@@ -86,6 +89,7 @@ impl Attributes {
             Some(Attribute::Text(text)) => {
                 Err(wrong(key, format!("the text `{}`", text.escape_debug()), "write it as a number"))
             }
+            #[cfg(any(feature = "hdf5", feature = "zarr"))]
             Some(Attribute::Other) => Err(wrong(key, "no number".to_owned(), "write it as one")),
         };
         let one = |key: &str| match numbers(key)?.as_slice() {

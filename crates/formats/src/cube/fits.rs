@@ -1,8 +1,8 @@
 //! FITS files: the image of the file itself or of one of its extensions.
 //!
 //! A header is cards of 80 bytes in blocks of 2880, `KEYWORD = value / comment`, up to `END`; the numbers of an array of NAXIS1 × NAXIS2 × … follow,
-//! their greatest byte first, the first axis the fastest. So a cube is `[NAXIS3][NAXIS2][NAXIS1]`: bands, rows, columns, as NumPy has it. A sample is BSCALE · number
-//! + BZERO, and BLANK means that nothing was measured. The world coordinate of a linear spectral axis (CTYPE WAVE, WAVN or FREQ) says where the
+//! their greatest byte first, the first axis the fastest: a cube is `[NAXIS3][NAXIS2][NAXIS1]`: bands, rows, columns, as NumPy has it. A sample is BSCALE · number
+//! and BZERO added, and BLANK means that nothing was measured. The world coordinate of a linear spectral axis (CTYPE WAVE, WAVN or FREQ) says where the
 //! bands are, and which axis is theirs. `variable` names an extension by EXTNAME, or by its number from 0.
 //!
 //! Source: FITS Standard 4.0 (IAU FITS Working Group, 2018); spectral axes: Greisen et al. 2006, A&A 446, 747.

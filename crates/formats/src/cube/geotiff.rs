@@ -26,9 +26,6 @@ const MAX_INFLATION: u64 = 1032;
 /// Pages that are looked at.
 const MOST: usize = 100_000;
 
-/// What a file begins with, of either order of bytes and either size of places.
-pub(super) const MAGICS: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
-
 /// A page: its size, and its samples.
 #[derive(Debug)]
 struct Page {

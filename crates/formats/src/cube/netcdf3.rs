@@ -57,7 +57,6 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let mut found =
         Found { variable: Some(variable.name.clone()), axes, unit: variable.attributes.unit(), ..found };
     values.iter().for_each(|values| values.tell(&mut found));
-    (found.centres_cm1, found.axis_without_unit) = header.band_axis(&file, path, variable, shape.bands());
     let records =
         Records { start: variable.begin, step: header.record_bytes, of_all: header.is_record(variable) };
     let slice = records.slice(&sides, stored);
@@ -68,6 +67,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     if end.and_then(|end| end.checked_add(slice)?.checked_add(records.start)).is_none_or(|end| end > len) {
         return Err(of_variable(damaged("it ends within the variable")));
     }
+    (found.centres_cm1, found.axis_without_unit) = header.band_axis(&file, path, variable, shape.bands());
     let cube = if !records.of_all || records.step == slice {
         let start = records.start;
         Raw { file, path: path.to_owned(), shape, start, order, stored, little_endian: false, values }.cube()

@@ -2,9 +2,13 @@
 
 use super::axes::Axes;
 use super::found::{Found, Opened};
+#[cfg(feature = "tiff")]
+use super::geotiff;
 #[cfg(feature = "hdf5")]
 use super::hdf5;
-use super::{READ_CUBE, envi, fits, flir, geotiff, mat, netcdf3, npy, npz, telops, zarr};
+#[cfg(feature = "zarr")]
+use super::zarr;
+use super::{READ_CUBE, envi, fits, flir, mat, netcdf3, npy, npz, telops};
 use crate::envi_header;
 use crate::file;
 use crate::foreign;
@@ -36,6 +40,8 @@ enum Kind {
 
 /// Places at which an HDF5 file may begin, behind what another program has put before it.
 const HDF5_PLACES: [usize; 2] = [0, 512];
+/// TIFF files, of either order of bytes and either size of places.
+const TIFF: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 /// Bytes that are looked at.
 const START: u64 = 520;
 
@@ -52,7 +58,7 @@ impl Kind {
             Some([1, 0, b'M', b'I']) => Self::Mat5 { little_endian: false },
             _ if start.starts_with(netcdf3::MAGIC) => Self::NetCdf3,
             _ if start.starts_with(fits::MAGIC) => Self::Fits,
-            _ if geotiff::MAGICS.iter().any(|magic| start.starts_with(magic)) => Self::Tiff,
+            _ if TIFF.iter().any(|magic| start.starts_with(magic)) => Self::Tiff,
             _ if start.starts_with(flir::JPEG) => Self::FlirJpeg,
             _ if start.starts_with(flir::BLOCK) => Self::FlirBlock,
             _ if telops::is_one(start) => Self::Telops,
@@ -60,6 +66,12 @@ impl Kind {
             _ => Self::Other,
         }
     }
+}
+
+/// Whether a folder is a Zarr array or a group of them.
+#[must_use]
+pub fn is_zarr(path: &Path) -> bool {
+    path.is_dir() && [".zarray", ".zgroup", "zarr.json"].iter().any(|name| path.join(name).is_file())
 }
 
 /// Opens the cube of a file, its array `[row][column][band]`; see [`open_as`].
@@ -106,8 +118,15 @@ pub fn open(path: &Path, variable: Option<&str>) -> Result<Cube> {
 /// type, a number of dimensions other than 2 or 3, a dimension of 0, no array or several to choose from.
 pub fn open_as(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    if zarr::is_one(path) {
-        let opened = zarr::open(path, variable, axes).map_err(|error| error.in_file(path))?;
+    if is_zarr(path) {
+        #[cfg(feature = "zarr")]
+        let opened = zarr::open(path, variable, axes);
+        #[cfg(not(feature = "zarr"))]
+        let opened = Err::<Opened, _>(Error::malformed(
+            "this is a Zarr array",
+            "build with the feature zarr, or write it with np.save('cube.npy', zarr.open('cube.zarr')[:])",
+        ));
+        let opened = opened.map_err(|error| error.in_file(path))?;
         return Ok(Opened { found: Found { file: name, ..opened.found }, ..opened });
     }
     let (file, start) = opened(path)?;
@@ -135,7 +154,13 @@ pub fn open_as(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Resul
         )),
         Kind::NetCdf3 => netcdf3::open(file, path, variable, axes),
         Kind::Fits => fits::open(file, path, variable, axes),
+        #[cfg(feature = "tiff")]
         Kind::Tiff => geotiff::open(file, variable, axes),
+        #[cfg(not(feature = "tiff"))]
+        Kind::Tiff => Err(Error::malformed(
+            "this is a TIFF file",
+            "build with the feature tiff, or write it with np.save('cube.npy', tifffile.imread('cube.tif'))",
+        )),
         Kind::FlirJpeg => flir::open_jpeg(file, path, variable, axes),
         Kind::FlirBlock => flir::open(file, path, variable, axes),
         Kind::Telops => telops::open(file, path, variable, axes),

@@ -15,6 +15,7 @@ use super::axes::Axes;
 use super::band_list;
 use super::choice::{Listed, choose};
 use super::found::{Found, Opened};
+use super::open::is_zarr;
 use super::packed::{self, Slices};
 use super::stored::{Stored, decode};
 use super::values::Values;
@@ -28,12 +29,6 @@ const MOST_DEPTH: usize = 8;
 const MOST_ARRAYS: usize = 1000;
 /// Largest chunk, bytes.
 const LARGEST_CHUNK: u64 = 1 << 32;
-
-/// Whether a folder is a Zarr array or a group of them.
-#[must_use]
-pub fn is_one(path: &Path) -> bool {
-    path.is_dir() && [".zarray", ".zgroup", "zarr.json"].iter().any(|name| path.join(name).is_file())
-}
 
 /// An array, and where its chunks are.
 #[derive(Debug)]
@@ -110,7 +105,7 @@ fn within(folder: &Path, name: &str, depth: usize, arrays: &mut Vec<(String, Pat
     let mut inner = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        if is_one(&path) {
+        if is_zarr(&path) {
             inner.push(path);
         }
     }

@@ -118,14 +118,14 @@ macro_rules! readers {
 
 readers! {
     material, library, manifest, optical_constants, spectral_library, band_rows, filters, scenario, range_scenario, quantity, npy, mat,
-    npz, envi, hdf5, noise, model,
+    npz, envi, hdf5, cube, noise, model,
 }
 
 /// Every four bytes of every binary seed as if they were a length that no file has.
 #[test]
 fn lengths_that_a_file_states_are_held_against_it() {
     alone("lengths_that_a_file_states_are_held_against_it", || {
-        for name in ["npy", "mat", "npz", "hdf5"] {
+        for name in ["npy", "mat", "npz", "hdf5", "cube"] {
             let reader = READERS.iter().find(|reader| reader.name == name).unwrap();
             for (seed, bytes) in seeds(name) {
                 for place in (0..bytes.len().saturating_sub(4)).step_by(4) {
@@ -133,6 +133,10 @@ fn lengths_that_a_file_states_are_held_against_it() {
                     let mut changed = bytes.clone();
                     changed[place..place + 4].copy_from_slice(&wrong.to_le_bytes());
                     check(reader, &format!("{seed}-{place}-{wrong}"), &changed);
+                    if name == "cube" {
+                        changed[place..place + 4].copy_from_slice(&wrong.to_be_bytes());
+                        check(reader, &format!("{seed}-{place}-{wrong}-turned"), &changed);
+                    }
                 }
             }
         }

@@ -42,8 +42,8 @@ pub(super) struct Variable {
 
 impl Variable {
     /// How its numbers are stored; none of text.
-    pub(super) const fn stored(&self) -> Option<Stored> {
-        stored(self.kind)
+    pub(super) fn stored(&self) -> Option<Stored> {
+        stored(self.kind).map(|stored| self.attributes.stored(stored))
     }
 }
 

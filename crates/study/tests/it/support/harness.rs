@@ -40,6 +40,7 @@ pub(crate) const READERS: &[Reader] = &[
     Reader { name: "npz", check: npz },
     Reader { name: "envi", check: envi },
     Reader { name: "hdf5", check: hdf5 },
+    Reader { name: "cube", check: cube },
     Reader { name: "noise", check: noise },
     Reader { name: "model", check: model },
 ];
@@ -344,6 +345,17 @@ fn npz(folder: &Folder, bytes: &[u8]) {
     arrays(folder, "a.npz", bytes);
 }
 
+/// Files of other fields and of cameras.
+fn cube(folder: &Folder, bytes: &[u8]) {
+    arrays(folder, "a.bin", bytes);
+    let path = folder.put("a.bin", bytes);
+    for name in ["fixed", "SCENE", "1", "temperature", "raw[1]"] {
+        if let Some(opened) = accepted(hadar_formats::cube::open_as(&path, Some(name), None)) {
+            sound_cube(&opened.cube);
+        }
+    }
+}
+
 fn hdf5(folder: &Folder, bytes: &[u8]) {
     arrays(folder, "a.h5", bytes);
 }
@@ -370,7 +382,7 @@ fn noise(folder: &Folder, bytes: &[u8]) {
     let path = folder.put("noise", bytes);
     for bands in [1, 3] {
         let shape = Shape::new(2, 1, bands).expect("a small shape");
-        match accepted(hadar_formats::noise_variance(&path, shape)) {
+        match accepted(hadar_formats::noise_variance(&path, shape, None)) {
             Some(NoiseVariance::PerBand(variances)) => {
                 assert_eq!(variances.len(), bands);
                 assert!(variances.iter().all(|variance| *variance >= 0.0 && variance.is_finite()));
