@@ -329,6 +329,11 @@ fn mistakes_are_one_message() {
     assert!(refusal.contains(message), "{refusal}");
     folder.file("sigma.csv", &rows(801.0));
     assert_eq!(folder.run(&["decompose", "b.toml"]).code, 0);
+    // A file of [cube] data alone is of whichever command it is given to.
+    folder.file("alone.toml", "[cube]\ndata = [\"frame_1.npy\", \"frame_2.npy\"]\n");
+    assert_eq!(folder.run(&["calibrate", "noise", "alone.toml"]).code, 0);
+    let other = folder.refusal(&["range", "alone.toml"]);
+    assert!(other.contains("there is no key `data`"), "{other}");
     let other = folder.refusal(&["range", "stripes.toml"]);
     assert!(other.contains("this is a calibration; hadar calibrate stripes"), "{other}");
 }

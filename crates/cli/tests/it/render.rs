@@ -154,6 +154,35 @@ fn what_is_rendered_is_taken_apart_again() {
     assert!(first != fs::read(folder.path().join("again/counts.npy")).unwrap());
 }
 
+/// A list of bands in any order: the scenario that is written has it in that of the cube, whatever the list is of.
+#[test]
+fn a_list_of_bands_is_written_in_the_order_of_the_cube() {
+    let ranges = "[bands]\nranges = [[\"8 um\", \"9 um\"], [\"11 um\", \"12.5 um\"], [\"9 um\", \"10 um\"], [\"10 um\", \"11 um\"]]\n";
+    let grid = "[bands]\nstart = \"800 cm^-1\"\nstop = \"1200 cm^-1\"\nstep = \"20 cm^-1\"\n";
+    let filters = "[bands]\nfilters = \"filters.csv\"\n";
+    let rows = "[bands]\nrows = \"bands.csv\"\n";
+    for bands in [ranges, filters, rows] {
+        let folder = Folder::with(
+            &SCENARIO.replace(grid, bands).replace("[camera]\n", "[camera]\nreadout = \"simultaneous\"\n"),
+        );
+        folder.file(
+            "filters.csv",
+            "wavelength_um,short,long,middle\n8,1,0,0\n9,1,0,1\n10,0,0,1\n11,0,1,0\n12.5,0,1,0\n",
+        );
+        folder.file("bands.csv", "wavenumber_cm1,width_cm1\n1200,90\n800,100\n1100,80\n900,70\n1000,90\n");
+        folder.json(&["render", "a.toml", "--out", "out", "--no-noise"]);
+        let found = folder.json(&["decompose", "out/decompose.toml"]);
+        assert!(found["truth"]["temperature_rmse_k"].as_f64().unwrap() < 2.0, "{bands}: {}", found["truth"]);
+        assert!(
+            found["truth"]["right_where_decided"].as_f64().unwrap() > 0.95,
+            "{bands}: {}",
+            found["truth"]
+        );
+        let codes = found["warnings"].as_array().unwrap();
+        assert!(codes.iter().all(|one| one["code"] != "band-order-taken"), "{bands}: {codes:?}");
+    }
+}
+
 /// The folders of the database: the same numbers in other files, temperatures in degC, materials counted from 1.
 #[test]
 fn both_layouts_hold_the_same() {
