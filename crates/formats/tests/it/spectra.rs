@@ -1,6 +1,7 @@
 //! Spectra in the layouts that programs and people write: the same rows come out of all of them.
 
 use hadar::material::Material;
+use hadar_formats::spectra::Reading;
 use hadar_testing::{repository, shared};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -76,8 +77,8 @@ fn files_of_other_programs_hold_the_same_spectrum() {
             && message.contains("--columns wavenumber_cm1,emissivity"),
         "{message}"
     );
-    let columns = ["wavenumber_cm1", "emissivity"].map(str::to_owned);
-    check("bare", &hadar_formats::spectra::from_file_with_columns(&bare, &columns).unwrap()[0]);
+    let columns = ["wavenumber_cm1", "emissivity"];
+    check("bare", &Reading::default().columns(columns).file(&bare).unwrap()[0]);
 }
 
 /// Real files in squeezed forms, against the values that the Python package `jcamp` 1.3.2 reads. As they are they hold absorbance and
@@ -223,7 +224,7 @@ fn twenty_two_customary_layouts_are_read() {
 fn measured_samples_have_short_names_of_their_own() {
     let Some(directory) = shared("ecostress") else { return };
     let read_all = |backwards: bool| {
-        let mut files = hadar_formats::spectra::spectra_in(&directory).unwrap();
+        let mut files = hadar_formats::spectra::spectra_in(&directory).unwrap().files;
         if backwards {
             files.reverse();
         }

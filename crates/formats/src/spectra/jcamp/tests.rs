@@ -47,7 +47,7 @@ const FILE: &str = "##TITLE= Roof tile, red $$ of mine\n##JCAMP-DX= 4.24\n##DATA
     ##NPOINTS= 5\n##FIRSTY= 0.1\n##XYDATA= (X++(Y..Y))\n1000 100 150 200\n850 250 300\n##END=\n";
 
 fn read(text: &str) -> Result<Vec<Material>> {
-    parse(text, Path::new("a.jdx")).and_then(Content::materials)
+    parse(text, Path::new("a.jdx"), &Reading::default()).and_then(Content::materials)
 }
 
 #[test]
