@@ -108,8 +108,7 @@ pub(crate) fn text(bytes: Vec<u8>) -> String {
         return text;
     }
     // Latin-1 is the first 256 code points
-    String::from_utf8(bytes)
-        .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect())
+    String::from_utf8(bytes).unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect())
 }
 
 /// Text that a byte-order mark says to be UTF-16, as Excel writes `Unicode text`.

@@ -21,6 +21,8 @@ mod bytes;
 mod checked;
 mod columns;
 mod content;
+#[cfg(test)]
+mod damage;
 mod ecostress;
 mod envi;
 mod folder;
@@ -39,8 +41,8 @@ mod splib;
 
 use self::content::Content;
 pub(crate) use self::content::stem;
-pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::folder::{Folder, spectra_in};
+pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::names::{tagged_name, unique_names};
 pub use self::reading::Reading;
 pub use holes::measured;

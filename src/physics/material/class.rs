@@ -15,8 +15,8 @@ use std::path::PathBuf;
 
 /// Endings of files of spectra; OPUS counts its own, `.0`, `.1`, …
 pub const ENDINGS: [&str; 15] = [
-    ".csv", ".txt", ".tsv", ".tab", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli", ".spc", ".asd",
-    ".0",
+    ".csv", ".txt", ".tsv", ".tab", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli", ".spc",
+    ".asd", ".0",
 ];
 /// Digits of the longest number that OPUS gives a file.
 const OPUS_DIGITS: usize = 4;

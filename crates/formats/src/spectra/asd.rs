@@ -68,7 +68,10 @@ pub(super) fn parse(all: &[u8], source: &Path, reading: &Reading) -> Result<Cont
             values.iter().zip(&white).map(|(value, white)| value / white).collect(),
             "relative to a white panel: emissivity is 1 - reflectance as far as the panel reflects all and the reflectance is hemispherical",
         ),
-        (1, None) => (values, "nothing says of what the reflectance is a part: emissivity is 1 - reflectance of hemispherical reflectance alone"),
+        (1, None) => (
+            values,
+            "nothing says of what the reflectance is a part: emissivity is 1 - reflectance of hemispherical reflectance alone",
+        ),
         (0 | 2, None) => {
             let found = format!("{name} without a white reference, from which no emissivity follows");
             let instead = "measure a white reference first, or export the reflectance";

@@ -112,7 +112,10 @@ fn outside(table: &Table<1>) -> Option<String> {
     let clip = match beyond(worst) <= MOST_CLIP {
         // Rounded up, so that what is written is enough.
         true => {
-            format!("; `hadar materials import --clip {}` cuts such noise", (1e3 * beyond(worst)).ceil() / 1e3)
+            format!(
+                "; `hadar materials import --clip {}` cuts such noise",
+                (1e3 * beyond(worst)).ceil() / 1e3
+            )
         }
         false => String::new(),
     };

@@ -75,7 +75,8 @@ pub(super) fn materials(sheet: &Sheet, source: &Path, reading: &Reading) -> Resu
             false => format!("column {}", one_line(header)),
         };
         let share = if values.percent { " in percent" } else { "" };
-        let mut warnings: Vec<String> = Some(note.clone()).into_iter().filter(|note| !note.is_empty()).collect();
+        let mut warnings: Vec<String> =
+            Some(note.clone()).into_iter().filter(|note| !note.is_empty()).collect();
         if let Some((low, high)) = table.range_cm1()
             && count < sheet.grid.rows.len()
         {
@@ -91,7 +92,11 @@ pub(super) fn materials(sheet: &Sheet, source: &Path, reading: &Reading) -> Resu
         if let [column, ..] = left_out.as_slice() {
             warnings.push(format!("the errors in the column `{}` are not used", one_line(column)));
         }
-        let note = [quantity.note(), &note].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+        let note = [quantity.note(), &note]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
         let provenance = Provenance::of_file(description, source.clone(), &note);
         let read_as = columns.read_as(&format!("{}{share}", quantity.name()), sheet);
         let material = Material::of_table(name.clone(), provenance, table);

@@ -185,7 +185,11 @@ impl Library<'_> {
             quantity.name()
         );
         let source = self.source.display().to_string();
-        let note = [quantity.note(), &note].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+        let note = [quantity.note(), &note]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
         let provenance = Provenance::of_file(one_line(name), source, &note);
         let material = Material::of_table(kebab_case(name), provenance, table);
         Ok(Some(material.reading(read_as).warn(said)))

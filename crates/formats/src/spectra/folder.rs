@@ -54,5 +54,6 @@ fn is_fork(file: &Path) -> bool {
         return false;
     }
     let mut start = [0; 8];
-    std::fs::File::open(file).is_ok_and(|mut file| file.read_exact(&mut start).is_ok()) && foreign::is_fork(&start)
+    std::fs::File::open(file).is_ok_and(|mut file| file.read_exact(&mut start).is_ok())
+        && foreign::is_fork(&start)
 }

@@ -13,8 +13,16 @@ const KINDS: &[(&[u8], &str, &str)] = &[
     (b"CDF\x02", "a NetCDF file", A_DATASET),
     (b"CDF\x05", "a NetCDF file", A_DATASET),
     (b"\x0e\x03\x13\x01", "an HDF4 file", A_DATASET),
-    (b"MATLAB 5.0 MAT-file", "a MATLAB file", "write it out in MATLAB: writematrix([wavelength_um, emissivity], \"x.csv\")"),
-    (b"\x93NUMPY", "a NumPy array", "write it out: numpy.savetxt(\"x.csv\", numpy.load(FILE), delimiter=\",\")"),
+    (
+        b"MATLAB 5.0 MAT-file",
+        "a MATLAB file",
+        "write it out in MATLAB: writematrix([wavelength_um, emissivity], \"x.csv\")",
+    ),
+    (
+        b"\x93NUMPY",
+        "a NumPy array",
+        "write it out: numpy.savetxt(\"x.csv\", numpy.load(FILE), delimiter=\",\")",
+    ),
     (b"PAR1", "a Parquet file", "write it out: pandas.read_parquet(FILE).to_csv(\"x.csv\", index=False)"),
     (b"%PDF", "a PDF document", "copy its numbers into a table"),
     (b"\x89PNG", "a PNG picture", A_PICTURE),
@@ -23,14 +31,19 @@ const KINDS: &[(&[u8], &str, &str)] = &[
     (b"\x1f\x8b", "compressed with gzip", "unpack it: gunzip FILE"),
     (b"7z\xbc\xaf\x27\x1c", "a 7z archive", "unpack it"),
     (b"SQLite format 3\0", "an SQLite database", "write the spectrum out as a table"),
-    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an Excel workbook (.xls) or a JASCO file", "save it there as CSV or JCAMP-DX"),
+    (
+        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
+        "an Excel workbook (.xls) or a JASCO file",
+        "save it there as CSV or JCAMP-DX",
+    ),
     (b"Spectral Data File", "an OMNIC spectrum (.spa)", "save it in OMNIC as JCAMP-DX, SPC or CSV"),
     (b"PEPE", "a PerkinElmer spectrum (.sp)", "save it there as JCAMP-DX or ASCII"),
     (b"WDF1", "a Renishaw file (.wdf)", "save it there as SPC or text"),
     (b"\0\x05\x16\x07", A_FORK, "name the file beside it, whose name has no `._`; this one may be deleted"),
     (b"\0\x05\x16\0", A_FORK, "copy the file itself from the Mac"),
 ];
-const AN_IMAGE: &str = "a cube is read as ENVI, NPY, MATLAB or HDF5; write its spectrum as a table of wavelength_um,emissivity";
+const AN_IMAGE: &str =
+    "a cube is read as ENVI, NPY, MATLAB or HDF5; write its spectrum as a table of wavelength_um,emissivity";
 const A_DATASET: &str = "write the spectrum out as a table of wavelength_um,emissivity, as with h5dump or xarray's to_dataframe().to_csv()";
 const A_PICTURE: &str = "write its curve as a table of wavelength_um,emissivity";
 pub(super) const A_FORK: &str = "what macOS keeps beside a file on foreign disks, not the file itself";
@@ -82,7 +95,10 @@ fn zip(bytes: &[u8]) -> (&'static str, &'static str) {
     } else if has(b"mimetypeapplication/vnd.oasis") {
         ("an OpenDocument spreadsheet", "save the sheet as CSV")
     } else if has(b".npy") {
-        ("an archive of NumPy arrays", "write one out: numpy.savetxt(\"x.csv\", numpy.load(FILE)[NAME], delimiter=\",\")")
+        (
+            "an archive of NumPy arrays",
+            "write one out: numpy.savetxt(\"x.csv\", numpy.load(FILE)[NAME], delimiter=\",\")",
+        )
     } else {
         ("a ZIP archive", "unpack it, and give the folder to --library")
     }

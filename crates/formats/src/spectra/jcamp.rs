@@ -239,7 +239,11 @@ impl Block<'_> {
         let share = if percent { " in percent" } else { "" };
         let source = [source.display().to_string(), said(&["ORIGIN", "OWNER"])].join("; ");
         let source = source.trim_end_matches("; ").to_owned();
-        let note = [quantity.note(), &note].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+        let note = [quantity.note(), &note]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
         let provenance = Provenance::of_file(said(&["TITLE", "SAMPLEDESCRIPTION"]), source, &note);
         let read_as = format!("JCAMP-DX, {} in {}, {}{share}", unit.quantity(), unit.name(), quantity.name());
         Ok(Ok(Material::of_table(name, provenance, table).reading(read_as).warn(warnings)))

@@ -162,7 +162,9 @@ pub(super) fn read(text: &str, reading: &Reading) -> Result<Sheet> {
     };
     let rows = table.get(begin..).unwrap_or_default().iter();
     let rows = rows
-        .map(|&(line, row)| Ok((line, numbers(form, row, &header, reading).map_err(|error| error.on_line(line))?)))
+        .map(|&(line, row)| {
+            Ok((line, numbers(form, row, &header, reading).map_err(|error| error.on_line(line))?))
+        })
         .collect::<Result<Vec<_>>>()?;
     let ranges = ranges_of(rows.iter().map(|(_, cells)| cells.as_slice()));
     Ok(Sheet { grid: Grid { header, header_line, rows }, form, ranges })
@@ -423,8 +425,13 @@ fn numbers(form: Form, row: &str, header: &[String], reading: &Reading) -> Resul
         }
         form.number(cell).map_err(|error| {
             let hole = is_hole.then(|| {
-                let instead = "leave the row out, as `hadar materials import --clip 0` does, or write a number";
-                Error::malformed(format!("`{cell}` is no number"), instead)
+                let instead =
+                    "leave the row out, as `hadar materials import --clip 0` does, or write a number";
+                let found = match cell.is_empty() {
+                    true => "the cell is empty".to_owned(),
+                    false => format!("`{cell}` is not a finite number"),
+                };
+                Error::malformed(found, instead)
             });
             hole.or_else(|| mixed.clone()).unwrap_or(error).for_key(column.as_str())
         })

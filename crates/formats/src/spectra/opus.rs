@@ -88,7 +88,10 @@ impl Block {
     }
 
     fn name(self) -> String {
-        let name = QUANTITIES.iter().find(|(code, _)| *code == self.quantity()).map_or("unknown quantity", |known| known.1);
+        let name = QUANTITIES
+            .iter()
+            .find(|(code, _)| *code == self.quantity())
+            .map_or("unknown quantity", |known| known.1);
         match self.bits(17, 2) {
             0 => name.to_owned(),
             _ => format!("derivative of {name}"),
@@ -106,7 +109,9 @@ pub(super) fn parse(all: &[u8], source: &Path, reading: &Reading) -> Result<Cont
         data.iter().copied().filter(|block| block.quantity() == quantity && block.bits(17, 2) == 0).collect()
     };
     let (wanted, values) = match (of(REFLECTANCE), of(EMISSION)) {
-        (none, emission) if none.is_empty() && !emission.is_empty() => (emission, Said::Open("emission".into())),
+        (none, emission) if none.is_empty() && !emission.is_empty() => {
+            (emission, Said::Open("emission".into()))
+        }
         (found, _) if !found.is_empty() => (found, Said::Values(Quantity::Reflectance, false)),
         _ => {
             let spectra: Vec<Block> = data.iter().filter(is_spectrum).copied().collect();
@@ -135,7 +140,8 @@ pub(super) fn parse(all: &[u8], source: &Path, reading: &Reading) -> Result<Cont
         Ok(told) => told,
         Err(reason) => return Ok(Content::NoEmissivity(reason)),
     };
-    let beside: Vec<Block> = data.iter().filter(is_spectrum).copied().filter(|other| *other != block).collect();
+    let beside: Vec<Block> =
+        data.iter().filter(is_spectrum).copied().filter(|other| *other != block).collect();
     let beside = if beside.is_empty() { String::new() } else { format!(" (beside it {})", names(&beside)) };
     let format = format!("OPUS, its block of {}{beside}", block.name());
     let title = sample_name(bytes, &blocks)?;
@@ -199,14 +205,16 @@ impl Parameters {
     }
 
     fn number(&self, name: &str) -> Result<f64> {
-        let missing = || Error::malformed(format!("the parameter {name} of the spectrum is missing"), FETCH_AGAIN);
+        let missing =
+            || Error::malformed(format!("the parameter {name} of the spectrum is missing"), FETCH_AGAIN);
         self.numbers.get(name).copied().filter(|value| value.is_finite()).ok_or_else(missing)
     }
 }
 
 /// Place and value of every point.
 fn points(bytes: Bytes<'_>, block: Block, parameters: &Parameters) -> Result<Vec<(f64, f64)>> {
-    let (count, first, last) = (parameters.number("NPT")?, parameters.number("FXV")?, parameters.number("LXV")?);
+    let (count, first, last) =
+        (parameters.number("NPT")?, parameters.number("FXV")?, parameters.number("LXV")?);
     let kind = if parameters.numbers.get("DPF") == Some(&2.0) { DataType::I32 } else { DataType::F32 };
     let room = block.length / kind.size();
     if !(count >= 2.0 && count <= room as f64) || first == last {
@@ -217,8 +225,10 @@ fn points(bytes: Bytes<'_>, block: Block, parameters: &Parameters) -> Result<Vec
     let values = bytes.numbers(block.at, count as usize, kind)?;
     let step = (last - first) / (count - 1.0);
     // The largest and the smallest value are among the parameters.
-    for (name, own) in [("MXY", values.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
-        ("MNY", values.iter().copied().fold(f64::INFINITY, f64::min))] {
+    for (name, own) in [
+        ("MXY", values.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+        ("MNY", values.iter().copied().fold(f64::INFINITY, f64::min)),
+    ] {
         if let Some(&due) = parameters.numbers.get(name)
             && ((own - due).abs() > ROUNDED * due.abs().max(1.0))
             && ((own * factor - due).abs() > ROUNDED * due.abs().max(1.0))
@@ -251,7 +261,9 @@ fn unit(parameters: &Parameters, points: &[(f64, f64)]) -> Result<Option<Spectra
 /// The name of the sample, from the first of its parameters that has it.
 fn sample_name(bytes: Bytes<'_>, blocks: &[Block]) -> Result<String> {
     for block in blocks.iter().filter(|block| block.bits(4, 6) == OF_SAMPLE) {
-        if let Some(name) = Parameters::read(bytes, *block)?.texts.get("SNM").filter(|name| !name.trim().is_empty()) {
+        if let Some(name) =
+            Parameters::read(bytes, *block)?.texts.get("SNM").filter(|name| !name.trim().is_empty())
+        {
             return Ok(name.trim().to_owned());
         }
     }

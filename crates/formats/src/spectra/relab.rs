@@ -64,7 +64,8 @@ pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Cont
         Some(cell) => header::axis(cell)?,
         None => None,
     };
-    let range = points.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &(x, _)| (low.min(x), high.max(x)));
+    let range =
+        points.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &(x, _)| (low.min(x), high.max(x)));
     let unit = match named {
         Some(Axis { unit: Some(unit), .. }) => Some(unit),
         _ => header::unit_of_range("wavelength", range),
@@ -74,7 +75,9 @@ pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Cont
         Ok(told) => told,
         Err(reason) => return Ok(Content::NoEmissivity(reason)),
     };
-    let points = points.into_iter().map(|(wavelength, value)| (wavelength, if value < -1e30 { f64::NAN } else { value }));
+    let points = points
+        .into_iter()
+        .map(|(wavelength, value)| (wavelength, if value < -1e30 { f64::NAN } else { value }));
     let below = lines.iter().skip(count).map(|(_, line)| one_line(line)).collect::<Vec<_>>().join("; ");
     let name = stem(source);
     let description = if below.is_empty() { format!("spectrum of {name}") } else { below };

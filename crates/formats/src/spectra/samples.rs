@@ -62,7 +62,8 @@ pub(super) fn told(unit: Option<SpectralUnit>, values: Said, reading: &Reading) 
     match (values, stated) {
         (Said::Other(name), _) => {
             let found = format!("`{}`, from which no emissivity follows", one_line(&name));
-            let instead = "use a spectrum of the hemispherical reflectance, or the emissivity, of an opaque sample";
+            let instead =
+                "use a spectrum of the hemispherical reflectance, or the emissivity, of an opaque sample";
             Ok(Err(Error::malformed(found, instead)))
         }
         (Said::Values(own, _), Some((other, _))) if own != other => contradicts(own.name(), other.name()),

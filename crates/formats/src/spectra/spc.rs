@@ -92,13 +92,16 @@ fn with_own_axes(bytes: Bytes<'_>, header: &Header) -> Result<Vec<Vec<(f64, f64)
     for trace in 0..header.traces {
         let at = match directory {
             0 => next,
-            _ => bytes.count(directory.saturating_add(trace * ENTRY), DataType::U32)?,
+            _ => {
+                let entry = directory.saturating_add(trace * ENTRY);
+                bytes.part(entry, ENTRY)?;
+                bytes.count(entry, DataType::U32)?
+            }
         };
         let points = bytes.count(at.saturating_add(16), DataType::U32)?;
         let places = at.saturating_add(TRACE_HEADER);
         let axis = bytes.numbers(places, points, DataType::F32)?;
-        let (values, end) =
-            ordinates(bytes, header, at, places + points * DataType::F32.size(), points)?;
+        let (values, end) = ordinates(bytes, header, at, places + points * DataType::F32.size(), points)?;
         traces.push(axis.into_iter().zip(values).collect());
         next = end;
     }
@@ -120,7 +123,8 @@ fn ordinates(
             let own = header::exponent(bytes, at + 1)?;
             // A file of integers may have a trace of floats, not the other way round.
             if header.exponent == FLOATS && own != FLOATS {
-                let found = "the file and one of its traces say otherwise whether values are floats or integers";
+                let found =
+                    "the file and one of its traces say otherwise whether values are floats or integers";
                 return Err(Error::malformed(found, "export the spectrum again, or as JCAMP-DX"));
             }
             own

@@ -104,7 +104,8 @@ fn material(
 
 /// The title and the numbers of a file of one column, deleted ones as no numbers.
 fn column(text: &str) -> Result<(String, Vec<f64>)> {
-    let mut lines = text.lines().enumerate().map(|(at, line)| (at + 1, line.trim())).filter(|(_, line)| !line.is_empty());
+    let mut lines =
+        text.lines().enumerate().map(|(at, line)| (at + 1, line.trim())).filter(|(_, line)| !line.is_empty());
     let title = lines.next().map_or("", |(_, line)| line).to_owned();
     let values = lines.map(|(line, cell)| value(cell).map_err(|error| error.on_line(line)));
     Ok((title, values.collect::<Result<Vec<f64>>>()?))
@@ -116,21 +117,31 @@ fn value(cell: &str) -> Result<f64> {
 }
 
 /// The file of the wavelengths of a spectrum, what is in it and in which unit.
-fn wavelengths(title: &str, channels: usize, beside: Option<&Path>) -> Result<(PathBuf, Vec<f64>, SpectralUnit)> {
+fn wavelengths(
+    title: &str,
+    channels: usize,
+    beside: Option<&Path>,
+) -> Result<(PathBuf, Vec<f64>, SpectralUnit)> {
     let instrument = title.split_whitespace().rev().nth(1).unwrap_or_default().to_uppercase();
     let family = SPECTROMETERS.into_iter().find(|known| instrument.starts_with(known));
     let wanted = format!("splib07a_Wavelengths_{}_….txt", family.unwrap_or("BECK"));
     let missing = |found: String| {
-        let instead = format!("put the file of its spectrometer's wavelengths, {wanted} of the library, beside it");
+        let instead =
+            format!("put the file of its spectrometer's wavelengths, {wanted} of the library, beside it");
         Err(Error::malformed(found, instead))
     };
     let mut found = Vec::new();
-    let folders = beside.into_iter().flat_map(|own| [Some(own.to_owned()), own.join("..").canonicalize().ok()]).flatten();
+    let folders = beside
+        .into_iter()
+        .flat_map(|own| [Some(own.to_owned()), own.join("..").canonicalize().ok()])
+        .flatten();
     for folder in folders {
         for file in named_wavelengths(&folder) {
-            let (title, axis) = column(&text_of_file(&file, READ_SPECTRUM)?).map_err(|error| error.in_file(&file))?;
+            let (title, axis) =
+                column(&text_of_file(&file, READ_SPECTRUM)?).map_err(|error| error.in_file(&file))?;
             let is_axis = record(&title).is_some_and(|title| title.to_lowercase().contains("wavelength"));
-            let names = format!("{title} {}", file.file_name().unwrap_or_default().to_string_lossy()).to_uppercase();
+            let names =
+                format!("{title} {}", file.file_name().unwrap_or_default().to_string_lossy()).to_uppercase();
             if is_axis && family.is_none_or(|family| names.contains(family)) {
                 found.push((file, title, axis));
             }
@@ -140,7 +151,9 @@ fn wavelengths(title: &str, channels: usize, beside: Option<&Path>) -> Result<(P
         }
     }
     if found.is_empty() {
-        return missing(format!("its {channels} values have their wavelengths in another file, which is not here"));
+        return missing(format!(
+            "its {channels} values have their wavelengths in another file, which is not here"
+        ));
     }
     let lengths: Vec<String> = found.iter().map(|(_, _, axis)| axis.len().to_string()).collect();
     found.retain(|(_, _, axis)| axis.len() == channels);
@@ -158,7 +171,8 @@ fn wavelengths(title: &str, channels: usize, beside: Option<&Path>) -> Result<(P
 
 /// Files of a folder that are called as those of wavelengths are, in the order of their names.
 fn named_wavelengths(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
+    let entries =
+        std::fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path()));
     let is_named = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
         name.contains("wavelength") && name.ends_with(".txt") && !name.starts_with("._") && path.is_file()

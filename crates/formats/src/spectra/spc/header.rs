@@ -66,7 +66,8 @@ impl Header {
             true => bytes.part(labels, 30)?.to_vec(),
             false => Vec::new(),
         };
-        let mut labels = labels.split(|byte| *byte == 0).map(|label| label.iter().map(|&b| char::from(b)).collect());
+        let mut labels =
+            labels.split(|byte| *byte == 0).map(|label| label.iter().map(|&b| char::from(b)).collect());
         let (axis_label, values_label): (String, String) =
             (labels.next().unwrap_or_default(), labels.next().unwrap_or_default());
         let comment = bytes.text(comment, 130)?.trim().to_owned();
@@ -113,13 +114,18 @@ impl Header {
 
     /// Whether there is another trace: of the number that is said, or as long as there are bytes.
     pub(super) const fn is_more(&self, read: usize, at: usize, length: usize) -> bool {
-        if self.traces > 0 { read < self.traces } else { read == 0 || length.saturating_sub(at) >= TRACE_HEADER }
+        if self.traces > 0 {
+            read < self.traces
+        } else {
+            read == 0 || length.saturating_sub(at) >= TRACE_HEADER
+        }
     }
 
     /// The places of an axis that is evenly spaced.
     pub(super) fn even(&self) -> Result<Vec<f64>> {
         let Self { first, last, points, .. } = *self;
-        let is_one = first.is_finite() && last.is_finite() && first != last && (2..=MOST_POINTS).contains(&points);
+        let is_one =
+            first.is_finite() && last.is_finite() && first != last && (2..=MOST_POINTS).contains(&points);
         if !is_one {
             let found = format!("an axis of {points} points from {first} to {last}");
             return Err(Error::malformed(found, FETCH_AGAIN));
@@ -158,7 +164,8 @@ impl Header {
             28 => SpectralUnit::Metre,
             29 => SpectralUnit::Millimetre,
             other => {
-                let name = AXES.iter().find(|(code, _)| *code == other).map_or("an unknown one", |known| known.1);
+                let name =
+                    AXES.iter().find(|(code, _)| *code == other).map_or("an unknown one", |known| known.1);
                 let found = format!("the axis is {name} (code {other}), no wavelength or wavenumber");
                 return Err(Error::malformed(found, "use a spectrum over wavenumber or wavelength"));
             }
