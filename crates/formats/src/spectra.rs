@@ -33,6 +33,7 @@ mod jcamp;
 mod layout;
 mod names;
 mod opus;
+mod radiance;
 mod reading;
 mod relab;
 mod samples;
@@ -44,6 +45,7 @@ pub(crate) use self::content::stem;
 pub use self::folder::{Folder, spectra_in};
 pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::names::{tagged_name, unique_names};
+pub use self::radiance::radiance;
 pub use self::reading::Reading;
 pub use holes::measured;
 

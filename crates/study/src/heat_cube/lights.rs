@@ -17,7 +17,7 @@ use hadar::planck;
 use hadar::spectrum::{Bands, interpolated};
 use hadar_estimate::decompose::Light;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
-use hadar_formats::spectra::measured;
+use hadar_formats::spectra::{measured, radiance};
 use hadar_scenario::MaterialRef;
 use hadar_scenario::decompose::LightSource;
 use std::path::Path;
@@ -120,15 +120,11 @@ fn counted(cube: &Cube, rows: [usize; 2], bad_bands: &[usize], unit: f64) -> Res
     Ok((Light::Counts(mean.iter().map(|n| n / unit).collect()), left_out))
 }
 
-/// A column of a table of photon radiances at the nodes.
+/// A column of a table of radiances at the nodes, as photon radiance.
 pub(crate) fn spectrum(path: &Path, column: &str, nodes_cm1: &[f64]) -> Result<Vec<f64>> {
-    let table = columns(path)?;
-    let Some((_, rows)) = table.iter().find(|(name, _)| name == column) else {
-        let names = table.iter().map(|(name, _)| name.as_str());
-        return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
-    };
+    let rows = radiance(path, column)?;
     let largest = rows.iter().fold(0.0_f64, |most, row| most.max(row.1));
-    let rows = measured(rows, largest).map_err(|error| error.for_key(column).in_file(path))?;
+    let rows = measured(&rows, largest).map_err(|error| error.for_key(column).in_file(path))?;
     let mut rows = rows.to_vec();
     order::ascending(&mut rows, |a| a.0);
     on_nodes(&rows, nodes_cm1).map_err(|error| error.in_file(path))
@@ -148,7 +144,7 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
         let value = interpolated(&xs, &ys, *nu);
         if value < 0.0 {
             let found = format!("a radiance of {value} at {nu} cm^-1");
-            return Err(Error::malformed(found, "write photons s^-1 m^-2 sr^-1 per cm^-1, from 0"));
+            return Err(Error::malformed(found, "write radiances from 0"));
         }
         Ok(value)
     };
