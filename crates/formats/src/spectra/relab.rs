@@ -29,20 +29,28 @@ fn row(line: &str) -> Option<(f64, f64)> {
     }
 }
 
-/// Number of rows, the line of names if there is one, and the lines behind.
-fn parts(text: &str) -> Option<(usize, Option<&str>, Vec<(usize, &str)>)> {
-    let lines = text.lines().enumerate().map(|(at, line)| (at + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty());
-    let count = lines.next()?.1.parse::<usize>().ok().filter(|count| *count > 1)?;
-    let mut rest: Vec<(usize, &str)> = lines.collect();
-    let &(_, second) = rest.first()?;
+/// What such a file consists of.
+struct Parts<'a> {
+    /// Number of rows, as the file says.
+    count: usize,
+    /// The line of names, if there is one.
+    names: Option<&'a str>,
+    /// The lines behind.
+    lines: Vec<&'a str>,
+}
+
+fn parts(text: &str) -> Option<Parts<'_>> {
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let count = lines.next()?.parse::<usize>().ok().filter(|count| *count > 1)?;
+    let mut lines: Vec<&str> = lines.collect();
+    let second = *lines.first()?;
     if row(second).is_some() {
-        return Some((count, None, rest));
+        return Some(Parts { count, names: None, lines });
     }
-    let is_named = matches!(rest.get(1), Some((_, third)) if row(third).is_some());
+    let is_named = lines.get(1).is_some_and(|third| row(third).is_some());
     is_named.then(|| {
-        rest.remove(0);
-        (count, Some(second), rest)
+        lines.remove(0);
+        Parts { count, names: Some(second), lines }
     })
 }
 
@@ -52,10 +60,10 @@ pub(super) fn is_one(text: &str) -> bool {
 }
 
 pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Content> {
-    let Some((count, names, lines)) = parts(text) else {
+    let Some(Parts { count, names, lines }) = parts(text) else {
         return Err(Error::malformed("there are no rows below a number of rows", FETCH_AGAIN));
     };
-    let points: Vec<(f64, f64)> = lines.iter().map_while(|(_, line)| row(line)).collect();
+    let points: Vec<(f64, f64)> = lines.iter().map_while(|line| row(line)).collect();
     if points.len() != count {
         let found = format!("{} rows where the first line announces {count}", points.len());
         return Err(Error::malformed(found, FETCH_AGAIN).on_line(1));
@@ -78,7 +86,7 @@ pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Cont
     let points = points
         .into_iter()
         .map(|(wavelength, value)| (wavelength, if value < -1e30 { f64::NAN } else { value }));
-    let below = lines.iter().skip(count).map(|(_, line)| one_line(line)).collect::<Vec<_>>().join("; ");
+    let below = lines.iter().skip(count).map(|line| one_line(line)).collect::<Vec<_>>().join("; ");
     let name = stem(source);
     let description = if below.is_empty() { format!("spectrum of {name}") } else { below };
     let origin = Origin { name, description, format: "RELAB", source, remark: REMARK };

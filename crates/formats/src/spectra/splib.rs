@@ -113,7 +113,7 @@ fn column(text: &str) -> Result<(String, Vec<f64>)> {
 
 /// A number; none where a channel is deleted.
 fn value(cell: &str) -> Result<f64> {
-    Ok(number(cell).map(|value| if value < DELETED { f64::NAN } else { value })?)
+    number(cell).map(|value| if value < DELETED { f64::NAN } else { value })
 }
 
 /// The file of the wavelengths of a spectrum, what is in it and in which unit.
