@@ -87,19 +87,15 @@ pub(crate) fn text_within(path: &Path, action: &str, most: u64) -> Result<String
     Ok(text(self::bytes(path, action, most)?))
 }
 
-/// All bytes of a file of a spectrum.
+/// All bytes of a file that may be text.
 ///
 /// # Errors
 /// As [`bytes`].
-pub(crate) fn spectrum_bytes(path: &Path) -> Result<Vec<u8>> {
-    if path.is_dir() {
-        return Err(Error::file(
-            READ_SPECTRUM,
-            path,
-            "this is a directory; name a file, or give it to --library",
-        ));
+pub(crate) fn short_bytes(path: &Path, action: &str) -> Result<Vec<u8>> {
+    if action == READ_SPECTRUM && path.is_dir() {
+        return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
     }
-    bytes(path, READ_SPECTRUM, LONGEST_FILE)
+    bytes(path, action, LONGEST_FILE)
 }
 
 /// Text of bytes, as of a file ([`text_of_file`]).

@@ -45,7 +45,7 @@ pub(crate) use self::content::stem;
 pub use self::folder::{Folder, spectra_in};
 pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::names::{tagged_name, unique_names};
-pub use self::radiance::radiance;
+pub use self::radiance::{atmosphere, radiance};
 pub use self::reading::Reading;
 pub use holes::measured;
 
@@ -87,7 +87,7 @@ fn content_of_file(path: &Path, reading: &Reading) -> Result<Content> {
     if let Some((header, data)) = envi::files(path)? {
         return envi::read(&header, &data, reading).map(Content::noticed);
     }
-    let bytes = file::spectrum_bytes(path)?;
+    let bytes = file::short_bytes(path, file::READ_SPECTRUM)?;
     foreign::refuse(&bytes).map_err(|error| error.in_file(path))?;
     let parse = if spc::is_one(&bytes) {
         spc::parse

@@ -12,6 +12,7 @@ mod simulated;
 use super::foreign;
 use super::header;
 use crate::file;
+use hadar::atmosphere::Atmosphere;
 use hadar::error::{Error, Result, check};
 use hadar::grid::Grid;
 use hadar::planck::{brightness_temperature, photon_radiance};
@@ -62,14 +63,36 @@ struct Column {
 /// # Ok::<(), hadar::Error>(())
 /// ```
 pub fn radiance(path: &Path, column: &str) -> Result<Vec<(f64, f64)>> {
-    let bytes = file::spectrum_bytes(path)?;
-    let read = || {
-        foreign::refuse(&bytes)?;
-        simulated::refuse_unformatted(&bytes)?;
-        foreign::refuse_binary(&bytes)?;
-        of_text(&file::text(bytes.clone()), column)
-    };
-    read().map_err(|error| error.in_file(path))
+    text(path, file::READ_SPECTRUM)
+        .and_then(|text| of_text(&text, column))
+        .map_err(|error| error.in_file(path))
+}
+
+/// Transmittances of the air by length of the path ([`Atmosphere::from_csv`]).
+///
+/// # Errors
+/// As [`Atmosphere::from_csv`]; what MODTRAN or LBLRTM wrote, which is of one path.
+pub fn atmosphere(path: &Path) -> Result<Atmosphere> {
+    let text = text(path, "read the transmittances")?;
+    match simulated::program(&text) {
+        None => Atmosphere::from_csv(&text, path),
+        Some(program) => {
+            let found = format!(
+                "this is what {program} writes of one path, which does not say how absorption grows with length"
+            );
+            let instead = "write transmittances of runs of at least two lengths side by side, as wavenumber_cm1,tau_100m,tau_1km";
+            Err(Error::malformed(found, instead).in_file(path))
+        }
+    }
+}
+
+/// The text of a file, if it is text.
+fn text(path: &Path, action: &str) -> Result<String> {
+    let bytes = file::short_bytes(path, action)?;
+    let is_text = foreign::refuse(&bytes)
+        .and_then(|()| simulated::refuse_unformatted(&bytes))
+        .and_then(|()| foreign::refuse_binary(&bytes));
+    is_text.map(|()| file::text(bytes)).map_err(|error| error.in_file(path))
 }
 
 fn of_text(text: &str, column: &str) -> Result<Vec<(f64, f64)>> {

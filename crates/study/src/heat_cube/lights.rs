@@ -150,3 +150,27 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
     };
     nodes_cm1.iter().map(at).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sky_in_watts_is_that_in_photons() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |name: &str, unit: &str, of: &dyn Fn(f64) -> f64| {
+            let line = |nu: f64| format!("{nu},{}\n", planck::photon_radiance(nu, 260.0) * of(nu));
+            let file = folder.path().join(name);
+            let rows: String = [700.0, 900.0, 1100.0, 1300.0].map(line).concat();
+            std::fs::write(&file, format!("wavenumber_cm1,sky{unit}\n{rows}")).unwrap();
+            spectrum(&file, "sky", &[720.0, 1000.0, 1250.0]).unwrap()
+        };
+        let photons = table("photons.csv", "", &|_| 1.0);
+        // h c nu, with nu in m^-1, and 1e-4 for cm^2.
+        let watts =
+            table("watts.csv", " [W cm^-2 sr^-1 (cm^-1)^-1]", &|nu| 1.986_445_857e-25 * 100.0 * nu * 1e-4);
+        for (one, other) in photons.iter().zip(&watts) {
+            assert!((one / other - 1.0).abs() < 1e-8, "{photons:?} {watts:?}");
+        }
+    }
+}

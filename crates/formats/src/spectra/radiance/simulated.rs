@@ -1,7 +1,7 @@
-//! What programs of radiative transfer write: tape7 of MODTRAN 4 and 5 (`tape7`, `.tp7`, `.7sc`) and the text files of LBLRTM.
+//! What programs of radiative transfer write: tape7 of MODTRAN 4 to 6 (`tape7`, `.tp7`, `.7sc`) and the text files of LBLRTM.
 //!
 //! tape7 begins with the cards of the run; below the names of the columns, the first of which is `FREQ`, stand the rows, and a row of -9999
-//! ends a run. By wavenumber radiances are W cm⁻² sr⁻¹ per cm⁻¹. Runs without the sun leave six columns empty. LBLRTM writes a line
+//! ends a run. By wavenumber radiances are W cm⁻² sr⁻¹ per cm⁻¹. Runs without the sun leave their columns empty. LBLRTM writes a line
 //! `WAVENUMBER RADIANCE` above its rows, in the same unit, or `TEMPERATURE`, which is a brightness temperature.
 //!
 //! Source: Berk et al., MODTRAN 5.3 User's Manual (2013), tape7; Clough et al., LBLRTM, output of PLTLBL, and its table of units.
@@ -15,10 +15,21 @@ use hadar::radiance_unit::RadianceUnit;
 /// The unit of both programs.
 const UNIT: &str = "W cm^-2 sr^-1 (cm^-1)^-1";
 /// Columns that are radiances.
-const RADIANCES: [&str; 8] =
-    ["PTH_THRML", "THRML_SCT", "SURF_EMIS", "SOL_SCAT", "SING_SCAT", "GRND_RFLT", "DRCT_RFLT", "TOTAL_RAD"];
+const RADIANCES: [&str; 10] = [
+    "PTH_THRML",
+    "THRML_EM",
+    "THRML_SCT",
+    "SURF_EMIS",
+    "SOL_SCAT",
+    "MULT_SCAT",
+    "SING_SCAT",
+    "GRND_RFLT",
+    "DRCT_RFLT",
+    "TOTAL_RAD",
+];
 /// Columns that are empty where the sun is not in the run.
-const OF_THE_SUN: [&str; 6] = ["SOL_SCAT", "SING_SCAT", "DRCT_RFLT", "REF_SOL", "SOL@OBS", "TOA_SUN"];
+const OF_THE_SUN: [&str; 7] =
+    ["SOL_SCAT", "MULT_SCAT", "SING_SCAT", "DRCT_RFLT", "REF_SOL", "SOL@OBS", "TOA_SUN"];
 /// Names of two words, as MODTRAN 4 writes them, and what begins them.
 const TWO_WORDS: [&str; 10] = ["REF", "TOT", "PTH", "THRML", "SURF", "SOL", "SING", "GRND", "DRCT", "TOTAL"];
 /// The column of brightness temperatures.
@@ -30,17 +41,26 @@ const END: f64 = -9999.0;
 pub(super) fn column(text: &str, wanted: &str) -> Result<Option<Column>> {
     let lines: Vec<(usize, &str)> =
         text.lines().enumerate().map(|(at, line)| (at + 1, line.trim())).collect();
-    if let Some(at) = lines.iter().position(|(_, line)| is_names(line)) {
-        return modtran(&lines, at, wanted).map(Some);
+    let at = |is_one: fn(&str) -> bool| lines.iter().position(|(_, line)| is_one(line));
+    match (at(is_names), at(is_lblrtm)) {
+        (Some(at), _) => modtran(&lines, at, wanted).map(Some),
+        (None, Some(at)) => lblrtm(&lines, at, wanted).map(Some),
+        (None, None) => Ok(None),
     }
-    let is_lblrtm = |(_, line): &(usize, &str)| {
-        let words: Vec<&str> = line.trim_start_matches('0').split_whitespace().collect();
-        matches!(words[..], ["WAVENUMBER", _] | ["WAVENUMBER", _, _]) && !line.contains(',')
-    };
-    match lines.iter().position(is_lblrtm) {
-        Some(at) => lblrtm(&lines, at, wanted).map(Some),
-        None => Ok(None),
+}
+
+/// The program that wrote a text.
+pub(super) fn program(text: &str) -> Option<&'static str> {
+    if text.lines().any(is_names) {
+        return Some("MODTRAN");
     }
+    text.lines().any(is_lblrtm).then_some("LBLRTM")
+}
+
+/// Whether a line names the columns of a text of LBLRTM.
+fn is_lblrtm(line: &str) -> bool {
+    let words: Vec<&str> = line.trim().trim_start_matches('0').split_whitespace().collect();
+    matches!(words[..], ["WAVENUMBER", _] | ["WAVENUMBER", _, _]) && !line.contains(',')
 }
 
 /// Whether a line names the columns of tape7.
@@ -101,7 +121,8 @@ fn modtran(lines: &[(usize, &str)], at: usize, wanted: &str) -> Result<Column> {
             ended = true;
             break;
         }
-        if cells.len() + OF_THE_SUN.len() == names.len() {
+        let of_the_sun = names.iter().filter(|name| OF_THE_SUN.contains(&name.as_str())).count();
+        if cells.len() + of_the_sun == names.len() {
             names.retain(|name| !OF_THE_SUN.contains(&name.as_str()));
         }
         if cells.len() != names.len() {

@@ -121,6 +121,20 @@ fn text_of_lblrtm_is_read_and_its_records_are_named() {
     assert!(simulated::refuse_unformatted(b"wavenumber_cm1,sky\n").is_ok());
 }
 
+#[test]
+fn the_air_of_one_path_is_no_table_of_lengths() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("air.tp7");
+    std::fs::write(&file, TAPE7).unwrap();
+    let message = atmosphere(&file).unwrap_err().to_string();
+    assert!(
+        message.contains("air.tp7: this is what MODTRAN writes of one path") && message.contains("tau_1km"),
+        "{message}"
+    );
+    std::fs::write(&file, "wavenumber_cm1,tau_10m,tau_1km\n700,0.9,0.2\n1300,0.95,0.4\n").unwrap();
+    assert_eq!(atmosphere(&file).unwrap().range_cm1(), (700.0, 1300.0));
+}
+
 proptest::proptest! {
     #[test]
     fn no_text_makes_the_reader_panic(cut in 0_usize..700, body in "[0-9A-Z_.,\\[\\] ()eE+\n-]{0,80}") {
