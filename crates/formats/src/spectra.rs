@@ -6,7 +6,7 @@
 //! 3. A table with the columns `n` and `k` behind the axis: optical constants of a half-space.
 //! 4. ECOSTRESS or ASTER spectral library text: wavelength in µm, reflectance in percent.
 //! 5. JCAMP-DX (`.jdx`, `.dx`) and ENVI spectral libraries (`.sli` with `.hdr`).
-//! 6. USGS spectral libraries 6 and 7 and RELAB, as text.
+//! 6. USGS spectral libraries 6 and 7 and RELAB, as text; tables with a label of PDS4.
 //! 7. SPC (GRAMS), OPUS (Bruker) and ASD, as bytes.
 //!
 //! The format is told from the first bytes or lines, never from the name alone. A file of another kind is named with what makes a table
@@ -33,6 +33,7 @@ mod jcamp;
 mod layout;
 mod names;
 mod opus;
+mod pds;
 mod radiance;
 mod reading;
 mod relab;
@@ -97,11 +98,24 @@ fn content_of_file(path: &Path, reading: &Reading) -> Result<Content> {
         asd::parse
     } else {
         foreign::refuse_binary(&bytes).map_err(|error| error.in_file(path))?;
-        // A file that is named without its folder is in this one.
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        return content(&file::text(bytes), path, Some(folder), reading);
+        return content_of_text(&file::text(bytes), path, reading);
     };
     placed(parse(&bytes, path, reading), path)
+}
+
+/// What a text file holds, with the files beside it that belong to it.
+fn content_of_text(text: &str, path: &Path, reading: &Reading) -> Result<Content> {
+    if pds::is_label(text) {
+        let table = pds::table_of(text, path).map_err(|error| error.in_file(path))?;
+        let rows = file::text_of_file(&table, file::READ_SPECTRUM)?;
+        return placed(pds::parse(&rows, text, &table, reading), &table);
+    }
+    if let Some(label) = pds::label_of(path)? {
+        return placed(pds::parse(text, &label, path, reading), path);
+    }
+    // A file that is named without its folder is in this one.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    content(text, path, Some(folder), reading)
 }
 
 /// What a text holds; files that belong to it are looked for in the folder `beside`.

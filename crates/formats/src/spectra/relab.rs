@@ -16,7 +16,7 @@ use hadar::words::one_line;
 use std::path::Path;
 
 /// What is said of all of them.
-const REMARK: &str = "RELAB measures from one direction to another, relative to a white panel: emissivity is 1 - reflectance of \
+pub(super) const REMARK: &str = "RELAB measures from one direction to another, relative to a white panel: emissivity is 1 - reflectance of \
                       hemispherical reflectance alone, so these values may be wrong";
 
 /// Wavelength and reflectance of a row of two or three numbers.
