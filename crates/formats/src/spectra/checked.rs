@@ -1,8 +1,8 @@
 //! Emissivities as they were read, held against [0, 1]: noise beyond it is cut off where that is asked for, the rest is said.
 //!
 //! Measured reflectances go below 0 and above 1 where an instrument has little light. With a clip c, e becomes 0 in [−c, 0) and 1 in
-//! (1, 1 + c], and rows without a number are left out, so that the straight line between their neighbours takes their place. What
-//! lies farther out stays as it is: an error once a band needs it.
+//! (1, 1 + c], and rows without a number are left out where the gap is narrow, so that the straight line between their neighbours
+//! takes their place. What lies farther out and wide gaps stay as they are: an error once a band needs them.
 
 use super::content::is_elsewhere;
 use hadar::error::{Error, Result};
@@ -13,6 +13,9 @@ use hadar::words::significant;
 const LONG_WAVE_CM1: (f64, f64) = (770.0, 1250.0);
 /// The most that is noise: a twentieth of what a black surface has is no small error.
 pub(super) const MOST_CLIP: f64 = 0.05;
+
+/// The widest gap between known rows that a straight line may bridge, cm⁻¹: features of solids are wider.
+const WIDEST_GAP_CM1: f64 = 20.0;
 
 /// A table of emissivities with what a user should know of it.
 pub(super) struct Checked {
@@ -52,54 +55,62 @@ fn beyond(emissivity: f64) -> f64 {
 
 /// The rows with noise cut off, and what was done.
 fn clipped(table: Table<1>, by: f64) -> Result<(Table<1>, String)> {
-    let (mut rows, mut cut, mut dropped) = (Vec::new(), 0_usize, 0_usize);
-    // How far out the worst was and where; from where to where the widest gap is.
-    let (mut worst, mut gap) = ((0.0, 0.0), (0.0, 0.0));
-    let (mut before, mut is_open) = (None, false);
-    for (wavenumber, [emissivity]) in table.rows() {
-        if emissivity.is_nan() {
-            (dropped, is_open) = (dropped + 1, true);
-            continue;
-        }
-        if let (Some(low), true) = (before, is_open)
-            && wavenumber - low > gap.1 - gap.0
-        {
-            gap = (low, wavenumber);
-        }
-        (before, is_open) = (Some(wavenumber), false);
-        let out = beyond(emissivity);
-        let is_noise = out > 0.0 && out <= by;
-        if is_noise {
-            cut += 1;
-            if out > worst.0 {
-                worst = (out, wavenumber);
-            }
-        }
-        rows.push((wavenumber, [if is_noise { emissivity.clamp(0.0, 1.0) } else { emissivity }]));
-    }
+    let all: Vec<(f64, f64)> = table.rows().map(|(wavenumber, [e])| (wavenumber, e)).collect();
     let mut said = Vec::new();
-    if cut > 0 {
-        let (out, at) = worst;
+    let is_noise = |e: f64| beyond(e) > 0.0 && beyond(e) <= by;
+    let noise = all.iter().filter(|row| is_noise(row.1));
+    if let Some((at, worst)) = noise.clone().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1))) {
         said.push(format!(
-            "{cut} rows outside 0 to 1 were clipped, the worst by {} at {at:.1} cm^-1 (clip {by})",
-            significant(out, 2)
+            "{} outside 0 to 1 clipped, the worst by {} at {at:.1} cm^-1 (clip {by})",
+            rows_of(noise.count()),
+            significant(beyond(*worst), 2)
         ));
     }
-    if dropped > 0 {
-        let where_to = match gap.1 > 0.0 {
-            true => format!(", the widest gap from {:.1} to {:.1} cm^-1 is bridged", gap.0, gap.1),
-            false => String::new(),
-        };
-        said.push(format!("{dropped} rows without a number were left out{where_to}"));
+    let (known, left_out, widest) = bridged(&all);
+    if left_out > 0 {
+        let gap = widest.map_or_else(String::new, |(low, high)| {
+            format!(", the widest gap from {low:.1} to {high:.1} cm^-1 is bridged")
+        });
+        said.push(format!("{} without a number left out{gap}", rows_of(left_out)));
     }
     if said.is_empty() {
         return Ok((table, String::new()));
     }
-    if rows.len() < 2 {
-        let found = format!("{} rows are numbers", rows.len());
+    if known.len() < 2 {
+        let found = format!("{} with a number", rows_of(known.len()));
         return Err(Error::malformed(found, "a spectrum needs at least 2"));
     }
+    let cut = |(wavenumber, e): (f64, f64)| (wavenumber, [if is_noise(e) { e.clamp(0.0, 1.0) } else { e }]);
+    let rows: Vec<(f64, [f64; 1])> = known.into_iter().map(cut).collect();
     Ok((Table::new(&rows)?, said.join("; ")))
+}
+
+/// The rows without those that are no numbers, how many these were, and the widest gap that is bridged. One row alone is left out,
+/// several where they are in a narrow gap or at an end; in a wide gap they stay, so that nothing is known there.
+fn bridged(all: &[(f64, f64)]) -> (Vec<(f64, f64)>, usize, Option<(f64, f64)>) {
+    let (mut known, mut left_out, mut widest): (Vec<(f64, f64)>, usize, Option<(f64, f64)>) =
+        (Vec::new(), 0, None);
+    for run in all.chunk_by(|a, b| a.1.is_nan() == b.1.is_nan()) {
+        let is_hole = run.first().is_some_and(|row| row.1.is_nan());
+        let after = run.last().and_then(|last| all.iter().find(|row| row.0 > last.0));
+        let gap = known.last().zip(after).map(|(low, high)| (low.0, high.0));
+        let is_wide = gap.is_some_and(|(low, high)| run.len() > 1 && high - low > WIDEST_GAP_CM1);
+        if !is_hole || is_wide {
+            known.extend(run);
+            continue;
+        }
+        left_out += run.len();
+        let width = |gap: Option<(f64, f64)>| gap.map_or(0.0, |(low, high)| high - low);
+        if width(gap) > width(widest) {
+            widest = gap;
+        }
+    }
+    (known, left_out, widest)
+}
+
+/// Rows, in words.
+fn rows_of(count: usize) -> String {
+    if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
 }
 
 /// What is to be said of rows outside 0 to 1.
@@ -145,13 +156,32 @@ mod tests {
         assert_eq!(rows, [(800.0, 0.0), (850.0, 0.5), (1000.0, 1.0), (1100.0, 1.2), (1300.0, 0.9)]);
         assert_eq!(
             found.note,
-            "2 rows outside 0 to 1 were clipped, the worst by 0.013 at 800.0 cm^-1 (clip 0.02); 1 rows without a number were left \
-             out, the widest gap from 850.0 to 1000.0 cm^-1 is bridged"
+            "2 rows outside 0 to 1 clipped, the worst by 0.013 at 800.0 cm^-1 (clip 0.02); 1 row without a number left out, the \
+             widest gap from 850.0 to 1000.0 cm^-1 is bridged"
         );
         assert!(found.warnings[1].contains("1 rows from 1100.0 to 1100.0"), "{:?}", found.warnings);
         // Nothing to do, nothing said.
         let plain = checked(table(&[(700.0, 0.5), (1300.0, 0.6)]), Some(0.02)).unwrap();
         assert_eq!((plain.note.as_str(), plain.warnings.len()), ("", 0));
+        // A narrow gap is bridged, a wide one is not, what is at an end is left off.
+        let hole = |to: f64| {
+            let rows = [
+                (700.0, 0.5),
+                (800.0, 0.5),
+                (801.0, f64::NAN),
+                (802.0, f64::NAN),
+                (to, 0.5),
+                (1300.0, f64::NAN),
+            ];
+            checked(table(&rows), Some(0.0)).unwrap()
+        };
+        assert_eq!((hole(815.0).table.rows().count(), hole(825.0).table.rows().count()), (3, 5));
+        assert!(hole(825.0).table.rows().any(|(_, [e])| e.is_nan()));
+        assert!(
+            hole(815.0)
+                .note
+                .starts_with("3 rows without a number left out, the widest gap from 800.0 to 815.0")
+        );
         assert!(checked(table(&[(700.0, f64::NAN), (1300.0, 0.6)]), Some(0.0)).is_err());
     }
 }

@@ -17,7 +17,7 @@ use std::path::Path;
 /// assert!(reading.file(&file).unwrap_err().to_string().contains("--clip"));
 /// let noisy = reading.clipping(0.02)?.file(&file)?;
 /// assert_eq!(noisy[0].emissivity(&[700.0])?, [1.0]);
-/// assert!(noisy[0].warnings()[0].starts_with("1 rows outside 0 to 1 were clipped, the worst by 0.004 at 700.0 cm^-1"));
+/// assert!(noisy[0].warnings()[0].starts_with("1 row outside 0 to 1 clipped, the worst by 0.0040 at 700.0 cm^-1"));
 /// # std::fs::remove_dir_all(&folder).unwrap();
 /// # Ok::<(), hadar::Error>(())
 /// ```
@@ -35,7 +35,8 @@ impl Reading {
         Self { columns: columns.into_iter().map(Into::into).collect(), ..self }
     }
 
-    /// The same, emissivities outside [0, 1] by at most `by` set to 0 or 1, and rows without a number left out.
+    /// The same, emissivities outside [0, 1] by at most `by` set to 0 or 1, and rows without a number left
+    /// out where the gap is narrow.
     ///
     /// # Errors
     /// A number below 0, or more than noise.

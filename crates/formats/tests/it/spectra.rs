@@ -309,7 +309,7 @@ fn noise_is_cut_off_where_that_is_asked_for() {
     assert!(message.contains("noisy.csv:2: paint") && message.contains("the clip of 0.01"), "{message}");
     let read = Reading::default().clipping(0.02).unwrap().file(&file).unwrap();
     assert_eq!(read[0].emissivity(&[700.0, 800.0, 1000.0]).unwrap(), [1.0, 0.95, 0.0]);
-    let said = "2 rows outside 0 to 1 were clipped, the worst by 0.013 at 700.0 cm^-1 (clip 0.02); 1 rows without a number were left \
+    let said = "2 rows outside 0 to 1 clipped, the worst by 0.013 at 700.0 cm^-1 (clip 0.02); 1 row without a number left \
                 out, the widest gap from 700.0 to 900.0 cm^-1 is bridged";
     assert_eq!((read[0].warnings()[0].as_str(), read[0].provenance().note.as_str()), (said, said));
     assert_eq!((read[1].rows(), read[1].warnings().len()), (4, 1));
