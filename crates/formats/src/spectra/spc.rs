@@ -22,9 +22,6 @@ use std::path::Path;
 const TRACE_HEADER: usize = 32;
 /// The most traces of a file.
 const MOST_TRACES: usize = 100_000;
-/// The most points of a trace: no spectrum has more, and the axis is made of two numbers alone.
-const MOST_POINTS: usize = 1 << 24;
-
 /// Whether bytes look like one: the version in the second of them, and some that no text has.
 pub(super) fn is_one(bytes: &[u8]) -> bool {
     let start = bytes.get(..header::NEW).unwrap_or(bytes);
@@ -58,7 +55,9 @@ pub(super) fn parse(all: &[u8], source: &Path, reading: &Reading) -> Result<Cont
 
 /// Place and value of all points, trace by trace.
 fn traces(bytes: Bytes<'_>, header: &Header) -> Result<Vec<Vec<(f64, f64)>>> {
-    if header.traces > MOST_TRACES || header.points > MOST_POINTS && !header.flags.has(Flags::AXIS_EACH) {
+    // A point takes two bytes at least; the axis of an even one none, so that it is not made for a file that has not as many.
+    let too_many = !header.flags.has(Flags::AXIS_EACH) && header.points > bytes.all.len() / 2;
+    if header.traces > MOST_TRACES || too_many {
         let found = format!("{} traces of {} points", header.traces, header.points);
         return Err(Error::malformed(found, FETCH_AGAIN));
     }
@@ -88,6 +87,8 @@ fn with_own_axes(bytes: Bytes<'_>, header: &Header) -> Result<Vec<Vec<(f64, f64)
     /// Bytes of an entry: place, length, and the third axis.
     const ENTRY: usize = 12;
     let (directory, mut next) = (header.points, header.end);
+    // Traces do not share their points, or a short file would have any number of them.
+    let mut left = bytes.all.len();
     let mut traces = Vec::new();
     for trace in 0..header.traces {
         let at = match directory {
@@ -100,6 +101,11 @@ fn with_own_axes(bytes: Bytes<'_>, header: &Header) -> Result<Vec<Vec<(f64, f64)
         };
         let points = bytes.count(at.saturating_add(16), DataType::U32)?;
         let places = at.saturating_add(TRACE_HEADER);
+        let Some(rest) = left.checked_sub(points.saturating_mul(DataType::F32.size())) else {
+            let found = format!("more points than {} bytes have room for", bytes.all.len());
+            return Err(Error::malformed(found, FETCH_AGAIN));
+        };
+        left = rest;
         let axis = bytes.numbers(places, points, DataType::F32)?;
         let (values, end) = ordinates(bytes, header, at, places + points * DataType::F32.size(), points)?;
         traces.push(axis.into_iter().zip(values).collect());

@@ -3,7 +3,7 @@
 use super::super::bytes::{Bytes, FETCH_AGAIN};
 use super::super::header::{self, Axis, Meaning, Quantity, Values};
 use super::super::samples::Said;
-use super::{MOST_POINTS, TRACE_HEADER};
+use super::TRACE_HEADER;
 use crate::envi_header::DataType;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
@@ -124,8 +124,7 @@ impl Header {
     /// The places of an axis that is evenly spaced.
     pub(super) fn even(&self) -> Result<Vec<f64>> {
         let Self { first, last, points, .. } = *self;
-        let is_one =
-            first.is_finite() && last.is_finite() && first != last && (2..=MOST_POINTS).contains(&points);
+        let is_one = first.is_finite() && last.is_finite() && first != last && points > 1;
         if !is_one {
             let found = format!("an axis of {points} points from {first} to {last}");
             return Err(Error::malformed(found, FETCH_AGAIN));
