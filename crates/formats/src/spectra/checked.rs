@@ -66,7 +66,7 @@ fn clipped(table: Table<1>, by: f64) -> Result<(Table<1>, String)> {
             significant(beyond(*worst), 2)
         ));
     }
-    let (known, left_out, widest) = bridged(&all);
+    let Bridged { rows: known, left_out, widest } = bridged(&all);
     if left_out > 0 {
         let gap = widest.map_or_else(String::new, |(low, high)| {
             format!(", the widest gap from {low:.1} to {high:.1} cm^-1 is bridged")
@@ -85,27 +85,36 @@ fn clipped(table: Table<1>, by: f64) -> Result<(Table<1>, String)> {
     Ok((Table::new(&rows)?, said.join("; ")))
 }
 
-/// The rows without those that are no numbers, how many these were, and the widest gap that is bridged. One row alone is left out,
-/// several where they are in a narrow gap or at an end; in a wide gap they stay, so that nothing is known there.
-fn bridged(all: &[(f64, f64)]) -> (Vec<(f64, f64)>, usize, Option<(f64, f64)>) {
-    let (mut known, mut left_out, mut widest): (Vec<(f64, f64)>, usize, Option<(f64, f64)>) =
-        (Vec::new(), 0, None);
+/// Rows that are numbers, or that stay since nothing may take their place.
+#[derive(Default)]
+struct Bridged {
+    rows: Vec<(f64, f64)>,
+    /// Rows that were left out.
+    left_out: usize,
+    /// The widest gap that is bridged, cm⁻¹.
+    widest: Option<(f64, f64)>,
+}
+
+/// One row without a number alone is left out, several where they are in a narrow gap or at an end; in a wide gap they stay, so that
+/// nothing is known there.
+fn bridged(all: &[(f64, f64)]) -> Bridged {
+    let mut bridged = Bridged::default();
+    let width = |gap: Option<(f64, f64)>| gap.map_or(0.0, |(low, high)| high - low);
+    let mut behind = all;
     for run in all.chunk_by(|a, b| a.1.is_nan() == b.1.is_nan()) {
+        behind = behind.get(run.len()..).unwrap_or_default();
         let is_hole = run.first().is_some_and(|row| row.1.is_nan());
-        let after = run.last().and_then(|last| all.iter().find(|row| row.0 > last.0));
-        let gap = known.last().zip(after).map(|(low, high)| (low.0, high.0));
-        let is_wide = gap.is_some_and(|(low, high)| run.len() > 1 && high - low > WIDEST_GAP_CM1);
-        if !is_hole || is_wide {
-            known.extend(run);
+        let gap = bridged.rows.last().zip(behind.first()).map(|(low, high)| (low.0, high.0));
+        if !is_hole || run.len() > 1 && width(gap) > WIDEST_GAP_CM1 {
+            bridged.rows.extend(run);
             continue;
         }
-        left_out += run.len();
-        let width = |gap: Option<(f64, f64)>| gap.map_or(0.0, |(low, high)| high - low);
-        if width(gap) > width(widest) {
-            widest = gap;
+        bridged.left_out += run.len();
+        if width(gap) > width(bridged.widest) {
+            bridged.widest = gap;
         }
     }
-    (known, left_out, widest)
+    bridged
 }
 
 /// Rows, in words.
