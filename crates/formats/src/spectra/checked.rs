@@ -48,8 +48,13 @@ pub(super) fn checked(table: Table<1>, clip: Option<f64>) -> Result<Checked> {
     Ok(Checked { table, warnings, note })
 }
 
+/// The clip that cuts off what is outside by this, rounded up, if that may be noise.
+pub(super) fn clip_for(out: f64) -> Option<f64> {
+    (out <= MOST_CLIP).then(|| (1e3 * out).ceil() / 1e3)
+}
+
 /// By how much an emissivity is outside [0, 1]; not above 0 inside.
-fn beyond(emissivity: f64) -> f64 {
+pub(super) fn beyond(emissivity: f64) -> f64 {
     (emissivity - 1.0).max(-emissivity)
 }
 
@@ -129,16 +134,8 @@ fn outside(table: &Table<1>) -> Option<String> {
     let &(worst_cm1, worst) = outside.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1)))?;
     let (low, high) =
         outside.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &(x, _)| (low.min(x), high.max(x)));
-    let clip = match beyond(worst) <= MOST_CLIP {
-        // Rounded up, so that what is written is enough.
-        true => {
-            format!(
-                "; `hadar materials import --clip {}` cuts such noise",
-                (1e3 * beyond(worst)).ceil() / 1e3
-            )
-        }
-        false => String::new(),
-    };
+    let clip = clip_for(beyond(worst))
+        .map_or_else(String::new, |by| format!("; `hadar materials import --clip {by}` cuts such noise off"));
     Some(format!(
         "{} rows from {low:.1} to {high:.1} cm^-1 have a reflectance outside 0 to 100 percent (at worst {:.3} percent \
          at {worst_cm1:.1} cm^-1); bands that use them are an error{clip}",

@@ -1,7 +1,7 @@
 //! What the columns of a table are: axis, then emissivity, reflectance, n and k, or materials.
 
-use super::checked::{Checked, MOST_CLIP, checked};
-use super::content::{of_all, stem};
+use super::checked::{Checked, beyond, checked, clip_for};
+use super::content::{joined, of_all, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use super::holes;
 use super::layout::{Sheet, is_index};
@@ -92,11 +92,7 @@ pub(super) fn materials(sheet: &Sheet, source: &Path, reading: &Reading) -> Resu
         if let [column, ..] = left_out.as_slice() {
             warnings.push(format!("the errors in the column `{}` are not used", one_line(column)));
         }
-        let note = [quantity.note(), &note]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join("; ");
+        let note = joined(&[quantity.note(), &note], "; ");
         let provenance = Provenance::of_file(description, source.clone(), &note);
         let read_as = columns.read_as(&format!("{}{share}", quantity.name()), sheet);
         let material = Material::of_table(name.clone(), provenance, table);
@@ -110,16 +106,11 @@ pub(super) fn materials(sheet: &Sheet, source: &Path, reading: &Reading) -> Resu
 }
 
 /// How a value just outside 0 to 1 becomes one that is not, if it is noise.
-fn clip_for(fraction: f64, clip: Option<f64>) -> String {
-    let out = (fraction - 1.0).max(-fraction);
-    match clip {
-        Some(by) => format!(", or outside by no more than the clip of {by}"),
-        // Rounded up, so that what is written is enough.
-        None if out <= MOST_CLIP => {
-            let by = (1e3 * out).ceil() / 1e3;
-            format!("; if it is noise, `hadar materials import --clip {by}` cuts it off")
-        }
-        None => String::new(),
+fn or_clipped(fraction: f64, clip: Option<f64>) -> String {
+    match (clip, clip_for(beyond(fraction))) {
+        (Some(by), _) => format!(", or outside by no more than the clip of {by}"),
+        (None, Some(by)) => format!("; if it is noise, `hadar materials import --clip {by}` cuts it off"),
+        (None, None) => String::new(),
     }
 }
 
@@ -359,7 +350,7 @@ impl<'a> Columns<'a> {
                     true => ("percent", "between 0 and 100 percent".to_owned()),
                     false => ("", self.fraction(column, key, sheet)),
                 };
-                let due = due + &clip_for(fraction, clip);
+                let due = due + &or_clipped(fraction, clip);
                 let error = Error::out_of_range(quantity.name(), value, unit, due);
                 Err(error.for_key(key).on_line(*line))
             })

@@ -2,7 +2,7 @@
 
 use hadar::error::{Error, Result};
 use hadar::material::Material;
-use hadar::words::{kebab_case, significant};
+use hadar::words::{kebab_case, one_line, significant};
 use std::path::Path;
 
 /// The thermal infrared, cm⁻¹ (20 to 3 µm): beyond it nothing is seen by heat at the temperatures around us.
@@ -55,6 +55,12 @@ impl Content {
 pub(crate) fn stem(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| kebab_case(&stem.to_string_lossy())).unwrap_or_default();
     if stem.is_empty() { "unnamed".to_owned() } else { stem }
+}
+
+/// Non-empty parts without doubled blanks.
+pub(super) fn joined(parts: &[&str], separator: &str) -> String {
+    let parts = parts.iter().map(|part| one_line(part)).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(separator)
 }
 
 /// A name without the words at its end that make it longer than a name should be.

@@ -11,7 +11,7 @@
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
 use super::checked::{Checked, checked};
-use super::content::{Content, of_all, short_name, stem};
+use super::content::{Content, joined, of_all, short_name, stem};
 use super::header::Quantity;
 use super::reading::Reading;
 use hadar::error::{Error, Result, check};
@@ -95,12 +95,6 @@ pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Cont
     let sample = kebab_case(value("sample no."));
     let read_as = "ECOSTRESS, wavelength in um, reflectance in percent";
     Ok(Content::Materials(vec![material.reading(read_as).of_sample(sample)]))
-}
-
-/// Non-empty parts without doubled blanks.
-fn joined(parts: &[&str], separator: &str) -> String {
-    let parts = parts.iter().map(|part| one_line(part)).filter(|part| !part.is_empty());
-    parts.collect::<Vec<_>>().join(separator)
 }
 
 fn split(text: &str) -> Result<Parts> {

@@ -6,7 +6,7 @@
 //! others they are no number: an error once a band needs them, as values below 0 or above 1 are.
 
 use super::checked::{Checked, checked};
-use super::content::{Content, of_all, stem};
+use super::content::{Content, joined, of_all, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use super::layout::MOST_SPECTRA;
 use super::reading::Reading;
@@ -185,11 +185,7 @@ impl Library<'_> {
             quantity.name()
         );
         let source = self.source.display().to_string();
-        let note = [quantity.note(), &note]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join("; ");
+        let note = joined(&[quantity.note(), &note], "; ");
         let provenance = Provenance::of_file(one_line(name), source, &note);
         let material = Material::of_table(kebab_case(name), provenance, table);
         Ok(Some(material.reading(read_as).warn(said)))

@@ -15,7 +15,7 @@
 mod ordinates;
 
 use super::checked::{Checked, checked};
-use super::content::{Content, of_all, short_name, stem};
+use super::content::{Content, joined, of_all, short_name, stem};
 use super::header::{self, Meaning, Values};
 use super::reading::Reading;
 use crate::spectral_unit::SpectralUnit;
@@ -239,11 +239,7 @@ impl Block<'_> {
         let share = if percent { " in percent" } else { "" };
         let source = [source.display().to_string(), said(&["ORIGIN", "OWNER"])].join("; ");
         let source = source.trim_end_matches("; ").to_owned();
-        let note = [quantity.note(), &note]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join("; ");
+        let note = joined(&[quantity.note(), &note], "; ");
         let provenance = Provenance::of_file(said(&["TITLE", "SAMPLEDESCRIPTION"]), source, &note);
         let read_as = format!("JCAMP-DX, {} in {}, {}{share}", unit.quantity(), unit.name(), quantity.name());
         Ok(Ok(Material::of_table(name, provenance, table).reading(read_as).warn(warnings)))

@@ -6,7 +6,7 @@
 //! Source: PDS4 Standards Reference, 1.20 (2023), Table_Character.
 
 use super::bytes::FETCH_AGAIN;
-use super::content::{Content, short_name, stem};
+use super::content::{Content, joined, short_name, stem};
 use super::header::{self, Axis, Meaning, Values};
 use super::reading::Reading;
 use super::relab;
@@ -153,8 +153,7 @@ pub(super) fn parse(text: &str, label: &str, source: &Path, reading: &Reading) -
     let (specimen, title) = (of("specimen_name"), of("title"));
     let own = short_name(&kebab_case(&specimen));
     let name = if own.is_empty() { stem(source) } else { own };
-    let parts = [title, specimen, of("specimen_description")];
-    let description = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+    let description = joined(&[&title, &specimen, &of("specimen_description")], "; ");
     let remark = if label.to_lowercase().contains("relab") { relab::REMARK } else { "" };
     let origin = Origin { name, description, format: "PDS4", source, remark };
     let samples = Samples { unit, quantity, percent, points };

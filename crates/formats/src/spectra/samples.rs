@@ -4,7 +4,7 @@
 //! values below 0 or above 1 are.
 
 use super::checked::{Checked, checked};
-use super::content::of_all;
+use super::content::{joined, of_all};
 use super::header::{self, Meaning, Quantity, Values};
 use super::reading::Reading;
 use crate::spectral_unit::SpectralUnit;
@@ -131,8 +131,7 @@ impl Samples {
         if !origin.remark.is_empty() {
             warnings.push(origin.remark.to_owned());
         }
-        let note = [self.quantity.note(), origin.remark, &note].into_iter().filter(|part| !part.is_empty());
-        let note = note.collect::<Vec<_>>().join("; ");
+        let note = joined(&[self.quantity.note(), origin.remark, &note], "; ");
         let source = origin.source.display().to_string();
         let provenance = Provenance::of_file(one_line(&origin.description), source, &note);
         let share = if self.percent { " in percent" } else { "" };
