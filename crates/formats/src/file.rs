@@ -84,16 +84,27 @@ pub fn text_of_file(path: &Path, action: &str) -> Result<String> {
 
 /// The same of a file that is no table but parsed as a whole, which takes up to a hundred times its size: of at most `most` bytes.
 pub(crate) fn text_within(path: &Path, action: &str, most: u64) -> Result<String> {
+    Ok(text(self::bytes(path, action, most)?))
+}
+
+/// All bytes of a file that may be text.
+///
+/// # Errors
+/// As [`bytes`].
+pub(crate) fn short_bytes(path: &Path, action: &str) -> Result<Vec<u8>> {
     if action == READ_SPECTRUM && path.is_dir() {
         return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
     }
-    let bytes = self::bytes(path, action, most)?;
+    bytes(path, action, LONGEST_FILE)
+}
+
+/// Text of bytes, as of a file ([`text_of_file`]).
+pub(crate) fn text(bytes: Vec<u8>) -> String {
     if let Some(text) = utf_16(&bytes) {
-        return Ok(text);
+        return text;
     }
     // Latin-1 is the first 256 code points
-    Ok(String::from_utf8(bytes)
-        .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))
+    String::from_utf8(bytes).unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect())
 }
 
 /// Text that a byte-order mark says to be UTF-16, as Excel writes `Unicode text`.

@@ -2,8 +2,8 @@
 //!
 //! * [`cube`]: heat cubes, NPY, NPZ, ENVI, MATLAB, FITS, TIFF, Zarr, NetCDF, radiometric files of cameras, HDF5 and NetCDF-4 (feature `hdf5`,
 //!   which is a default);
-//! * [`spectra`]: emissivities, in CSV and other text, ECOSTRESS, JCAMP-DX and ENVI files; [`ReadLibrary`] adds those of a file, a
-//!   folder or a manifest to a library, [`members`] reads those of a class;
+//! * [`spectra`]: emissivities, in CSV and other text, ECOSTRESS, USGS, RELAB, JCAMP-DX, ENVI, SPC, OPUS and ASD files, and radiances;
+//!   [`ReadLibrary`] adds those of a file, a folder or a manifest to a library, [`members`] reads those of a class;
 //! * [`bands`] and [`filters`]: where a camera's bands are, and what its filters transmit;
 //! * [`noise_variance`]: the electronic noise of a cube.
 //!

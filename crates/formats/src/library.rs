@@ -41,8 +41,9 @@ impl ReadLibrary for Library {
         if !there.is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
             return add_manifest(self, &path, directory);
         }
-        let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
-        for file in spectra::spectra_in(directory)? {
+        let spectra::Folder { files, mut passed_over } = spectra::spectra_in(directory)?;
+        let mut sources = Vec::new();
+        for file in files {
             hadar::stop::check();
             match spectra::from_file(&file) {
                 Ok(materials) => sources.push((file, materials)),

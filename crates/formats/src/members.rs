@@ -68,7 +68,9 @@ pub fn members(class: &ClassSpec, library: &Library) -> Result<Class> {
             }
             MaterialRef::Name(name) => own.push((library.get(name)?.clone(), None)),
             MaterialRef::File(path) => {
-                for file in files(path)? {
+                let read::Folder { files, passed_over: forks } = files(path)?;
+                passed_over.extend(forks.iter().map(Error::to_string));
+                for file in files {
                     if !known.insert(file.clone()) {
                         let found = format!("`{}` is in the class twice", file.display());
                         return Err(Error::malformed(found, "name every spectrum once"));
@@ -117,27 +119,28 @@ pub fn members(class: &ClassSpec, library: &Library) -> Result<Class> {
 }
 
 /// The files of a path: of a folder all its spectra, of a pattern those that match, else the one.
-fn files(path: &Path) -> Result<Vec<PathBuf>> {
+fn files(path: &Path) -> Result<read::Folder> {
     if path.is_dir() {
         return some(read::spectra_in(path)?, path);
     }
     let pattern = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if !pattern.contains(['*', '?']) {
-        return Ok(vec![path.to_owned()]);
+        return Ok(read::Folder { files: vec![path.to_owned()], ..read::Folder::default() });
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let matching = read::spectra_in(folder)?.into_iter().filter(|file| {
+    let mut found = read::spectra_in(folder)?;
+    found.files.retain(|file| {
         file.file_name().is_some_and(|name| matches(pattern.as_bytes(), name.to_string_lossy().as_bytes()))
     });
-    some(matching.collect(), path)
+    some(found, path)
 }
 
-fn some(files: Vec<PathBuf>, path: &Path) -> Result<Vec<PathBuf>> {
-    if files.is_empty() {
+fn some(found: read::Folder, path: &Path) -> Result<read::Folder> {
+    if found.files.is_empty() {
         let found = "no file of spectra is here";
         return Err(Error::malformed(found, "correct the path or the pattern").in_file(path));
     }
-    Ok(files)
+    Ok(found)
 }
 
 /// Whether a name matches a pattern of `*` (any characters) and `?` (one).

@@ -6,59 +6,55 @@
 //! 3. A table with the columns `n` and `k` behind the axis: optical constants of a half-space.
 //! 4. ECOSTRESS or ASTER spectral library text: wavelength in µm, reflectance in percent.
 //! 5. JCAMP-DX (`.jdx`, `.dx`) and ENVI spectral libraries (`.sli` with `.hdr`).
+//! 6. USGS spectral libraries 6 and 7 and RELAB, as text; tables with a label of PDS4.
+//! 7. SPC (GRAMS), OPUS (Bruker) and ASD, as bytes.
+//!
+//! The format is told from the first bytes or lines, never from the name alone. A file of another kind is named with what makes a table
+//! of it.
 //!
 //! Rows may be in any order; `#` begins a comment line; a byte-order mark, any end of line and extra blanks do no harm. Bytes that
 //! are not UTF-8 (or UTF-16 with its mark) are read as Latin-1. What is ambiguous is asked for: the message has the header to
 //! write.
 
+mod asd;
+mod bytes;
+mod checked;
 mod columns;
 mod content;
+#[cfg(test)]
+mod damage;
 mod ecostress;
 mod envi;
+mod folder;
 mod header;
 mod holes;
 mod jcamp;
 mod layout;
 mod names;
+mod opus;
+mod pds;
+mod radiance;
+mod reading;
+mod relab;
+mod samples;
+mod spc;
+mod splib;
 
 use self::content::Content;
 pub(crate) use self::content::stem;
+pub use self::folder::{Folder, spectra_in};
 pub(crate) use self::names::{Origin, differing, qualified};
 pub use self::names::{tagged_name, unique_names};
+pub use self::radiance::{atmosphere, radiance};
+pub use self::reading::Reading;
 pub use holes::measured;
 
-use crate::file::text_of_file;
+use crate::file;
+use crate::foreign;
 use hadar::error::{Error, Result};
-use hadar::inputs;
-use hadar::material::{Material, OpticalConstants, is_spectra};
+use hadar::material::{Material, OpticalConstants};
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
-
-/// The files of a directory that are called as spectra are ([`is_spectra`]), in the order of their names.
-///
-/// # Errors
-/// A directory that cannot be read.
-pub fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
-    let failed = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            Error::file("read the library", directory, "there is no such directory; check the name")
-        }
-        _ => Error::file("read the library", directory, error),
-    };
-    inputs::folder(directory);
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(directory).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        // A link to nothing is no folder: it is not passed over in silence.
-        let is_folder = || path.metadata().is_ok_and(|found| found.is_dir());
-        if name.is_some_and(|name| is_spectra(&name)) && !is_folder() {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
-}
+use std::path::Path;
 
 /// Reads all materials of a file. The names are those of the file's columns or header in kebab-case, else
 /// the file's own.
@@ -68,15 +64,7 @@ pub fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
 /// emissivity outside [0, 1]; a wavenumber that is there twice; fewer than two rows; transmittance. Every
 /// message names the file, and the line and column where there is one.
 pub fn from_file(path: &Path) -> Result<Vec<Material>> {
-    content_of_file(path)?.materials()
-}
-
-/// As [`from_file`], of a file without header; `columns` are what its header would say, as in `wavelength_um`, `emissivity`.
-///
-/// # Errors
-/// As [`from_file`]; a file that has a header, or another number of columns.
-pub fn from_file_with_columns(path: &Path, columns: &[String]) -> Result<Vec<Material>> {
-    content_with_columns(path, Some(columns))?.materials()
+    Reading::default().file(path)
 }
 
 /// As [`from_file`], from text; `source` gives the default name and the file in messages.
@@ -85,7 +73,7 @@ pub fn from_file_with_columns(path: &Path, columns: &[String]) -> Result<Vec<Mat
 /// As [`from_file`].
 ///
 /// ```
-/// use std::path::{Path, PathBuf};
+/// use std::path::Path;
 /// let text = "wavelength_um,reflectance\n8,0.1\n12.5,0.3\n";
 /// let materials = hadar_formats::spectra::from_text(text, Path::new("Roof tile.csv"))?;
 /// assert_eq!(materials[0].name(), "roof-tile");
@@ -93,31 +81,64 @@ pub fn from_file_with_columns(path: &Path, columns: &[String]) -> Result<Vec<Mat
 /// # Ok::<(), hadar::Error>(())
 /// ```
 pub fn from_text(text: &str, source: &Path) -> Result<Vec<Material>> {
-    content(text, source, None)?.materials()
+    content(text, source, None, &Reading::default())?.materials()
 }
 
-fn content_of_file(path: &Path) -> Result<Content> {
-    content_with_columns(path, None)
-}
-
-fn content_with_columns(path: &Path, columns: Option<&[String]>) -> Result<Content> {
-    match envi::files(path)? {
-        Some((header, data)) => envi::read(&header, &data, columns).map(Content::noticed),
-        None => content(&text_of_file(path, crate::file::READ_SPECTRUM)?, path, columns),
+fn content_of_file(path: &Path, reading: &Reading) -> Result<Content> {
+    if let Some((header, data)) = envi::files(path)? {
+        return envi::read(&header, &data, reading).map(Content::noticed);
     }
+    let bytes = file::short_bytes(path, file::READ_SPECTRUM)?;
+    foreign::refuse(&bytes).map_err(|error| error.in_file(path))?;
+    let parse = if spc::is_one(&bytes) {
+        spc::parse
+    } else if opus::is_one(&bytes) {
+        opus::parse
+    } else if asd::is_one(&bytes) {
+        asd::parse
+    } else {
+        foreign::refuse_binary(&bytes).map_err(|error| error.in_file(path))?;
+        return content_of_text(&file::text(bytes), path, reading);
+    };
+    placed(parse(&bytes, path, reading), path)
 }
 
-fn content(text: &str, source: &Path, columns: Option<&[String]>) -> Result<Content> {
+/// What a text file holds, with the files beside it that belong to it.
+fn content_of_text(text: &str, path: &Path, reading: &Reading) -> Result<Content> {
+    if pds::is_label(text) {
+        let table = pds::table_of(text, path).map_err(|error| error.in_file(path))?;
+        let rows = file::text_of_file(&table, file::READ_SPECTRUM)?;
+        return placed(pds::parse(&rows, text, &table, reading), &table);
+    }
+    if let Some(label) = pds::label_of(path)? {
+        return placed(pds::parse(text, &label, path, reading), path);
+    }
+    // A file that is named without its folder is in this one.
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    content(text, path, Some(folder), reading)
+}
+
+/// What a text holds; files that belong to it are looked for in the folder `beside`.
+fn content(text: &str, source: &Path, beside: Option<&Path>, reading: &Reading) -> Result<Content> {
     let text = lines_of(text);
     let content = if ecostress::is_one(&text) {
-        ecostress::parse(&text, source)
+        ecostress::parse(&text, source, reading)
     } else if jcamp::is_one(&text) {
-        jcamp::parse(&text, source)
+        jcamp::parse(&text, source, reading)
+    } else if splib::is_one(&text) {
+        splib::parse(&text, source, beside, reading)
+    } else if relab::is_one(&text) {
+        relab::parse(&text, source, reading)
     } else {
-        layout::read(&text, columns)
-            .and_then(|sheet| columns::materials(&sheet, source))
+        layout::read(&text, reading)
+            .and_then(|sheet| columns::materials(&sheet, source, reading))
             .map(Content::Materials)
     };
+    placed(content, source)
+}
+
+/// The same, with the file where something is wrong and what is to be noticed.
+fn placed(content: Result<Content>, source: &Path) -> Result<Content> {
     match content {
         Ok(Content::NoEmissivity(error)) => Ok(Content::NoEmissivity(error.in_file(source))),
         other => other.map(Content::noticed).map_err(|error| error.in_file(source)),
@@ -137,7 +158,7 @@ fn lines_of(text: &str) -> Cow<'_, str> {
 
 /// Reads the columns `n` and `k`.
 pub(crate) fn optical_constants(text: &str, source: &Path) -> Result<OpticalConstants> {
-    layout::read(&lines_of(text), None)
+    layout::read(&lines_of(text), &Reading::default())
         .and_then(|sheet| columns::optical_constants(&sheet))
         .map_err(|error| error.in_file(source))
 }

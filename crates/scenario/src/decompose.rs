@@ -140,7 +140,7 @@ pub enum CubeUnit {
 /// Where the spectrum of one of the surroundings is from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LightSource {
-    /// A column of a table of photon radiances, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
+    /// A column of a table of radiances, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ where its header has no unit.
     Spectrum {
         /// The table.
         path: PathBuf,

@@ -53,7 +53,7 @@ pub struct SceneSpec {
 /// What the sky sends.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SkySpec {
-    /// A column of a table of photon radiances, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
+    /// A column of a table of radiances, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ where its header has no unit.
     Spectrum {
         /// The table.
         path: PathBuf,

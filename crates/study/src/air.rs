@@ -3,7 +3,6 @@
 use super::surface::Surface;
 use hadar::atmosphere::Atmosphere;
 use hadar::error::{Error, Result};
-use hadar_formats::file::text_of_file;
 use hadar_scenario::{AtmosphereSource, AtmosphereSpec, Scenario, Source};
 
 /// What is behind the target, on the nodes of the bands.
@@ -54,9 +53,7 @@ impl Air {
                 });
                 known.map_err(|error| error.at(source.place("atmosphere.model")))?
             }
-            AtmosphereSource::Table(path) => {
-                Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
-            }
+            AtmosphereSource::Table(path) => hadar_formats::spectra::atmosphere(path)?,
         };
         let Some(temperature_k) = spec.temperature_k.or(table.temperature_k()) else {
             let error = Error::malformed(

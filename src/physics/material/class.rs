@@ -13,15 +13,25 @@
 use crate::error::{Error, Result, check};
 use std::path::PathBuf;
 
-/// Endings of files of spectra.
-pub const ENDINGS: [&str; 11] =
-    [".csv", ".txt", ".tsv", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli"];
+/// Endings of files of spectra; OPUS counts its own, `.0`, `.1`, …
+pub const ENDINGS: [&str; 15] = [
+    ".csv", ".txt", ".tsv", ".tab", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli", ".spc",
+    ".asd", ".0",
+];
+/// Digits of the longest number that OPUS gives a file.
+const OPUS_DIGITS: usize = 4;
 
-/// Whether a file is called as files of spectra are ([`ENDINGS`], in any case).
+/// Whether a file is called as files of spectra are ([`ENDINGS`], in any case; a number of at most four digits, as OPUS has them).
 #[must_use]
 pub fn is_spectra(name: &str) -> bool {
     let ending = name.rfind('.').and_then(|dot| name.get(dot..));
-    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+    let is_opus = |ending: &str| {
+        let number = ending.trim_start_matches('.');
+        (1..=OPUS_DIGITS).contains(&number.len()) && number.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    ending.is_some_and(|ending| {
+        ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)) || is_opus(ending)
+    })
 }
 
 /// A material by name in a library, or files with spectra.

@@ -218,9 +218,24 @@ impl Model {
 fn tabulated(table: &Table<1>, wavenumber_cm1: f64) -> Result<f64> {
     let outside = || Error::out_of_range("wavenumber", wavenumber_cm1, "cm^-1", "within the rows");
     for (row_cm1, [emissivity]) in table.used_rows(wavenumber_cm1).ok_or_else(outside)? {
-        in_unit_interval(emissivity, || format!("emissivity of the row at {row_cm1} cm^-1"))?;
+        in_unit_interval(emissivity, || format!("emissivity of the row at {row_cm1} cm^-1"))
+            .map_err(noisy)?;
     }
     table.at(wavenumber_cm1).map(|[emissivity]| emissivity).ok_or_else(outside)
+}
+
+/// What measured rows go beyond [0, 1] by at most where that is noise.
+const NOISE: f64 = 0.05;
+
+/// The error of a row, with what cuts noise off where it may be that.
+fn noisy(error: Error) -> Error {
+    match error {
+        Error::OutOfRange { quantity, value, unit, expected } if (-NOISE..=1.0 + NOISE).contains(&value) => {
+            let expected = format!("{expected}; `hadar materials import FILE --clip {NOISE}` cuts noise off");
+            Error::OutOfRange { quantity, value, unit, expected }
+        }
+        other => other,
+    }
 }
 
 /// The emissivity, if it lies in [0, 1]; the name is only made for the error.
@@ -230,7 +245,7 @@ fn in_unit_interval(emissivity: f64, name: impl Fn() -> String) -> Result<f64> {
     }
     if emissivity.is_nan() {
         let found = format!("{} is bad or missing in its file", name());
-        let instead = "narrow the bands to where it is known, or use a file without this row if a straight line may stand for it";
+        let instead = "narrow the bands to where it is known, or leave the row out if a straight line may stand for it, as `hadar materials import FILE --clip 0` does";
         return Err(Error::malformed(found, instead));
     }
     check::unit_interval(&name(), emissivity)

@@ -196,8 +196,8 @@ fn opened(path: &Path) -> Result<(File, Vec<u8>)> {
 fn unknown(path: &Path, start: &[u8]) -> Error {
     const WRITE: &str =
         "write one with np.save('cube.npy', a), or in MATLAB with save('cube.mat', 'name', '-v7')";
-    if let Some((what, instead)) = foreign::kind(start) {
-        return Error::malformed(format!("this is {what}, which is not read"), instead);
+    if let Some(error) = foreign::no_cube(start) {
+        return error;
     }
     let extension = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
     // A table of text: letters, numbers and what stands between them.

@@ -1,9 +1,11 @@
 //! What the columns of a table are: axis, then emissivity, reflectance, n and k, or materials.
 
-use super::content::{of_all, stem};
+use super::checked::{Checked, beyond, checked, clip_for};
+use super::content::{joined, of_all, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use super::holes;
 use super::layout::{Sheet, is_index};
+use super::reading::Reading;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result, check};
 use hadar::grid::Grid;
@@ -37,7 +39,7 @@ struct Columns<'a> {
 type Told<'a> = (usize, &'a str, Values);
 
 /// All materials of a table.
-pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
+pub(super) fn materials(sheet: &Sheet, source: &Path, reading: &Reading) -> Result<Vec<Material>> {
     let columns = Columns::of(sheet)?;
     let wavenumbers = columns.wavenumbers()?;
     let own = stem(source);
@@ -65,15 +67,18 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
             let error = Error::malformed(found, "give every column its own name");
             return Err(error.on_line(sheet.grid.header_line));
         }
-        let table = columns.emissivities(&wavenumbers, *column, quantity, values.percent, sheet)?;
+        let read = columns.emissivities(&wavenumbers, *column, (quantity, values.percent), sheet, reading)?;
+        let count = read.rows().count();
+        let Checked { table, note, .. } = checked(read, reading.clip())?;
         let description = match alone {
             true => format!("spectrum of {name}"),
             false => format!("column {}", one_line(header)),
         };
         let share = if values.percent { " in percent" } else { "" };
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<String> =
+            Some(note.clone()).into_iter().filter(|note| !note.is_empty()).collect();
         if let Some((low, high)) = table.range_cm1()
-            && table.rows().count() < sheet.grid.rows.len()
+            && count < sheet.grid.rows.len()
         {
             warnings.push(format!(
                 "rows of exactly 0 at the ends were taken for padding: it reaches from {low:.0} to {high:.0} cm^-1"
@@ -87,7 +92,8 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         if let [column, ..] = left_out.as_slice() {
             warnings.push(format!("the errors in the column `{}` are not used", one_line(column)));
         }
-        let provenance = Provenance::of_file(description, source.clone(), quantity.note());
+        let note = joined(&[quantity.note(), &note], "; ");
+        let provenance = Provenance::of_file(description, source.clone(), &note);
         let read_as = columns.read_as(&format!("{}{share}", quantity.name()), sheet);
         let material = Material::of_table(name.clone(), provenance, table);
         materials.push(material.reading(read_as).warn(warnings));
@@ -97,6 +103,15 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         return Err(error.on_line(sheet.grid.header_line));
     }
     Ok(materials)
+}
+
+/// How a value just outside 0 to 1 becomes one that is not, if it is noise.
+fn or_clipped(fraction: f64, clip: Option<f64>) -> String {
+    match (clip, clip_for(beyond(fraction))) {
+        (Some(by), _) => format!(", or outside by no more than the clip of {by}"),
+        (None, Some(by)) => format!("; if it is noise, `hadar materials import --clip {by}` cuts it off"),
+        (None, None) => String::new(),
+    }
 }
 
 /// What to write where no header says what its column is.
@@ -315,10 +330,11 @@ impl<'a> Columns<'a> {
         &self,
         wavenumbers: &[f64],
         column: usize,
-        quantity: Quantity,
-        percent: bool,
+        (quantity, percent): (Quantity, bool),
         sheet: &Sheet,
+        reading: &Reading,
     ) -> Result<Table<1>> {
+        let clip = reading.clip();
         let key = self.grid.header.get(column).map_or("", String::as_str);
         let rows = wavenumbers
             .iter()
@@ -326,17 +342,16 @@ impl<'a> Columns<'a> {
             .map(|(&wavenumber, (line, cells))| {
                 let value = cells.get(column).copied().unwrap_or(f64::NAN);
                 let fraction = if percent { value / 100.0 } else { value };
-                if (0.0..=1.0).contains(&fraction) {
+                let by = clip.unwrap_or(0.0);
+                if (-by..=1.0 + by).contains(&fraction) || clip.is_some() && fraction.is_nan() {
                     return Ok((wavenumber, [quantity.emissivity(fraction)]));
                 }
-                let error = match percent {
-                    true => {
-                        Error::out_of_range(quantity.name(), value, "percent", "between 0 and 100 percent")
-                    }
-                    false => {
-                        Error::out_of_range(quantity.name(), value, "", self.fraction(column, key, sheet))
-                    }
+                let (unit, due) = match percent {
+                    true => ("percent", "between 0 and 100 percent".to_owned()),
+                    false => ("", self.fraction(column, key, sheet)),
                 };
+                let due = due + &or_clipped(fraction, clip);
+                let error = Error::out_of_range(quantity.name(), value, unit, due);
                 Err(error.for_key(key).on_line(*line))
             })
             .collect::<Result<Vec<_>>>()?;

@@ -2,12 +2,9 @@
 
 use hadar::error::{Error, Result};
 use hadar::material::Material;
-use hadar::material::Table;
-use hadar::words::{kebab_case, significant};
+use hadar::words::{kebab_case, one_line, significant};
 use std::path::Path;
 
-/// The part of the long-wave infrared that most cameras see, cm⁻¹ (13 to 8 µm).
-const LONG_WAVE_CM1: (f64, f64) = (770.0, 1250.0);
 /// The thermal infrared, cm⁻¹ (20 to 3 µm): beyond it nothing is seen by heat at the temperatures around us.
 const THERMAL_CM1: (f64, f64) = (500.0, 1e4 / 3.0);
 /// Characters of a name that was made of a title, which may be a sentence.
@@ -60,6 +57,12 @@ pub(crate) fn stem(path: &Path) -> String {
     if stem.is_empty() { "unnamed".to_owned() } else { stem }
 }
 
+/// Non-empty parts without doubled blanks.
+pub(super) fn joined(parts: &[&str], separator: &str) -> String {
+    let parts = parts.iter().map(|part| one_line(part)).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(separator)
+}
+
 /// A name without the words at its end that make it longer than a name should be.
 pub(super) fn short_name(name: &str) -> String {
     let mut short = String::new();
@@ -76,7 +79,7 @@ pub(super) fn short_name(name: &str) -> String {
 }
 
 /// Whether a range of wavenumbers, cm⁻¹, has nothing of the thermal infrared.
-fn is_elsewhere((low, high): (f64, f64)) -> bool {
+pub(super) fn is_elsewhere((low, high): (f64, f64)) -> bool {
     high < THERMAL_CM1.0 || low > THERMAL_CM1.1
 }
 
@@ -89,32 +92,4 @@ pub(super) fn of_all(quantity: &str, most: f64, whole: f64) -> Option<String> {
             significant(most, 3)
         )
     })
-}
-
-/// What is to be said of rows outside 0 to 1, and of a range that is short.
-pub(super) fn warnings(table: &Table<1>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let beyond = |e: f64| (e - 1.0).max(-e);
-    let outside: Vec<(f64, f64)> =
-        table.rows().map(|(wavenumber, [e])| (wavenumber, e)).filter(|&(_, e)| beyond(e) > 0.0).collect();
-    if let Some(&(worst_cm1, worst)) = outside.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1))) {
-        let (low, high) =
-            outside.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &(x, _)| (low.min(x), high.max(x)));
-        warnings.push(format!(
-            "{} rows from {low:.1} to {high:.1} cm^-1 have a reflectance outside 0 to 100 percent (at worst {:.3} percent \
-             at {worst_cm1:.1} cm^-1); bands that use them are an error",
-            outside.len(),
-            100.0 * (1.0 - worst),
-        ));
-    }
-    if let Some((low, high)) = table.range_cm1()
-        && !is_elsewhere((low, high))
-        && (low > LONG_WAVE_CM1.0 || high < LONG_WAVE_CM1.1)
-    {
-        warnings.push(format!(
-            "the rows go from {low:.1} to {high:.1} cm^-1 and so do not cover the long-wave infrared of 8 to 13 um ({} to {} cm^-1)",
-            LONG_WAVE_CM1.0, LONG_WAVE_CM1.1
-        ));
-    }
-    warnings
 }

@@ -10,8 +10,10 @@
 //! Source: Meerdink et al., Remote Sens. Environ. 230, 111196 (2019), doi:10.1016/j.rse.2019.05.015; Baldridge et al.,
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
-use super::content::{Content, of_all, short_name, stem, warnings};
+use super::checked::{Checked, checked};
+use super::content::{Content, joined, of_all, short_name, stem};
 use super::header::Quantity;
+use super::reading::Reading;
 use hadar::error::{Error, Result, check};
 use hadar::grid;
 use hadar::material::Material;
@@ -33,7 +35,7 @@ struct Parts {
     rows: Vec<(usize, f64, f64)>,
 }
 
-pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
+pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Content> {
     let parts = split(text)?;
     let value = |key: &str| parts.keys.get(key).map_or("", |(_, value)| value.as_str());
     let at = |error: Error, key: &str| match parts.keys.get(key) {
@@ -71,8 +73,7 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
         return Err(at(error, "number of x values"));
     }
 
-    let table = table(&parts.rows)?;
-    let mut warnings = warnings(&table);
+    let Checked { table, mut warnings, note: clipped } = checked(table(&parts.rows)?, reading.clip())?;
     let most = parts.rows.iter().map(|(.., percent)| *percent).fold(f64::NEG_INFINITY, f64::max);
     warnings.extend(of_all("reflectance", most, 100.0));
     let measurement = value("measurement");
@@ -87,19 +88,13 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     let name = if own.is_empty() { stem(source) } else { own };
     let description = joined(&[title, value("description")], "; ");
     let source = joined(&[&source.display().to_string(), value("owner")], "; ");
-    let note = joined(&[measurement, Quantity::Reflectance.note()], "; ");
+    let note = joined(&[measurement, Quantity::Reflectance.note(), &clipped], "; ");
     let category = one_line(&value("type").to_lowercase());
     let provenance = Provenance { category, ..Provenance::of_file(description, source, &note) };
     let material = Material::of_table(name, provenance, table).warn(warnings);
     let sample = kebab_case(value("sample no."));
     let read_as = "ECOSTRESS, wavelength in um, reflectance in percent";
     Ok(Content::Materials(vec![material.reading(read_as).of_sample(sample)]))
-}
-
-/// Non-empty parts without doubled blanks.
-fn joined(parts: &[&str], separator: &str) -> String {
-    let parts = parts.iter().map(|part| one_line(part)).filter(|part| !part.is_empty());
-    parts.collect::<Vec<_>>().join(separator)
 }
 
 fn split(text: &str) -> Result<Parts> {

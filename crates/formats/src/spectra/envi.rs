@@ -5,9 +5,12 @@
 //! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are left out at the ends of a spectrum; between
 //! others they are no number: an error once a band needs them, as values below 0 or above 1 are.
 
-use super::content::{Content, of_all, stem, warnings};
+use super::checked::{Checked, checked};
+use super::content::{Content, joined, of_all, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use super::layout::MOST_SPECTRA;
+use super::reading::Reading;
+use super::samples::{most_beyond, of_known, unknown};
 use crate::envi_header::{EnviHeader, Layout, data_of, header_of};
 use crate::file;
 use crate::file::READ_SPECTRUM;
@@ -15,7 +18,6 @@ use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result, check};
 use hadar::material::Material;
 use hadar::material::Provenance;
-use hadar::material::Table;
 use hadar::words::{kebab_case, one_line};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -51,7 +53,7 @@ pub(super) fn files(path: &Path) -> Result<Option<(PathBuf, PathBuf)>> {
 }
 
 /// All spectra of a library. `columns` say what the samples are where the header does not.
-pub(super) fn read(header_path: &Path, data: &Path, columns: Option<&[String]>) -> Result<Content> {
+pub(super) fn read(header_path: &Path, data: &Path, reading: &Reading) -> Result<Content> {
     let header = EnviHeader::from_file(header_path)?;
     if !header.is_spectral_library() {
         let found = "this is the header of an image, which has no spectra of materials";
@@ -73,7 +75,7 @@ pub(super) fn read(header_path: &Path, data: &Path, columns: Option<&[String]>) 
     }
     let offset = usize::try_from(layout.header_offset).unwrap_or(usize::MAX);
     let samples = layout.data_type.samples(bytes.get(offset..).unwrap_or_default(), layout.byte_order);
-    of(&header, &samples, &layout, data, columns).map_err(|error| error.in_file(header_path))
+    of(&header, &samples, &layout, data, reading).map_err(|error| error.in_file(header_path))
 }
 
 fn of(
@@ -81,8 +83,9 @@ fn of(
     samples: &[f64],
     layout: &Layout,
     source: &Path,
-    columns: Option<&[String]>,
+    reading: &Reading,
 ) -> Result<Content> {
+    let columns = reading.columns_said();
     let channels = layout.samples;
     let Some(axis) = header.numbers_for("wavelength", channels, "channels")? else {
         return Err(Error::malformed(
@@ -103,7 +106,8 @@ fn of(
             .map_err(|error| header.wrong("wavelength", error))
     };
     let wavenumbers_cm1 = axis.iter().map(wavenumber).collect::<Result<Vec<f64>>>()?;
-    let library = Library { header, source, unit, wavenumbers_cm1, quantity, scale, good, ignored };
+    let clip = reading.clip();
+    let library = Library { header, source, unit, wavenumbers_cm1, quantity, scale, good, ignored, clip };
     let spectra: Vec<&[f64]> = samples.chunks_exact(channels).collect();
     let names = names(header, spectra.len(), source)?;
     let mut materials = Vec::with_capacity(spectra.len());
@@ -137,6 +141,7 @@ struct Library<'a> {
     scale: f64,
     good: Option<Vec<bool>>,
     ignored: Option<f64>,
+    clip: Option<f64>,
 }
 
 impl Library<'_> {
@@ -152,11 +157,7 @@ impl Library<'_> {
     /// One material; `None` where less than two channels are good and known.
     fn material(&self, name: &str, spectrum: &[f64]) -> Result<Option<Material>> {
         let (channels, quantity, scale) = (spectrum.len(), self.quantity, self.scale);
-        let (beyond, most) = self
-            .fractions(spectrum)
-            .fold((0, 0.0_f64), |(count, most), value| (count + usize::from(value > 1.5), most.max(value)));
-        // Noise goes beyond 1, percent and integers do nearly everywhere.
-        if 2 * beyond > channels {
+        if let Some(most) = most_beyond(self.fractions(spectrum)) {
             let found =
                 format!("{} of `{}` up to {most} where 1 is all there is", quantity.name(), one_line(name));
             let instead =
@@ -170,14 +171,11 @@ impl Library<'_> {
         if usable < 2 && usable < channels {
             return Ok(None);
         }
-        let table = self.table(rows)?;
-        let mut said = warnings(&table);
-        if usable < channels {
-            said.push(format!(
-                "{} of {channels} channels are bad or not known; bands that use them are an error",
-                channels - usable
-            ));
-        }
+        let known = of_known(rows).map_err(|error| self.header.wrong("wavelength", error))?;
+        let Checked { table, warnings: mut said, note } = checked(known, self.clip)?;
+        let left = table.rows().filter(|(_, [e])| e.is_nan()).count();
+        said.extend(unknown(channels - usable, channels, left));
+        let most = self.fractions(spectrum).fold(0.0, f64::max);
         said.extend(of_all(quantity.name(), most * scale, scale));
         let share = if scale == 1.0 { String::new() } else { format!(" times {scale}") };
         let read_as = format!(
@@ -187,23 +185,10 @@ impl Library<'_> {
             quantity.name()
         );
         let source = self.source.display().to_string();
-        let provenance = Provenance::of_file(one_line(name), source, quantity.note());
+        let note = joined(&[quantity.note(), &note], "; ");
+        let provenance = Provenance::of_file(one_line(name), source, &note);
         let material = Material::of_table(kebab_case(name), provenance, table);
         Ok(Some(material.reading(read_as).warn(said)))
-    }
-
-    /// The rows from the first known value to the last.
-    fn table(&self, mut rows: Vec<(f64, [f64; 1])>) -> Result<Table<1>> {
-        let table = |rows: &[_]| Table::new(rows).map_err(|error| self.header.wrong("wavelength", error));
-        // All of them first, so that a channel that is there twice is found wherever it is.
-        let all = table(&rows)?;
-        let good_cm1 = |(wavenumber, [e]): (f64, [f64; 1])| (!e.is_nan()).then_some(wavenumber);
-        let (low, high) = all
-            .rows()
-            .filter_map(good_cm1)
-            .fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-        rows.retain(|(wavenumber, _)| (low..=high).contains(wavenumber));
-        table(&rows)
     }
 }
 

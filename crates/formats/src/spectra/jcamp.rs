@@ -5,6 +5,8 @@
 //! `##XYPOINTS= (XY..XY)`, pairs. XUNITS is any unit of a spectral axis, YUNITS reflectance or emissivity, as a fraction or in
 //! percent. NPOINTS, FIRSTX, LASTX, DELTAX, FIRSTY and the checks within the data must agree with them.
 //!
+//! A block from which no emissivity follows is left out where another has one. Blocks of one title are told apart by their number.
+//!
 //! Values below 0 or above 1 are kept and reported, and an error once a band needs them. Transmittance, absorbance and tables of peaks are
 //! recognised and refused.
 //!
@@ -12,8 +14,10 @@
 
 mod ordinates;
 
-use super::content::{Content, of_all, short_name, stem, warnings};
+use super::checked::{Checked, checked};
+use super::content::{Content, joined, of_all, short_name, stem};
 use super::header::{self, Meaning, Values};
+use super::reading::Reading;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result, check};
 use hadar::grid::number;
@@ -50,30 +54,39 @@ struct Block<'a> {
 /// Labels whose value is data, and what their form must be.
 const DATA: [&str; 4] = ["XYDATA", "XYPOINTS", "PEAKTABLE", "PEAKASSIGNMENTS"];
 
-pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
+pub(super) fn parse(text: &str, source: &Path, reading: &Reading) -> Result<Content> {
     let blocks = blocks(text);
     let many = blocks.len() > 1;
-    let (mut materials, mut refused) = (Vec::new(), None);
+    let (mut found, mut refused) = (Vec::new(), Vec::new());
     for block in &blocks {
-        match block.material(source, many) {
-            Ok(Ok(material)) if materials.iter().any(|known: &Material| known.name() == material.name()) => {
-                let found = format!("two blocks of the name `{}`", material.name());
-                let error = Error::malformed(found, "give every block its own title");
-                return Err(block.at("TITLE", error));
-            }
-            Ok(Ok(material)) => materials.push(material),
-            Ok(Err(reason)) => refused = refused.or(Some(reason)),
-            Err(error) => return Err(error),
+        match block.material(source, many, reading)? {
+            Ok(material) => found.push((block, material)),
+            Err(reason) => refused.push((block, reason)),
         }
     }
-    match refused {
-        Some(reason) => Ok(Content::NoEmissivity(reason)),
-        None if materials.is_empty() => {
-            let instead = "write a block with ##XYDATA= (X++(Y..Y)) or ##XYPOINTS= (XY..XY)";
-            Ok(Content::NoEmissivity(Error::malformed("the file has no spectrum", instead)))
-        }
-        None => Ok(Content::Materials(materials)),
+    if found.is_empty() {
+        let instead = "write a block with ##XYDATA= (X++(Y..Y)) or ##XYPOINTS= (XY..XY)";
+        let none = || Error::malformed("the file has no spectrum", instead);
+        return Ok(Content::NoEmissivity(refused.into_iter().next().map_or_else(none, |(_, reason)| reason)));
     }
+    let left_out: Vec<String> = refused
+        .iter()
+        .map(|(block, reason)| format!("the block `{}` is left out: {reason}", block.value("TITLE")))
+        .collect();
+    let titles: Vec<String> = found.iter().map(|(_, material)| material.name().to_owned()).collect();
+    let named = |(at, (block, material)): (usize, (&Block<'_>, Material))| {
+        let own = |of: &[String]| of.iter().filter(|title| *title == material.name()).count();
+        let (all, number) = (own(&titles), own(titles.get(..=at).unwrap_or_default()));
+        let material = material.clone().warn(left_out.clone());
+        if all < 2 {
+            return material;
+        }
+        let line = block.labels.get("TITLE").map_or(0, |(line, _)| *line);
+        let remark = format!("{all} blocks have this title: it is number {number}, that of line {line}");
+        let name = format!("{}@{number}", material.name());
+        material.with_name(name).warn([remark])
+    };
+    Ok(Content::Materials(found.into_iter().enumerate().map(named).collect()))
 }
 
 /// All blocks that have data.
@@ -146,7 +159,7 @@ impl Block<'_> {
         self.number(key)?.ok_or_else(missing)
     }
 
-    fn material(&self, source: &Path, many: bool) -> Result<Found> {
+    fn material(&self, source: &Path, many: bool, reading: &Reading) -> Result<Found> {
         let refused =
             |key: &str, found: String, instead: &str| Ok(Err(self.at(key, Error::malformed(found, instead))));
         if self.labels.contains_key("NTUPLES") {
@@ -207,8 +220,7 @@ impl Block<'_> {
                 .map_err(|error| self.at("XUNITS", error))?;
             rows.push((wavenumber, [quantity.emissivity(y / scale)]));
         }
-        let table = Table::new(&rows)?;
-        let mut warnings = warnings(&table);
+        let Checked { table, mut warnings, note } = checked(Table::new(&rows)?, reading.clip())?;
         warnings.extend(of_all(quantity.name(), most * scale, scale));
         let title = self.value("TITLE");
         let own = short_name(&kebab_case(title));
@@ -227,7 +239,8 @@ impl Block<'_> {
         let share = if percent { " in percent" } else { "" };
         let source = [source.display().to_string(), said(&["ORIGIN", "OWNER"])].join("; ");
         let source = source.trim_end_matches("; ").to_owned();
-        let provenance = Provenance::of_file(said(&["TITLE", "SAMPLEDESCRIPTION"]), source, quantity.note());
+        let note = joined(&[quantity.note(), &note], "; ");
+        let provenance = Provenance::of_file(said(&["TITLE", "SAMPLEDESCRIPTION"]), source, &note);
         let read_as = format!("JCAMP-DX, {} in {}, {}{share}", unit.quantity(), unit.name(), quantity.name());
         Ok(Ok(Material::of_table(name, provenance, table).reading(read_as).warn(warnings)))
     }

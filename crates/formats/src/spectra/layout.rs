@@ -6,6 +6,7 @@
 //! comment too, as NumPy writes it; a line of units may follow it.
 
 use super::header;
+use super::reading::Reading;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use hadar::grid::{EXAMPLE, Grid, number};
@@ -111,11 +112,12 @@ pub(super) struct Sheet {
     pub(super) ranges: Vec<(f64, f64)>,
 }
 
-/// Reads a table. `columns` are its headers where the file has none.
+/// Reads a table; its headers are those of the reading where the file has none.
 ///
 /// # Errors
 /// No rows, no header, a form that two readings fit, rows of another length than the header, a cell that is no finite number.
-pub(super) fn read(text: &str, columns: Option<&[String]>) -> Result<Sheet> {
+pub(super) fn read(text: &str, reading: &Reading) -> Result<Sheet> {
+    let columns = reading.columns_said();
     let lines: Vec<(usize, &str)> = text
         .lines()
         .enumerate()
@@ -160,7 +162,9 @@ pub(super) fn read(text: &str, columns: Option<&[String]>) -> Result<Sheet> {
     };
     let rows = table.get(begin..).unwrap_or_default().iter();
     let rows = rows
-        .map(|&(line, row)| Ok((line, numbers(form, row, &header).map_err(|error| error.on_line(line))?)))
+        .map(|&(line, row)| {
+            Ok((line, numbers(form, row, &header, reading).map_err(|error| error.on_line(line))?))
+        })
         .collect::<Result<Vec<_>>>()?;
     let ranges = ranges_of(rows.iter().map(|(_, cells)| cells.as_slice()));
     Ok(Sheet { grid: Grid { header, header_line, rows }, form, ranges })
@@ -398,7 +402,10 @@ fn mixed_signs(cells: &[&str]) -> Option<Error> {
     Some(Error::malformed(found, "write decimal points in all numbers, and nothing between thousands"))
 }
 
-fn numbers(form: Form, row: &str, header: &[String]) -> Result<Vec<f64>> {
+/// Cells for what is not known.
+const HOLES: [&str; 8] = ["", "-", "--", "nan", "na", "n/a", "null", "none"];
+
+fn numbers(form: Form, row: &str, header: &[String], reading: &Reading) -> Result<Vec<f64>> {
     let mut cells = form.cells(row);
     while cells.len() > header.len() && cells.pop_if(|cell| cell.is_empty()).is_some() {}
     if cells.len() != header.len() {
@@ -412,7 +419,22 @@ fn numbers(form: Form, row: &str, header: &[String]) -> Result<Vec<f64>> {
                 Error::malformed(found, "write the same sign in all numbers").for_key(column.as_str())
             );
         }
-        form.number(cell).map_err(|error| mixed.clone().unwrap_or(error).for_key(column.as_str()))
+        let is_hole = HOLES.contains(&cell.to_lowercase().as_str());
+        if is_hole && reading.clip().is_some() {
+            return Ok(f64::NAN);
+        }
+        form.number(cell).map_err(|error| {
+            let hole = is_hole.then(|| {
+                let instead =
+                    "leave the row out, as `hadar materials import --clip 0` does, or write a number";
+                let found = match cell.is_empty() {
+                    true => "the cell is empty".to_owned(),
+                    false => format!("`{cell}` is not a finite number"),
+                };
+                Error::malformed(found, instead)
+            });
+            hole.or_else(|| mixed.clone()).unwrap_or(error).for_key(column.as_str())
+        })
     };
     cells.into_iter().zip(header).map(read).collect()
 }

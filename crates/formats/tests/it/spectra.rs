@@ -1,6 +1,7 @@
 //! Spectra in the layouts that programs and people write: the same rows come out of all of them.
 
 use hadar::material::Material;
+use hadar_formats::spectra::Reading;
 use hadar_testing::{repository, shared};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -76,8 +77,8 @@ fn files_of_other_programs_hold_the_same_spectrum() {
             && message.contains("--columns wavenumber_cm1,emissivity"),
         "{message}"
     );
-    let columns = ["wavenumber_cm1", "emissivity"].map(str::to_owned);
-    check("bare", &hadar_formats::spectra::from_file_with_columns(&bare, &columns).unwrap()[0]);
+    let columns = ["wavenumber_cm1", "emissivity"];
+    check("bare", &Reading::default().columns(columns).file(&bare).unwrap()[0]);
 }
 
 /// Real files in squeezed forms, against the values that the Python package `jcamp` 1.3.2 reads. As they are they hold absorbance and
@@ -223,7 +224,7 @@ fn twenty_two_customary_layouts_are_read() {
 fn measured_samples_have_short_names_of_their_own() {
     let Some(directory) = shared("ecostress") else { return };
     let read_all = |backwards: bool| {
-        let mut files = hadar_formats::spectra::spectra_in(&directory).unwrap();
+        let mut files = hadar_formats::spectra::spectra_in(&directory).unwrap().files;
         if backwards {
             files.reverse();
         }
@@ -289,4 +290,58 @@ proptest! {
             prop_assert!((found - e).abs() < 1e-6, "{} {} at {}: {}", e, found, nu, text);
         }
     }
+}
+
+#[test]
+fn noise_is_cut_off_where_that_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("noisy.csv");
+    let text =
+        "wavenumber_cm1,paint,skin\n700,1.013,0.9\n800,nan,0.8\n900,0.9,\n1000,-0.004,0.7\n1300,0.5,0.6\n";
+    std::fs::write(&file, text).unwrap();
+    let refused = |reading: &Reading| reading.file(&file).unwrap_err().to_string();
+    let message = refused(&Reading::default());
+    assert!(
+        message.contains("noisy.csv:3: paint: `nan` is not a finite number") && message.contains("--clip 0"),
+        "{message}"
+    );
+    let message = refused(&Reading::default().clipping(0.01).unwrap());
+    assert!(message.contains("noisy.csv:2: paint") && message.contains("the clip of 0.01"), "{message}");
+    let read = Reading::default().clipping(0.02).unwrap().file(&file).unwrap();
+    assert_eq!(read[0].emissivity(&[700.0, 800.0, 1000.0]).unwrap(), [1.0, 0.95, 0.0]);
+    let said = "2 rows outside 0 to 1 clipped, the worst by 0.013 at 700.0 cm^-1 (clip 0.02); 1 row without a number left \
+                out, the widest gap from 700.0 to 900.0 cm^-1 is bridged";
+    assert_eq!((read[0].warnings()[0].as_str(), read[0].provenance().note.as_str()), (said, said));
+    assert_eq!((read[1].rows(), read[1].warnings().len()), (4, 1));
+    std::fs::write(&file, text.replace("nan", "0.9").replace("0.9,\n", "0.9,0.9\n")).unwrap();
+    assert!(refused(&Reading::default()).contains("`hadar materials import --clip 0.013` cuts it off"));
+    assert!(Reading::default().clipping(0.2).is_err() && Reading::default().clipping(f64::NAN).is_err());
+}
+
+#[test]
+fn what_is_beside_a_file_on_a_mac_is_passed_over_and_other_kinds_are_named() {
+    use hadar::material::Library;
+    use hadar_formats::ReadLibrary as _;
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("paint.csv"), "wavenumber_cm1,emissivity\n700,0.9\n1300,0.8\n").unwrap();
+    std::fs::write(at("._paint.csv"), b"\0\x05\x16\x07\0\x02\0\0Mac OS X        \0\x02").unwrap();
+    for strict in [false, true] {
+        let mut library = Library::empty().strict(strict);
+        library.add_directory(folder.path()).unwrap();
+        assert_eq!(library.names().collect::<Vec<_>>(), ["paint"]);
+        assert!(
+            library
+                .warnings()
+                .iter()
+                .any(|warning| warning.contains("._paint.csv: this is what macOS keeps")),
+            "{:?}",
+            library.warnings()
+        );
+    }
+    let message = hadar_formats::spectra::from_file(&at("._paint.csv")).unwrap_err().to_string();
+    assert!(message.contains("._paint.csv: this is what macOS keeps"), "{message}");
+    std::fs::write(at("sheet.csv"), b"PK\x03\x04\x14\0\x06\0xl/worksheets/sheet1.xml").unwrap();
+    let message = hadar_formats::spectra::from_file(&at("sheet.csv")).unwrap_err().to_string();
+    assert!(message.contains("sheet.csv: this is an Excel workbook (.xlsx); save the sheet"), "{message}");
 }

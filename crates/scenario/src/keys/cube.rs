@@ -95,7 +95,7 @@ const LIGHT_KEYS: &[Key] = &[
         Value::File,
         Means("temperature, rows or found"),
         "\"light.csv\"",
-        "A table of photon radiances, photons s^-1 m^-2 sr^-1 per cm^-1.",
+        "A table of radiances, photons s^-1 m^-2 sr^-1 per cm^-1 or the unit behind a column's name, as in `sky [W m^-2 sr^-1 um^-1]`; tape7 of MODTRAN.",
         "S_k in X = sum of V_k S_k (S2)",
     ),
     Key::row(

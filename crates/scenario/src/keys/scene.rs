@@ -16,7 +16,7 @@ const SKY_KEYS: &[Key] = &[
         Value::File,
         Means("a surface at a temperature"),
         "\"sky.csv\"",
-        "A table of photon radiances, photons s^-1 m^-2 sr^-1 per cm^-1.",
+        "A table of radiances, photons s^-1 m^-2 sr^-1 per cm^-1 or the unit behind a column's name, as in `sky [W m^-2 sr^-1 um^-1]`; tape7 of MODTRAN.",
         "light of the sky in X (S2)",
     ),
     Key::row(

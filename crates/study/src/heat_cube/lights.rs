@@ -17,7 +17,7 @@ use hadar::planck;
 use hadar::spectrum::{Bands, interpolated};
 use hadar_estimate::decompose::Light;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
-use hadar_formats::spectra::measured;
+use hadar_formats::spectra::{measured, radiance};
 use hadar_scenario::MaterialRef;
 use hadar_scenario::decompose::LightSource;
 use std::path::Path;
@@ -120,15 +120,11 @@ fn counted(cube: &Cube, rows: [usize; 2], bad_bands: &[usize], unit: f64) -> Res
     Ok((Light::Counts(mean.iter().map(|n| n / unit).collect()), left_out))
 }
 
-/// A column of a table of photon radiances at the nodes.
+/// A column of a table of radiances at the nodes, as photon radiance.
 pub(crate) fn spectrum(path: &Path, column: &str, nodes_cm1: &[f64]) -> Result<Vec<f64>> {
-    let table = columns(path)?;
-    let Some((_, rows)) = table.iter().find(|(name, _)| name == column) else {
-        let names = table.iter().map(|(name, _)| name.as_str());
-        return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
-    };
+    let rows = radiance(path, column)?;
     let largest = rows.iter().fold(0.0_f64, |most, row| most.max(row.1));
-    let rows = measured(rows, largest).map_err(|error| error.for_key(column).in_file(path))?;
+    let rows = measured(&rows, largest).map_err(|error| error.for_key(column).in_file(path))?;
     let mut rows = rows.to_vec();
     order::ascending(&mut rows, |a| a.0);
     on_nodes(&rows, nodes_cm1).map_err(|error| error.in_file(path))
@@ -148,9 +144,33 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
         let value = interpolated(&xs, &ys, *nu);
         if value < 0.0 {
             let found = format!("a radiance of {value} at {nu} cm^-1");
-            return Err(Error::malformed(found, "write photons s^-1 m^-2 sr^-1 per cm^-1, from 0"));
+            return Err(Error::malformed(found, "write radiances from 0"));
         }
         Ok(value)
     };
     nodes_cm1.iter().map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sky_in_watts_is_that_in_photons() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = |name: &str, unit: &str, of: &dyn Fn(f64) -> f64| {
+            let line = |nu: f64| format!("{nu},{}\n", planck::photon_radiance(nu, 260.0) * of(nu));
+            let file = folder.path().join(name);
+            let rows: String = [700.0, 900.0, 1100.0, 1300.0].map(line).concat();
+            std::fs::write(&file, format!("wavenumber_cm1,sky{unit}\n{rows}")).unwrap();
+            spectrum(&file, "sky", &[720.0, 1000.0, 1250.0]).unwrap()
+        };
+        let photons = table("photons.csv", "", &|_| 1.0);
+        // h c nu, with nu in m^-1, and 1e-4 for cm^2.
+        let watts =
+            table("watts.csv", " [W cm^-2 sr^-1 (cm^-1)^-1]", &|nu| 1.986_445_857e-25 * 100.0 * nu * 1e-4);
+        for (one, other) in photons.iter().zip(&watts) {
+            assert!((one / other - 1.0).abs() < 1e-8, "{photons:?} {watts:?}");
+        }
+    }
 }

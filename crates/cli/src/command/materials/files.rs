@@ -3,6 +3,7 @@
 use clap::Args;
 use hadar::error::Result;
 use hadar::material::{Library, Material};
+use hadar_formats::spectra::Reading;
 use std::path::Path;
 
 /// Where materials are drawn and shown: the paper's bands, cm⁻¹.
@@ -14,15 +15,22 @@ pub(super) struct Columns {
     /// What the columns of files without a header are, as their header would say: wavelength_um,emissivity
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
+    /// Sets emissivities outside 0 to 1 by at most this to 0 or 1, and leaves out rows without a number
+    #[arg(long, value_name = "EMISSIVITY")]
+    clip: Option<f64>,
 }
 
 impl Columns {
     /// All materials of a file.
     pub(super) fn read(&self, file: &Path) -> Result<Vec<Material>> {
-        if self.columns.is_empty() {
-            hadar_formats::spectra::from_file(file)
-        } else {
-            hadar_formats::spectra::from_file_with_columns(file, &self.columns)
+        self.reading()?.file(file)
+    }
+
+    fn reading(&self) -> Result<Reading> {
+        let reading = Reading::default().columns(self.columns.iter().cloned());
+        match self.clip {
+            Some(by) => reading.clipping(by),
+            None => Ok(reading),
         }
     }
 
@@ -33,9 +41,6 @@ impl Columns {
         {
             return library.get(name).cloned();
         }
-        match self.columns.is_empty() {
-            true => hadar_formats::spectra::material(Path::new(name)),
-            false => hadar_formats::spectra::the_one(self.read(Path::new(name))?, Path::new(name)),
-        }
+        hadar_formats::spectra::the_one(self.read(Path::new(name))?, Path::new(name))
     }
 }

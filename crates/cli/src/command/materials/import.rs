@@ -98,10 +98,12 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
 }
 
 fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Found> {
-    let mut files = Vec::new();
+    let (mut files, mut passed_over) = (Vec::new(), Vec::new());
     for path in named {
         if path.is_dir() {
-            files.extend(hadar_formats::spectra::spectra_in(path)?)
+            let folder = hadar_formats::spectra::spectra_in(path)?;
+            files.extend(folder.files);
+            passed_over.extend(folder.passed_over);
         } else {
             files.push(path.clone())
         }
@@ -109,7 +111,7 @@ fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Fou
     // One that is named twice, or itself and with its folder, is one.
     let mut seen = BTreeSet::new();
     files.retain(|file| seen.insert(std::path::absolute(file).unwrap_or_else(|_| file.clone())));
-    let mut found = Found { materials: Vec::new(), passed_over: Vec::new() };
+    let mut found = Found { materials: Vec::new(), passed_over };
     for file in &files {
         match columns.read(file) {
             Ok(materials) => {

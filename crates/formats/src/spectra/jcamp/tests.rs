@@ -47,7 +47,7 @@ const FILE: &str = "##TITLE= Roof tile, red $$ of mine\n##JCAMP-DX= 4.24\n##DATA
     ##NPOINTS= 5\n##FIRSTY= 0.1\n##XYDATA= (X++(Y..Y))\n1000 100 150 200\n850 250 300\n##END=\n";
 
 fn read(text: &str) -> Result<Vec<Material>> {
-    parse(text, Path::new("a.jdx")).and_then(Content::materials)
+    parse(text, Path::new("a.jdx"), &Reading::default()).and_then(Content::materials)
 }
 
 #[test]
@@ -72,6 +72,33 @@ fn a_file_becomes_an_emissivity() {
     let both = read(&both).unwrap();
     assert!((both[0].emissivity(&[925.0]).unwrap()[0] - 0.825).abs() < 1e-12);
     assert!((both[1].emissivity(&[1e4 / 900.0]).unwrap()[0] - 0.8).abs() < 1e-12);
+}
+
+#[test]
+fn a_block_that_cannot_be_used_leaves_the_others_and_equal_titles_are_counted() {
+    let compound = |blocks: &[String]| {
+        format!("##TITLE= set\n##JCAMP-DX= 4.24\n##DATA TYPE= LINK\n##BLOCKS= 2\n{}##END=\n", blocks.concat())
+    };
+    let through = FILE.replace("REFLECTANCE", "TRANSMITTANCE").replace("Roof tile, red", "Window");
+    let one = read(&compound(&[through.clone(), FILE.to_owned()])).unwrap();
+    assert_eq!(one.iter().map(Material::name).collect::<Vec<_>>(), ["roof-tile-red"]);
+    assert!(
+        one[0].warnings().iter().any(|warning| warning.starts_with(
+            "the block `Window` is left out: line 10: YUNITS: `TRANSMITTANCE`, from which no emissivity follows"
+        )),
+        "{:?}",
+        one[0].warnings()
+    );
+    let other = FILE.replace("200\n", "250\n");
+    let both = read(&compound(&[FILE.to_owned(), other])).unwrap();
+    assert_eq!(both.iter().map(Material::name).collect::<Vec<_>>(), ["roof-tile-red@1", "roof-tile-red@2"]);
+    assert!((both[0].emissivity(&[900.0]).unwrap()[0] - 0.8).abs() < 1e-12);
+    assert!((both[1].emissivity(&[900.0]).unwrap()[0] - 0.75).abs() < 1e-12);
+    let said = "2 blocks have this title: it is number 2, that of line 22";
+    assert!(both[1].warnings().iter().any(|warning| warning == said), "{:?}", both[1].warnings());
+    // A block that is damaged may be any: nothing is taken from beside it.
+    assert!(read(&compound(&[FILE.to_owned(), FILE.replace("NPOINTS= 5", "NPOINTS= 6")])).is_err());
+    assert!(read(&compound(&[through.clone(), through])).is_err());
 }
 
 #[test]
