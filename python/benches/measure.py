@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-import hadar
+import hadar_limits as hadar
 
 
 def best(work, repeat=5, calls=1):
@@ -81,7 +81,7 @@ def over_dask():
     import dask.array
     from distributed import Client, LocalCluster
 
-    import hadar.dask
+    import hadar_limits.dask
 
     nu = np.arange(800.0, 1201.0, 8.0)
     t = (nu - 1000) / 200
@@ -105,7 +105,7 @@ def over_dask():
     for workers in (1, 2):
         with LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
             with Client(cluster) as client:
-                client.run(lambda: __import__("hadar"))
+                client.run(lambda: __import__("hadar_limits"))
                 empty = [dask.delayed(abs)(-i) for i in range(2000)]
                 seconds, _ = best(lambda: dask.compute(*empty), 3)
                 print(f"{workers} workers, tasks that do nothing: {1e3 * seconds / len(empty):.2f} ms each")

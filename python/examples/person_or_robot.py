@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-import hadar
+import hadar_limits as hadar
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 

@@ -5,11 +5,12 @@ use crate::error::{named, raised};
 use crate::pairs::{DISTANCES, share};
 use crate::quantity::In;
 use crate::scene::Scene;
-use crate::threads::with_threads;
+use crate::threads::with_limits;
 use hadar::error::Error;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::scene::State;
+use hadar_study::budget::Limits;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -21,8 +22,10 @@ use rayon::prelude::*;
 /// temperature : array of the target's temperatures, K
 /// lighting : array of the same shape with a last axis of the surroundings, which is left out where there is one alone
 /// by, prove, threads : as :func:`matrix`
+/// progress : called with (states done, states) now and then
 #[pyfunction]
-#[pyo3(signature = (target, alternative, scene, temperature, lighting, *, by="local", prove=None, threads=None))]
+#[pyo3(signature = (target, alternative, scene, temperature, lighting, *, by="local", prove=None, threads=None,
+    progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn over_states<'py>(
     py: Python<'py>,
@@ -34,6 +37,7 @@ pub(crate) fn over_states<'py>(
     by: &str,
     prove: Option<f64>,
     threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get();
     let (target, alternative) =
@@ -59,7 +63,8 @@ pub(crate) fn over_states<'py>(
         scene.surroundings.state(*temperature_k, lit.get(i * objects..(i + 1) * objects).unwrap_or_default())
     });
     let states: Vec<State> = states.collect::<hadar::Result<_>>().map_err(raised)?;
-    let found = with_threads(py, threads, || {
+    let found = with_limits(py, threads, &Limits::default(), progress.as_ref(), |counted| {
+        counted.set(0, states.len());
         let Scene { bands, surroundings, unknowns, range, counting, .. } = scene;
         if by_nearest {
             let solver = || {
@@ -74,6 +79,7 @@ pub(crate) fn over_states<'py>(
                     None => solver.per_photon(&target, &alternative, state, f64::INFINITY),
                     Some(counting) => solver.with_counting(&target, &alternative, state, counting),
                 };
+                counted.add(1);
                 found.map(|found| found.distance)
             };
             return states.par_iter().map_init(solver, each).collect();
@@ -84,6 +90,7 @@ pub(crate) fn over_states<'py>(
                 None => solver.per_photon(&target, &alternative, state, f64::INFINITY),
                 Some(counting) => solver.with_counting(&target, &alternative, state, counting),
             };
+            counted.add(1);
             found.map(|found| found.distance)
         };
         states.par_iter().with_min_len(64).map_init(solver, each).collect::<hadar::Result<Vec<f64>>>()
