@@ -291,8 +291,10 @@ pub(crate) fn rule(
         let study = RuleStudy::new(&rule_read, &reading.library()?)?;
         common.admit(study.takes())?;
         let (extent, skipping, seed) = (Extent::Everything, common.skipping(), common.seed);
-        let mut answer =
-            study.answer(&RuleAsked { extent, skipping, seed, on, ..RuleAsked::default() }, &|done, of| reading.counted.set(done, of))?;
+        let mut answer = study
+            .answer(&RuleAsked { extent, skipping, seed, on, ..RuleAsked::default() }, &|done, of| {
+                reading.counted.set(done, of)
+            })?;
         let text = rule_report::text(&answer, &study);
         answer.stats.add(&no_report());
         let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;
@@ -387,7 +389,9 @@ pub(crate) fn simulate(
         let study = common.study(&question, None, reading)?;
         if let Some(range) = &more.thermometry {
             let temperatures = hadar_study::true_temperatures(range, more.temperatures)?;
-            let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|done, of| reading.counted.set(done, of))?;
+            let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|done, of| {
+                reading.counted.set(done, of)
+            })?;
             let text = simulate_report::thermometry::text(&result);
             result.stats.add(&no_report());
             let json = reading.json(&result)?;

@@ -56,7 +56,10 @@ pub(crate) fn order_of_bands(
         if (own - centre).abs() > half {
             let (own, centre) = (significant(own, 6), significant(centre, 6));
             let found = format!("{what}: band {place} is at {own} cm^-1, but at {centre} cm^-1 in bands");
-            return Err(raised(Error::malformed(found, "give the bands of the array, or mend its coordinate")));
+            return Err(raised(Error::malformed(
+                found,
+                "give the bands of the array, or mend its coordinate",
+            )));
         }
     }
     Ok(order)

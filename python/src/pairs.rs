@@ -4,7 +4,7 @@ use crate::array::{flat, rows, shaped};
 use crate::error::{named, raised};
 use crate::quantity::In;
 use crate::scene::Scene;
-use crate::threads::with_limits;
+use crate::threads::{with_limits, with_threads};
 use hadar::error::check;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
@@ -73,7 +73,8 @@ impl Nearest {
 
     /// For copies and pickles.
     fn __getnewargs__(&self, py: Python<'_>) -> (f64, f64, f64, bool, bool, f64, Py<PyAny>, f64) {
-        let Self { distance, lower, relative_error, converged, per_photon, temperature, lighting, gain } = self;
+        let Self { distance, lower, relative_error, converged, per_photon, temperature, lighting, gain } =
+            self;
         let found = (*distance, *lower, *relative_error, *converged);
         (found.0, found.1, found.2, found.3, *per_photon, *temperature, lighting.clone_ref(py), *gain)
     }
@@ -148,7 +149,7 @@ pub(crate) fn nearest(
     let target = scene.emissivity(target, "target")?;
     let alternative = scene.emissivity(alternative, "alternative")?;
     let prove = share(prove)?;
-    let found = py.detach(|| {
+    let found = with_threads(py, Some(1), || {
         let Scene { bands, surroundings, unknowns, range, state, .. } = scene;
         let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
         let mut solver = match prove {
@@ -159,8 +160,7 @@ pub(crate) fn nearest(
             None => solver.per_photon(&target, &alternative, state, f64::INFINITY),
             Some(counting) => solver.with_counting(&target, &alternative, state, counting),
         }
-    });
-    let found = found.map_err(raised)?;
+    })?;
     Ok(Nearest {
         distance: found.distance,
         lower: found.lower,

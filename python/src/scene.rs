@@ -181,10 +181,7 @@ impl Scene {
     }
 
     /// What makes the same scene again, for copies and pickles.
-    fn __getnewargs_ex__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
         let Self { state, range, given, counting, .. } = self;
         let objects = self.surroundings.objects();
         let temperatures: Vec<f64> = objects.iter().map(|object| object.temperature_k).collect();

@@ -38,7 +38,6 @@ CALLS = {
     "decompose": "hadar.decompose(cube, library[:300], small.signal(library[0])[None] * 0.1, small.nodes, counts_per_radiance=1e-15, skipping=False)",
     "potts": "hadar.decompose(cube, library[:30], (), small.nodes, counts_per_radiance=1e-15, potts=(1.0, 0.5))",
     "windows": "while True: hadar.window_information(cube)",
-    "planck": "hadar.planck(bands, np.linspace(200.0, 400.0, 3000)[:, None]); hadar.planck(bands, np.linspace(200.0, 400.0, 3000)[:, None])",
     "identify": """hadar.identify({
         "target": {"material": "skin", "temperature": "37 degC"},
         "environment": [{"temperature": "20 degC", "lighting": 0.5}],
