@@ -210,7 +210,7 @@ def test_coordinates_decide_the_order_of_bands(name):
 def test_coordinates_that_contradict_the_bands_are_refused():
     good = over(WAVELENGTHS, "wavelength", "um")
     refusals = [
-        (over(NU + 8.0, "band", "cm^-1"), NU, "at 808 cm"),
+        (over(NU + 8.0, "band", "cm^-1"), NU, "at 808.000 cm"),
         (over(WAVELENGTHS, "wavelength"), NU, r'write \.attrs\["units"\]'),
         (over(np.arange(NU.size) + 8, "band"), NU, "without a unit"),
         (over(NU, "band", "furlong"), NU, "furlong"),
