@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Can this camera tell a person from a robot?
 #
-# Run it as a script (`python person_or_robot.py [FOLDER]`) or cell by cell. It needs matplotlib and takes some seconds.
+# Run it as a script (`python person_or_robot.py [FOLDER]`) or cell by cell. It needs matplotlib and pandas, and takes some seconds.
 
 # %%
 import sys
