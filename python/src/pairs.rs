@@ -31,7 +31,7 @@ pub(crate) struct Local {
 
 /// What :func:`nearest` finds: ``distance``, ``lower`` below which it is proved that no state is (0: not proved), ``relative_error``
 /// by rounding, ``converged``, and the nearest state: ``temperature`` (K), ``lighting`` (surroundings,), ``gain``.
-#[pyclass(frozen, get_all, new = "from_fields", module = "hadar_limits")]
+#[pyclass(frozen, get_all, module = "hadar_limits")]
 #[derive(Debug)]
 pub(crate) struct Nearest {
     distance: f64,
@@ -71,12 +71,19 @@ impl Nearest {
         (!self.per_photon).then(|| detection::probability(self.distance))
     }
 
+    /// Of what [`Self::__getnewargs__`] gives.
+    #[new]
+    fn new(found: (f64, f64, f64), converged: bool, per_photon: bool, state: (f64, Py<PyAny>, f64)) -> Self {
+        let ((distance, lower, relative_error), (temperature, lighting, gain)) = (found, state);
+        Self { distance, lower, relative_error, converged, per_photon, temperature, lighting, gain }
+    }
+
     /// For copies and pickles.
-    fn __getnewargs__(&self, py: Python<'_>) -> (f64, f64, f64, bool, bool, f64, Py<PyAny>, f64) {
-        let Self { distance, lower, relative_error, converged, per_photon, temperature, lighting, gain } =
-            self;
-        let found = (*distance, *lower, *relative_error, *converged);
-        (found.0, found.1, found.2, found.3, *per_photon, *temperature, lighting.clone_ref(py), *gain)
+    #[expect(clippy::type_complexity, reason = "the fields in two groups")]
+    fn __getnewargs__(&self, py: Python<'_>) -> ((f64, f64, f64), bool, bool, (f64, Py<PyAny>, f64)) {
+        let found = (self.distance, self.lower, self.relative_error);
+        let state = (self.temperature, self.lighting.clone_ref(py), self.gain);
+        (found, self.converged, self.per_photon, state)
     }
 
     fn __repr__(&self) -> String {
@@ -185,7 +192,6 @@ pub(crate) fn nearest(
 /// Source: paper S32–S34, Algorithm 3.
 #[pyfunction]
 #[pyo3(signature = (emissivities, scene, *, by="local", prove=None, threads=None, progress=None))]
-#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn matrix<'py>(
     py: Python<'py>,
     emissivities: &Bound<'py, PyAny>,
