@@ -2,6 +2,7 @@
 
 import ast
 import importlib.util
+import inspect
 import json
 import re
 import subprocess
@@ -11,8 +12,10 @@ from pathlib import Path
 import pytest
 
 import hadar_limits as hadar
+from hadar_limits import _hadar, _questions
 
 TYPED = Path(__file__).parent / "typed"
+STUB = Path(hadar.__file__).with_name("_hadar.pyi")
 
 
 def ran(name, *arguments):
@@ -62,3 +65,17 @@ def test_the_users_file_has_every_public_name_and_runs():
     pytest.importorskip("dask")
     pytest.importorskip("xarray")
     subprocess.run([sys.executable, str(TYPED / "user.py")], check=True, stdout=subprocess.DEVNULL)
+
+
+def test_options_are_those_that_are_taken():
+    def taken(function, *positional):
+        return set(inspect.signature(function).parameters) - set(positional)
+
+    assert set(hadar.DecomposeOptions.__annotations__) == taken(_hadar.decompose, "cube", "library", "light", "bands")
+    assert set(hadar.WindowOptions.__annotations__) == taken(_hadar.window_information, "cube", "window")
+    assert set(hadar.QuestionOptions.__annotations__) == taken(_questions._common)
+    for name in ("matrix", "over_states", "nearest", "local", "Scene", "planck"):
+        stub = next(node for node in ast.walk(ast.parse(STUB.read_text())) if getattr(node, "name", None) == name)
+        stub = next(node for node in ast.walk(stub) if isinstance(node, ast.FunctionDef))
+        stated = {each.arg for each in stub.args.args + stub.args.kwonlyargs} - {"cls"}
+        assert stated == taken(getattr(_hadar, name)), name
