@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Can this camera tell a person from a robot?
 #
-# Run it as a script (`python person_or_robot.py [FOLDER]`) or cell by cell. It needs matplotlib and takes some seconds.
+# Run it as a script (`python person_or_robot.py [FOLDER]`) or cell by cell. It needs matplotlib and pandas, and takes some seconds.
 
 # %%
 import sys
@@ -13,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-import hadar
+import hadar_limits as hadar
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 

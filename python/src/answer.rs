@@ -2,7 +2,7 @@
 
 use crate::error::{named, raised};
 use crate::question::Question;
-use crate::threads::{with_limits, with_threads};
+use crate::threads::{Counted, with_limits, with_threads};
 use hadar::demand::{Reason, Skipping, Thing, Work, ledger_of};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
@@ -28,7 +28,7 @@ use std::path::PathBuf;
 type Draw = Box<dyn Fn() -> Result<Bundle> + Send + Sync>;
 
 /// What a command answers.
-#[pyclass(frozen, module = "hadar._hadar")]
+#[pyclass(frozen, module = "hadar_limits._hadar")]
 pub(crate) struct Answer {
     /// One JSON object, as the command prints with `--json`.
     #[pyo3(get)]
@@ -69,6 +69,8 @@ pub(crate) struct Common {
     time_limit: Option<String>,
     #[pyo3(item)]
     memory_limit: Option<String>,
+    #[pyo3(item)]
+    progress: Option<Py<PyAny>>,
 }
 
 /// Found by a command: text, JSON, pictures to be drawn.
@@ -119,9 +121,9 @@ impl Common {
         find: impl FnOnce(&Noting, &mut Reading<'_>) -> Result<Found> + Send,
     ) -> PyResult<Answer> {
         let limits = self.limits().map_err(raised)?;
-        with_limits(py, self.threads, limits, || {
+        with_limits(py, self.threads, &limits, self.progress.as_ref(), |counted| {
             let noting = Noting::open();
-            let mut reading = Reading { common: self, said: Vec::new() };
+            let mut reading = Reading { common: self, said: Vec::new(), counted };
             let found = find(&noting, &mut reading).map_err(|error| question.told(error))?;
             let Found { json, text, draw } = found;
             let library_warnings = reading.said.iter().map(|warning| warning.say()).collect();
@@ -146,10 +148,11 @@ impl Common {
     }
 }
 
-/// The library as a question reads it, with what is to be said of it.
+/// The library as a question reads it, with what is to be said of it, and how far the answer is.
 struct Reading<'a> {
     common: &'a Common,
     said: Vec<Warning>,
+    counted: &'a Counted,
 }
 
 impl Reading<'_> {
@@ -258,8 +261,8 @@ pub(crate) fn identify(
             exact: more.exact.then(trial).transpose()?,
             average: more.average,
         };
-        let silent = |_: usize, _: usize| ();
-        let watch = Watch { searched: &silent, decided: &silent, simulated: &silent, averaged: &silent };
+        let count = |done, of| reading.counted.set(done, of);
+        let watch = Watch { searched: &count, decided: &count, simulated: &count, averaged: &count };
         let mut answers = study.answer(&asked, &watch)?;
         let text = identify_report::text(&answers, &study);
         answers.identification.stats.add(&no_report());
@@ -288,8 +291,10 @@ pub(crate) fn rule(
         let study = RuleStudy::new(&rule_read, &reading.library()?)?;
         common.admit(study.takes())?;
         let (extent, skipping, seed) = (Extent::Everything, common.skipping(), common.seed);
-        let mut answer =
-            study.answer(&RuleAsked { extent, skipping, seed, on, ..RuleAsked::default() }, &|_, _| ())?;
+        let mut answer = study
+            .answer(&RuleAsked { extent, skipping, seed, on, ..RuleAsked::default() }, &|done, of| {
+                reading.counted.set(done, of)
+            })?;
         let text = rule_report::text(&answer, &study);
         answer.stats.add(&no_report());
         let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;
@@ -316,7 +321,7 @@ pub(crate) fn range_(
             RangingScenario::Air(scenario) => {
                 let study = AirRangingStudy::new(&scenario, &reading.library()?)?;
                 let plan = AirPlan { trials, seed: common.seed, bands };
-                let mut result = study.range(&plan, &|_, _| ())?;
+                let mut result = study.range(&plan, &|done, of| reading.counted.set(done, of))?;
                 let text = air_ranging::text(&result);
                 result.stats.add(&no_report());
                 let json = reading.json(&result)?;
@@ -327,7 +332,7 @@ pub(crate) fn range_(
                 common.admit(study.takes())?;
                 let (seed, skipping) = (common.seed, common.skipping());
                 let plan = RangePlan { trials, seed, skipping, ..RangePlan::default() };
-                let mut result = study.range(&plan, None, &|_, _| ())?;
+                let mut result = study.range(&plan, None, &|done, of| reading.counted.set(done, of))?;
                 let text = range::text(&result);
                 result.stats.add(&no_report());
                 let json = reading.json(&result)?;
@@ -384,7 +389,9 @@ pub(crate) fn simulate(
         let study = common.study(&question, None, reading)?;
         if let Some(range) = &more.thermometry {
             let temperatures = hadar_study::true_temperatures(range, more.temperatures)?;
-            let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|_, _| ())?;
+            let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|done, of| {
+                reading.counted.set(done, of)
+            })?;
             let text = simulate_report::thermometry::text(&result);
             result.stats.add(&no_report());
             let json = reading.json(&result)?;
@@ -405,7 +412,7 @@ pub(crate) fn simulate(
             seed: common.seed,
         };
         let (plan, planning) = ledger_of(|| study.plan(&asked))?;
-        let (mut result, _) = study.simulate(&plan, &|_, _| ())?;
+        let (mut result, _) = study.simulate(&plan, &|done, of| reading.counted.set(done, of))?;
         let text = simulate_report::text(&result, &study);
         result.stats.add(&planning.and(&no_report()));
         let json = reading.json(&result)?;

@@ -5,12 +5,13 @@ use crate::error::{named, raised};
 use crate::lent::Lent;
 use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, RADIANCE};
 use crate::scene::bands;
-use crate::threads::with_threads;
+use crate::threads::with_limits;
 use hadar::demand::Skipping;
 use hadar::error::Error;
 use hadar_estimate::decompose::{
     LibraryError, Light, Maps, Method, Options, Setting, SpatialPrior, decompose_by,
 };
+use hadar_study::budget::Limits;
 use numpy::PyUntypedArrayMethods as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,7 +23,7 @@ const RANGE_K: [f64; 2] = [200.0, 400.0];
 #[pyfunction]
 #[pyo3(signature = (cube, library, light, bands, *, counts_per_radiance, var_added=None, units_per_count=1.0,
     temperature_range=None, lighting_total=None, gain=false, bad_bands=None, light_in_counts=false, prior=None,
-    emissivity_error=None, method="ml", potts=None, tex_sgd=None, skipping=true, threads=None))]
+    emissivity_error=None, method="ml", potts=None, tex_sgd=None, skipping=true, threads=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn decompose<'py>(
     py: Python<'py>,
@@ -45,6 +46,7 @@ pub(crate) fn decompose<'py>(
     tex_sgd: Option<f64>,
     skipping: bool,
     threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let temperature_k = temperature_range.map_or(Ok(RANGE_K), |given| ends(given, "temperature_range"))?;
     let lent = Lent::of(cube)?;
@@ -105,8 +107,10 @@ pub(crate) fn decompose<'py>(
         path: None,
         light_besides: &[],
     };
-    let found = || decompose_by(method, &setting, &options, view.cube(), &|_| ());
-    let mut maps = with_threads(py, threads, found)?;
+    let mut maps = with_limits(py, threads, &Limits::default(), progress.as_ref(), |counted| {
+        counted.set(0, view.cube().shape().rows());
+        decompose_by(method, &setting, &options, view.cube(), &|rows| counted.add(rows))
+    })?;
     maps.leave_out_unknown_lighting(lighting_total);
     given_back(py, lent.pixels(), surroundings.len(), maps)
 }

@@ -5,7 +5,7 @@ use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
 
 pyo3::create_exception!(
-    hadar,
+    hadar_limits,
     HadarError,
     PyValueError,
     "Something that hadar cannot take: what was found, where, and what to write instead."

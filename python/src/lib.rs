@@ -1,4 +1,4 @@
-//! `hadar._hadar`: what the Python package `hadar` is made of; how it is called stands in `hadar/_hadar.pyi`.
+//! `hadar_limits._hadar`: what the Python package `hadar_limits` is made of; how it is called stands in `hadar_limits/_hadar.pyi`.
 //!
 //! Numbers come as NumPy arrays and are worked on where they lie, scenarios as files, text or dicts. The interpreter is free
 //! meanwhile. Errors are those of the command, as exceptions.
@@ -12,6 +12,7 @@ mod decompose;
 mod error;
 mod lent;
 mod library;
+mod order;
 mod pairs;
 mod planck;
 mod quantity;
@@ -32,6 +33,8 @@ mod _hadar {
     use crate::error::HadarError;
     #[pymodule_export]
     use crate::library::{emissivity, materials};
+    #[pymodule_export]
+    use crate::order::{order_of_bands, plain};
     #[pymodule_export]
     use crate::pairs::{Local, Nearest, local, matrix, nearest};
     #[pymodule_export]

@@ -4,12 +4,13 @@ use crate::array::{flat, rows, shaped};
 use crate::error::{named, raised};
 use crate::quantity::In;
 use crate::scene::Scene;
-use crate::threads::with_threads;
+use crate::threads::{with_limits, with_threads};
 use hadar::error::check;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::identifiability::{Status, detection};
+use hadar_study::budget::Limits;
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
@@ -18,19 +19,19 @@ pub(crate) const DISTANCES: [(bool, &str); 2] = [(false, "local"), (true, "neare
 
 /// What :func:`local` finds: ``distance`` d₀ per √photon (``per_photon``) or d, ``distance_no_nuisance`` the same with nothing
 /// unknown, ``relative_error`` of the distance by rounding, ``status`` "ok", "equilibrium", "blind" or "identical".
-#[pyclass(frozen, get_all, module = "hadar")]
+#[pyclass(frozen, get_all, new = "from_fields", module = "hadar_limits")]
 #[derive(Debug)]
 pub(crate) struct Local {
     distance: f64,
     distance_no_nuisance: f64,
     relative_error: f64,
-    status: &'static str,
+    status: String,
     per_photon: bool,
 }
 
 /// What :func:`nearest` finds: ``distance``, ``lower`` below which it is proved that no state is (0: not proved), ``relative_error``
 /// by rounding, ``converged``, and the nearest state: ``temperature`` (K), ``lighting`` (surroundings,), ``gain``.
-#[pyclass(frozen, get_all, module = "hadar")]
+#[pyclass(frozen, get_all, module = "hadar_limits")]
 #[derive(Debug)]
 pub(crate) struct Nearest {
     distance: f64,
@@ -51,6 +52,12 @@ impl Local {
         (!self.per_photon).then(|| detection::probability(self.distance))
     }
 
+    /// For copies and pickles.
+    fn __getnewargs__(&self) -> (f64, f64, f64, &str, bool) {
+        let Self { distance, distance_no_nuisance, relative_error, status, per_photon } = self;
+        (*distance, *distance_no_nuisance, *relative_error, status, *per_photon)
+    }
+
     fn __repr__(&self) -> String {
         format!("Local(distance={:e}, {}, status='{}')", self.distance, unit(self.per_photon), self.status)
     }
@@ -62,6 +69,21 @@ impl Nearest {
     #[getter]
     fn probability(&self) -> Option<f64> {
         (!self.per_photon).then(|| detection::probability(self.distance))
+    }
+
+    /// Of what [`Self::__getnewargs__`] gives.
+    #[new]
+    fn new(found: (f64, f64, f64), converged: bool, per_photon: bool, state: (f64, Py<PyAny>, f64)) -> Self {
+        let ((distance, lower, relative_error), (temperature, lighting, gain)) = (found, state);
+        Self { distance, lower, relative_error, converged, per_photon, temperature, lighting, gain }
+    }
+
+    /// For copies and pickles.
+    #[expect(clippy::type_complexity, reason = "the fields in two groups")]
+    fn __getnewargs__(&self, py: Python<'_>) -> ((f64, f64, f64), bool, bool, (f64, Py<PyAny>, f64)) {
+        let found = (self.distance, self.lower, self.relative_error);
+        let state = (self.temperature, self.lighting.clone_ref(py), self.gain);
+        (found, self.converged, self.per_photon, state)
     }
 
     fn __repr__(&self) -> String {
@@ -108,7 +130,8 @@ pub(crate) fn local(
             Status::Equilibrium => "equilibrium",
             Status::Blind => "blind",
             Status::Identical => "identical",
-        },
+        }
+        .to_owned(),
         per_photon: scene.counting.is_none(),
     })
 }
@@ -133,7 +156,7 @@ pub(crate) fn nearest(
     let target = scene.emissivity(target, "target")?;
     let alternative = scene.emissivity(alternative, "alternative")?;
     let prove = share(prove)?;
-    let found = py.detach(|| {
+    let found = with_threads(py, Some(1), || {
         let Scene { bands, surroundings, unknowns, range, state, .. } = scene;
         let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
         let mut solver = match prove {
@@ -144,8 +167,7 @@ pub(crate) fn nearest(
             None => solver.per_photon(&target, &alternative, state, f64::INFINITY),
             Some(counting) => solver.with_counting(&target, &alternative, state, counting),
         }
-    });
-    let found = found.map_err(raised)?;
+    })?;
     Ok(Nearest {
         distance: found.distance,
         lower: found.lower,
@@ -165,10 +187,11 @@ pub(crate) fn nearest(
 /// by : "local" or "nearest"
 /// prove : share of a nearest distance to which it is proved; not proved where silent
 /// threads : all cores where silent; the answer does not depend on it
+/// progress : called with (targets done, targets) of nearest distances as they are found
 ///
 /// Source: paper S32–S34, Algorithm 3.
 #[pyfunction]
-#[pyo3(signature = (emissivities, scene, *, by="local", prove=None, threads=None))]
+#[pyo3(signature = (emissivities, scene, *, by="local", prove=None, threads=None, progress=None))]
 pub(crate) fn matrix<'py>(
     py: Python<'py>,
     emissivities: &Bound<'py, PyAny>,
@@ -176,6 +199,7 @@ pub(crate) fn matrix<'py>(
     by: &str,
     prove: Option<f64>,
     threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get();
     let by_nearest = named("distance", by, &DISTANCES, |by| by.1).map_err(raised)?.0;
@@ -185,14 +209,15 @@ pub(crate) fn matrix<'py>(
         checked.map_err(|error| raised(error.for_key(format!("emissivities[{row}]"))))?;
     }
     let tolerance = share(prove)?;
-    let found = with_threads(py, threads, || {
+    let found = with_limits(py, threads, &Limits::default(), progress.as_ref(), |counted| {
         let spectra: Vec<&[f64]> = spectra.iter().map(Vec::as_slice).collect();
-        let Scene { bands, surroundings, unknowns, range, state, counting } = scene;
+        let Scene { bands, surroundings, unknowns, range, state, counting, .. } = scene;
         if by_nearest {
+            let count = |done, of| counted.set(done, of);
             let library = LibraryScene { bands, surroundings, unknowns, range: *range, state, tolerance };
             let found = match counting {
-                None => library.nearest_per_photon(&spectra, &|_, _| ()),
-                Some(counting) => library.nearest_with_counting(&spectra, counting, &|_, _| ()),
+                None => library.nearest_per_photon(&spectra, &count),
+                Some(counting) => library.nearest_with_counting(&spectra, counting, &count),
             };
             return found.map(|found| found.distance);
         }

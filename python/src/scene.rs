@@ -1,6 +1,6 @@
 //! A scene: bands, the target's state, its surroundings, what is unknown, and how photons are counted.
 
-use crate::array::{ends, flat, list, numbers, rows};
+use crate::array::{ends, flat, list, numbers, rows, shaped};
 use crate::error::{named, raised};
 use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, number};
 use hadar::error::{Error, Result};
@@ -10,6 +10,7 @@ use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::spectrum::Bands;
 use numpy::{PyArray1, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 use std::collections::BTreeMap;
 
 /// A target in its surroundings: S = e·B(T) + (1 − e)·Σ V_k ε_k B(T_k), what of it is unknown, and how it is counted.
@@ -28,7 +29,7 @@ use std::collections::BTreeMap;
 /// var_added : number or (bands,), variance of noise besides, counts²
 ///
 /// Source: paper S2, S3, S27–S30, S48.
-#[pyclass(frozen, module = "hadar")]
+#[pyclass(frozen, module = "hadar_limits")]
 #[derive(Debug)]
 pub(crate) struct Scene {
     pub(crate) bands: Bands,
@@ -38,6 +39,17 @@ pub(crate) struct Scene {
     pub(crate) range: StateRange,
     /// Counts of a camera; silent for a bound per √photon.
     pub(crate) counting: Option<Counting>,
+    /// Bands and unknowns as they were given, of which a copy is made.
+    given: Given,
+}
+
+#[derive(Debug)]
+struct Given {
+    shape_of_bands: Vec<usize>,
+    bands: Vec<f64>,
+    unknown: Option<Vec<String>>,
+    priors: BTreeMap<String, f64>,
+    lighting_total: Option<f64>,
 }
 
 /// Bands by their centres, or by rows of lower and upper ends.
@@ -92,6 +104,8 @@ impl Scene {
         counts_per_radiance: Option<&Bound<'_, PyAny>>,
         var_added: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let stated = numbers::<f64>(bands, "bands", In::PerCentimetre)?;
+        let given = (stated.shape().to_vec(), stated.as_array().iter().copied().collect());
         let bands = self::bands(bands)?;
         let of = |given: Option<&Bound<'_, PyAny>>, what, wanted| {
             given.map_or(Ok(Vec::new()), |given| list(given, what, wanted))
@@ -107,6 +121,8 @@ impl Scene {
             Ok((name.clone(), number(&given, &format!("priors.{name}"), wanted)?))
         };
         let priors = priors.unwrap_or_default().into_iter().map(deviation).collect::<PyResult<_>>()?;
+        let (shape_of_bands, of_bands) = given;
+        let given = Given { shape_of_bands, bands: of_bands, unknown, priors, lighting_total };
         let lighting = of(lighting, "lighting", In::One)?;
         let environment = of(environment, "environment", In::Kelvin)?;
         let emissivities = match environment_emissivity {
@@ -141,13 +157,13 @@ impl Scene {
                 objects.map(|(&temperature_k, emissivity)| EnvironmentObject { temperature_k, emissivity });
             let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
             let state = surroundings.state(temperature, &lighting)?;
-            let unknowns = unknowns(unknown, priors, lighting_total)?;
+            let unknowns = unknowns(&given)?;
             let mut range = StateRange::default();
             range.temperature_k = temperature_range.unwrap_or(range.temperature_k);
             range.lighting = lighting_range.unwrap_or(range.lighting);
             range.check()?;
             counting.as_ref().map_or(Ok(()), |counting| counting.check(bands.len()))?;
-            Ok(Self { bands, surroundings, unknowns, state, range, counting })
+            Ok(Self { bands, surroundings, unknowns, state, range, counting, given })
         };
         make().map_err(raised)
     }
@@ -162,6 +178,31 @@ impl Scene {
     fn signal<'py>(&self, emissivity: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let spectrum = self.emissivity(emissivity, "emissivity")?;
         Ok(flat(emissivity.py(), self.bands.weigh(&self.surroundings.signal(&spectrum, &self.state))))
+    }
+
+    /// What makes the same scene again, for copies and pickles.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyDict>)> {
+        let Self { state, range, given, counting, .. } = self;
+        let objects = self.surroundings.objects();
+        let temperatures: Vec<f64> = objects.iter().map(|object| object.temperature_k).collect();
+        let emissivities: Option<Vec<Vec<f64>>> =
+            objects.iter().map(|object| object.emissivity.clone()).collect();
+        let named = PyDict::new(py);
+        named.set_item("bands", shaped(py, &given.shape_of_bands, given.bands.clone())?)?;
+        named.set_item("temperature", state.temperature_k)?;
+        named.set_item("lighting", state.lighting.clone())?;
+        named.set_item("environment", temperatures)?;
+        named.set_item("environment_emissivity", emissivities.filter(|all| !all.is_empty()))?;
+        named.set_item("unknown", given.unknown.clone())?;
+        named.set_item("priors", given.priors.clone())?;
+        named.set_item("lighting_total", given.lighting_total)?;
+        named.set_item("temperature_range", range.temperature_k)?;
+        named.set_item("lighting_range", range.lighting)?;
+        if let Some(Counting { counts_per_radiance, var_added }) = counting {
+            named.set_item("counts_per_radiance", counts_per_radiance)?;
+            named.set_item("var_added", var_added.clone())?;
+        }
+        Ok((PyTuple::empty(py), named))
     }
 
     fn __repr__(&self) -> String {
@@ -185,19 +226,15 @@ impl Scene {
     }
 }
 
-fn unknowns(
-    names: Option<Vec<String>>,
-    priors: BTreeMap<String, f64>,
-    lighting_total: Option<f64>,
-) -> Result<Unknowns> {
+fn unknowns(given: &Given) -> Result<Unknowns> {
     let nuisance = |name: &str| named("unknown", name, &Nuisance::ALL, Nuisance::name);
-    let set = match names {
+    let set = match &given.unknown {
         None => vec![Nuisance::Temperature, Nuisance::Lighting],
         Some(names) => names.iter().map(|name| nuisance(name)).collect::<Result<_>>()?,
     };
     let mut unknowns = Unknowns::new(set)?;
-    for (name, sigma) in &priors {
+    for (name, sigma) in &given.priors {
         unknowns = unknowns.prior(nuisance(name)?, *sigma)?;
     }
-    unknowns.lighting_total(lighting_total)
+    unknowns.lighting_total(given.lighting_total)
 }

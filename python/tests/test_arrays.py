@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import hadar
+import hadar_limits as hadar
 
 C2 = 1.438776877503933  # hc/k, cm K
 C = 299792458.0

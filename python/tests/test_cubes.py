@@ -8,7 +8,7 @@ import threading
 import numpy as np
 import pytest
 
-import hadar
+import hadar_limits as hadar
 
 NU = np.arange(800.0, 1201.0, 10.0)
 T = (NU - 1000) / 200

@@ -6,7 +6,7 @@ import signal
 import numpy as np
 import pytest
 
-import hadar
+import hadar_limits as hadar
 
 pytest.importorskip("distributed")
 pytest.importorskip("xarray")
@@ -15,8 +15,8 @@ import dask.array
 import xarray
 from distributed import Client, Event, LocalCluster
 
-import hadar.dask
-from hadar.dask import Axis
+import hadar_limits.dask
+from hadar_limits.dask import Axis
 
 NU = np.arange(800.0, 1201.0, 10.0)
 T = (NU - 1000) / 200
@@ -67,12 +67,36 @@ def test_a_sweep_is_its_questions(client):
     assert [point["distance"] for point in points] == list(found.distance.values.ravel())
 
 
+def test_a_bad_point_leaves_the_others(client):
+    axes = {
+        "temperature": Axis("target.temperature", [300.0, -5.0, 310.0], "K"),
+        "material": Axis("alternatives.materials.0", ["aluminium", "unobtainium"]),
+    }
+    for batch in (1, 6):
+        sweep = hadar.dask.sweep(hadar.identify, SCENARIO, axes, READ, batch=batch)
+        with pytest.warns(UserWarning, match="4 of 6 points have no answer"):
+            found = sweep.compute()
+        bad = np.array([[False, True], [True, True], [False, True]])
+        np.testing.assert_array_equal(found.error != "", bad)
+        np.testing.assert_array_equal(np.isnan(found.distance), bad)
+        np.testing.assert_array_equal(found.rival == "", bad)
+        assert "unobtainium" in str(found.error[0, 1].item()) and "-5" in str(found.error[1, 0].item())
+        alone = hadar.identify(SCENARIO | {"target": {"material": "skin", "temperature": "310 K"}})
+        assert float(found.distance[2, 0]) == alone.pairs[0].distance_nearest
+        assert [bool(point["error"]) for point in sweep.to_bag().compute()] == list(bad.ravel())
+
+
 def test_mistakes_of_a_sweep_are_told():
     wrong = hadar.dask.sweep(hadar.identify, SCENARIO, AXES, {"distance": ("pairs.0.distanc", "")})
-    with pytest.raises(hadar.HadarError, match="pairs.0.distanc: there is no `distanc`"):
+    with pytest.raises(hadar.HadarError, match="none of the 12 points .* pairs.0.distanc: there is no `distanc`"):
         wrong.compute(scheduler="synchronous")
+    nowhere = hadar.dask.sweep(hadar.identify, SCENARIO, {"v": Axis("environment.4.lighting", [0.1])}, READ)
+    with pytest.raises(hadar.HadarError, match="environment.4.lighting: there is no such place"):
+        nowhere.compute(scheduler="synchronous")
     with pytest.raises(hadar.HadarError, match="at least 1"):
         hadar.dask.sweep(hadar.identify, SCENARIO, AXES, READ, batch=0)
+    with pytest.raises(hadar.HadarError, match="another name"):
+        hadar.dask.sweep(hadar.identify, SCENARIO, AXES, {"error": ("limiting", "")})
 
 
 def test_a_cube_in_chunks_is_the_whole_cube(client):
@@ -146,3 +170,77 @@ def test_a_worker_that_is_killed_loses_nothing(client):
     np.testing.assert_array_equal(found.material, expected.material)
     np.testing.assert_array_equal(found.temperature_k, expected.temperature_k)
     assert set(client.run(os.getpid).values()) != set(workers.values())
+
+
+def over(values, name="band", unit=None, **others):
+    """The cube with a coordinate over its bands."""
+    made = xarray.DataArray(cube(12, 10), dims=("y", "x", "band"), coords={name: ("band", values)} | others)
+    if unit:
+        made[name].attrs["units"] = unit
+    return made
+
+
+WAVELENGTHS = 1e4 / NU
+COORDINATES = {
+    "wavenumber": over(NU, "wavenumber", "cm^-1"),
+    "band in cm-1": over(NU, "band", "cm-1"),
+    "without a unit": over(NU, "band"),
+    "wavelength": over(WAVELENGTHS, "wavelength", "um"),
+    "rounded": over(np.round(1e3 * WAVELENGTHS), "wavelength", "nm"),
+    "counted": over(np.arange(NU.size), "band"),
+    "counted from 1": over(np.arange(NU.size) + 1, "band"),
+    "both": over(np.arange(NU.size) + 1, "band", wavelength=("band", WAVELENGTHS, {"units": "um"}), fwhm=("band", NU[::-1])),
+}
+
+
+@pytest.mark.parametrize("name", COORDINATES)
+def test_coordinates_decide_the_order_of_bands(name):
+    given = COORDINATES[name]
+    expected = hadar.decompose(given.values, LIBRARY, LIGHT, NU, **OPTIONS).to_dict()
+    shuffled = given.isel(band=np.random.default_rng(4).permutation(NU.size))
+    for turned in (given, given.isel(band=slice(None, None, -1)), shuffled):
+        for asked in (turned, turned.chunk(y=5)):
+            maps = hadar.dask.decompose(asked, LIBRARY, LIGHT, NU, **OPTIONS).compute(scheduler="synchronous")
+            np.testing.assert_array_equal(maps.material, expected["material"])
+            np.testing.assert_allclose(maps.temperature_k, expected["temperature_k"], rtol=2e-6)
+        alone = hadar.decompose(turned, LIBRARY, LIGHT, NU, **OPTIONS)
+        np.testing.assert_array_equal(alone.temperature_k, expected["temperature_k"])
+
+
+def test_coordinates_that_contradict_the_bands_are_refused():
+    good = over(WAVELENGTHS, "wavelength", "um")
+    refusals = [
+        (over(NU + 8.0, "band", "cm^-1"), NU, "at 808.000 cm"),
+        (over(WAVELENGTHS, "wavelength"), NU, r'write \.attrs\["units"\]'),
+        (over(np.arange(NU.size) + 8, "band"), NU, "without a unit"),
+        (over(NU, "band", "furlong"), NU, "furlong"),
+        (over(np.where(NU == 1000.0, np.nan, NU), "band", "cm^-1"), NU, "NaN"),
+        (good, NU[:-1], "bands by cube.wavelength"),
+        (good, NU * 1.2, "but at"),
+        (good.transpose("band", "y", "x"), NU, None),
+    ]
+    for given, bands, message in refusals:
+        library, light = LIBRARY[:, : bands.size], LIGHT[:, : bands.size]
+        for decompose in (hadar.decompose, hadar.dask.decompose):
+            if message is None and decompose is hadar.dask.decompose:
+                continue
+            with pytest.raises(hadar.HadarError, match=message or "transpose it"):
+                decompose(given, library, light, bands, **OPTIONS)
+
+
+def test_units_of_a_cube_and_of_bands_hold_in_chunks_too():
+    given = over(NU, "wavenumber", "cm^-1")
+    expected = hadar.decompose(given, LIBRARY, LIGHT, NU, **OPTIONS)
+    bands = xarray.DataArray(0.1 * NU, attrs={"units": "mm^-1"})
+    with pytest.raises(hadar.HadarError, match="mm\\^-1"):
+        hadar.dask.decompose(given, LIBRARY, LIGHT, bands, **OPTIONS)
+    metres = xarray.DataArray(100.0 * NU, attrs={"units": "m^-1"})
+    percent = xarray.DataArray(100.0 * LIBRARY[:, ::-1], dims=("m", "nu"), coords={"nu": ("nu", NU[::-1], {"units": "cm^-1"})}, attrs={"units": "percent"})
+    found = hadar.dask.decompose(given, percent, LIGHT, metres, **OPTIONS).compute()
+    np.testing.assert_array_equal(found.material, expected.material)
+    np.testing.assert_allclose(found.temperature_k, expected.temperature_k, rtol=2e-6)
+    given.attrs["units"] = "W m-2 sr-1 um-1"
+    with pytest.raises(hadar.HadarError, match="give counts"):
+        hadar.dask.decompose(given, LIBRARY, LIGHT, NU, **OPTIONS)
+    with pytest.raises(hadar.HadarError, match="give counts"):
+        hadar.dask.window_information(given)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import hadar
+import hadar_limits as hadar
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / "examples/human_vs_robot.toml"

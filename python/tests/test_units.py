@@ -7,7 +7,7 @@ import pint
 import pytest
 import xarray
 
-import hadar
+import hadar_limits as hadar
 
 NU = np.linspace(800.0, 1250.0, 12)
 E = np.linspace(0.95, 0.98, 12)

@@ -144,6 +144,7 @@ impl Screen {
             sag: spaces.iter().map(|space| space.sag(&starts)).collect(),
         };
         for (kind, space) in spaces.iter().enumerate() {
+            hadar::stop::check();
             let all: Vec<Option<&Vec<f64>>> =
                 space.lights.iter().map(Option::as_ref).chain(space.curve.iter().map(Some)).collect();
             for (i, direction) in all.iter().enumerate() {

@@ -24,6 +24,7 @@ pub(super) struct Space {
 
 impl Space {
     pub(super) fn new(model: &Model, m: usize, reference: &[f64], whitening: &[f64], rows: usize) -> Self {
+        hadar::stop::check();
         let width = model.width;
         let scattered = model.scattered(m);
         let (base, others) = scattered.split_at(width);

@@ -104,7 +104,7 @@ impl TemperatureUnit {
     ///
     /// ```
     /// use hadar_formats::cube::TemperatureUnit;
-    /// assert_eq!(TemperatureUnit::spelt("0.01 K").unwrap().kelvin(30015.0), 300.15);
+    /// assert!((TemperatureUnit::spelt("0.01 K").unwrap().kelvin(30015.0) - 300.15).abs() < 1e-12);
     /// assert_eq!(TemperatureUnit::spelt("degC").unwrap().kelvin(27.0), 300.15);
     /// assert_eq!(TemperatureUnit::spelt("brightness_temperature [degF]").unwrap().kelvin(32.0), 273.15);
     /// assert!(TemperatureUnit::spelt("W m-2").is_none());

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
+from numpy.typing import NDArray
 
-from hadar import _hadar
+from hadar_limits import _hadar
+from hadar_limits._types import DecomposeOptions, Numbers, WindowOptions
 
 #: The material of a pixel that has none.
 NO_MATERIAL = 65535
@@ -25,10 +27,48 @@ FLAGS = {
 }
 
 
+#: Coordinates that say where bands are, beside that of their dimension: how their names begin.
+_SPECTRAL = ("wavelength", "wavenumber", "frequency")
+
+
+def in_order(given: Any, bands: Any, what: str, dim: Any = None, at_nodes: bool = False) -> Any:
+    """An array of xarray with its bands in rising wavenumber, as its coordinates say; any other as it is.
+
+    A coordinate over the bands (that of their dimension, or one whose name begins with wavelength, wavenumber or frequency) states
+    its unit in ``attrs["units"]`` and must be that of ``bands``. Numbers 0, 1, 2 … or 1, 2, 3 … count the bands.
+    """
+    if not (hasattr(given, "dims") and hasattr(given, "coords")) or not given.dims:
+        return given
+    dim = given.dims[-1] if dim is None else dim
+    order, counted = None, None
+    for name, coordinate in given.coords.items():
+        spectral = str(name).lower().startswith(_SPECTRAL)
+        if spectral and coordinate.dims and coordinate.dims != (dim,):
+            raise _hadar.HadarError(f"{what}: its bands are over `{dim}`, but {name} is over {coordinate.dims}; transpose it, bands last")
+        if coordinate.dims != (dim,) or not (name == dim or spectral):
+            continue
+        said, values = f"{what}.{name}", coordinate.values
+        stated = [coordinate.attrs.get(unit) for unit in ("units", "unit")]
+        if any(unit not in (None, "", "1") for unit in stated) or hasattr(coordinate.data, "units"):
+            order = _hadar.order_of_bands(coordinate, bands, said, at_nodes)
+        elif values.dtype.kind in "iu" and np.array_equal(np.sort(values) - (values.min(initial=1) > 0), np.arange(values.size)):
+            counted = np.argsort(values)
+        else:
+            try:
+                order = _hadar.order_of_bands(values, bands, said, at_nodes)
+            except _hadar.HadarError as error:
+                raise _hadar.HadarError(
+                    f'{said}: a coordinate without a unit that is not that of the bands in cm^-1; write .attrs["units"] = "um" or '
+                    f'"cm^-1" to it, or leave it out by .drop_vars("{name}") if the order is that of the bands'
+                ) from error
+    order = counted if order is None else order
+    return given if order is None or np.array_equal(order, np.arange(len(order))) else given.isel({dim: order})
+
+
 class _Arrays:
     """Arrays by name."""
 
-    def to_dict(self) -> dict[str, np.ndarray]:
+    def to_dict(self) -> dict[str, NDArray[Any]]:
         """The arrays by their names."""
         return {field.name: getattr(self, field.name) for field in fields(self) if getattr(self, field.name) is not None}
 
@@ -42,21 +82,21 @@ class Maps(_Arrays):
     """What is found of every pixel; each array has the shape of the cube without its bands."""
 
     #: Place in the library of the most probable material, u16; :data:`NO_MATERIAL` where nothing tells.
-    material: np.ndarray
+    material: NDArray[np.uint16]
     #: Its temperature, K, f32; NaN where the pixel was left out or emits nothing.
-    temperature_k: np.ndarray
+    temperature_k: NDArray[np.float32]
     #: Deviation of it, K, were the material certain and right.
-    temperature_sigma_k: np.ndarray
+    temperature_sigma_k: NDArray[np.float32]
     #: Thermal lighting factors, with a last axis of the surroundings; NaN where they are unknown (:data:`FLAGS`).
-    lighting: np.ndarray
+    lighting: NDArray[np.float32]
     #: Probability of a larger residual, were the material right.
-    p_value: np.ndarray
+    p_value: NDArray[np.float32]
     #: Posterior probability of the material.
-    posterior: np.ndarray
+    posterior: NDArray[np.float32]
     #: Materials that 95 % of the posterior leave, u16.
-    candidates: np.ndarray
+    candidates: NDArray[np.uint16]
     #: What is said of the pixel, u8; bits of :data:`FLAGS`.
-    flags: np.ndarray
+    flags: NDArray[np.uint8]
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -64,18 +104,18 @@ class Windows(_Arrays):
     """Fisher information about x of every window, pixel⁻², at its centre; NaN where no window fits. None where not asked for."""
 
     #: Photons of the window.
-    photons: np.ndarray
+    photons: NDArray[np.float64]
     #: Pixels and bands apart: a heat cube.
-    full: np.ndarray | None = None
+    full: NDArray[np.float64] | None = None
     #: Pixels apart, bands together: a thermal image.
-    spatial: np.ndarray | None = None
+    spatial: NDArray[np.float64] | None = None
     #: Bands apart, pixels together.
-    spectral: np.ndarray | None = None
+    spectral: NDArray[np.float64] | None = None
     #: All photons counted together.
-    total: np.ndarray | None = None
+    total: NDArray[np.float64] | None = None
 
 
-def decompose(cube: Any, library: Any, light: Any, bands: Any, **options: Any) -> Maps:
+def decompose(cube: Numbers, library: Numbers, light: Numbers, bands: Numbers, **options: Unpack[DecomposeOptions]) -> Maps:
     """Material, temperature and lighting of every pixel of a heat cube, by maximum likelihood.
 
     A pixel sends S = e·B(T) + (1 − e)·Σ V S_k: material of the library, temperature T, and how much V of each of its
@@ -117,13 +157,20 @@ def decompose(cube: Any, library: Any, light: Any, bands: Any, **options: Any) -
         Whether materials that a bound excludes are left out; the answer is the same.
     threads : int
         All cores where silent; the answer does not depend on it.
+    progress : callable
+        Called with (rows done, rows) now and then; what it raises ends the call.
+
+    Arrays of xarray that have a coordinate over their bands are taken in its order: see :func:`hadar_limits.dask.decompose`.
 
     Source: paper S44, S48; as ``hadar decompose``.
     """
+    cube = in_order(cube, bands, "cube")
+    library = in_order(library, bands, "library", at_nodes=True)
+    light = in_order(light, bands, "light", at_nodes=not options.get("light_in_counts"))
     return Maps(**_hadar.decompose(cube, library, light, bands, **options))
 
 
-def window_information(cube: Any, window: tuple[int, int] = (5, 5), **options: Any) -> Windows:
+def window_information(cube: Numbers, window: tuple[int, int] = (5, 5), **options: Unpack[WindowOptions]) -> Windows:
     """Fisher information about the x position of every window of a heat cube, pixel⁻² (paper S37–S40, Tables S4, S5).
 
     Parameters

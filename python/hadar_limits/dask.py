@@ -8,25 +8,34 @@ was at, which Dask has done again, and nothing else.
 * :func:`decompose`: material, temperature and lighting of a cube in chunks;
 * :func:`window_information`: what its windows tell of depth.
 
-Needs ``pip install hadar[dask]``.
+Needs ``pip install "hadar-limits[dask]"``.
 """
 
 from __future__ import annotations
 
 import copy
 import itertools
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Unpack
 
-import dask
-import dask.array
-import dask.array.overlap
-import dask.bag
 import numpy as np
-import xarray
+from numpy.typing import NDArray
 
-import hadar
+try:
+    import dask
+    import dask.array
+    import dask.array.overlap
+    import dask.bag
+    import xarray
+except ImportError as error:
+    raise ImportError(f'hadar_limits.dask needs {error.name}: pip install "hadar-limits[dask]"') from error
+
+import hadar_limits as hadar
+from hadar_limits import _hadar
+from hadar_limits._cubes import in_order
+from hadar_limits._types import Cell, DecomposeOptions, Derivative, NoiseOptions, Numbers
 
 #: Fields of a decomposition: type, unit, what it is.
 _MAPS = {
@@ -44,6 +53,8 @@ _MAPS = {
 def _described(values: xarray.DataArray, unit: str, meaning: str) -> xarray.DataArray:
     values.attrs = {"long_name": meaning} | ({"units": unit} if unit else {})
     return values
+
+
 #: Columns at either end without a derivative, of those that do not take whole rows.
 _MARGINS = {"central": 1, "simoncelli": 2}
 
@@ -60,7 +71,7 @@ class Axis:
     """
 
     key: str
-    values: Sequence[Any]
+    values: Sequence[Any] | NDArray[Any]
     unit: str = ""
 
     def written(self, index: int) -> Any:
@@ -89,9 +100,16 @@ class Sweep:
     def compute(self, **options: Any) -> xarray.Dataset:
         """Asks, on the client that is there or by ``scheduler=``: numbers over the axes, with their units.
 
-        What an answer does not have is NaN.
+        What an answer does not have is NaN. ``error`` is the message of a point that has no answer, else empty; if there is none that
+        has, the first message is raised.
         """
         points = list(itertools.chain.from_iterable(dask.compute(*self.tasks, **options)))
+        errors = [point["error"] for point in points if point["error"]]
+        if errors and len(errors) == len(points):
+            raise hadar.HadarError(f"none of the {len(points)} points has an answer; the first: {errors[0]}")
+        if errors:
+            told = f"{len(errors)} of {len(points)} points have no answer, why is in `error`; the first: {errors[0]}"
+            warnings.warn(told, stacklevel=2)
         coordinates = {
             name: xarray.Variable(name, np.asarray(axis.values), {"key": axis.key} | ({"units": axis.unit} if axis.unit else {}))
             for name, axis in self.axes.items()
@@ -100,11 +118,13 @@ class Sweep:
         for name, (path, unit) in self.read.items():
             values = [point[name] for point in points]
             if any(isinstance(value, str) for value in values):
-                values = np.array(values, dtype=object)
+                values = np.array(["" if value is None else value for value in values], dtype=object)
             else:
                 values = np.array([np.nan if value is None else value for value in values], dtype=float)
             attributes = {"key": path} | ({"units": unit} if unit else {})
             found[name] = xarray.Variable(tuple(self.axes), values.reshape(self.shape), attributes)
+        errors = np.array([point["error"] for point in points], dtype=object)
+        found["error"] = xarray.Variable(tuple(self.axes), errors.reshape(self.shape), {"long_name": "why a point has no answer"})
         return xarray.Dataset(found, coordinates, {"hadar": hadar.__version__})
 
 
@@ -127,7 +147,8 @@ def sweep(
     axes : {name: Axis}
         What varies, by the names of the dimensions.
     read : {name: (path, unit)}
-        What is kept of an answer: ``"pairs.0.distance_nearest"``, a path in its JSON. Nothing else is moved.
+        What is kept of an answer: ``"pairs.0.distance_nearest"``, a path in its JSON. Nothing else is moved. Beside it is ``error``:
+        a point that cannot be answered leaves the others as they are.
     batch : int
         Points of a task: enough that a task takes longer than the scheduler, some milliseconds.
     options
@@ -142,6 +163,8 @@ def sweep(
     """
     axes, read = dict(axes), dict(read)
     places = list(itertools.product(*(range(len(axis.values)) for axis in axes.values())))
+    if "error" in read or "error" in axes:
+        raise hadar.HadarError("`error` in a sweep is why a point has no answer; take another name")
     if batch < 1:
         raise hadar.HadarError(f"batch is {batch}; it must be at least 1")
     ask = dask.delayed(_ask, pure=True, traverse=False)
@@ -158,22 +181,29 @@ def sweep(
 def _ask(question, scenario, points, read, options):
     found = []
     for point in points:
-        asked = copy.deepcopy(scenario)
-        for key, value in point:
-            _put(asked, key, value)
-        answer = question(asked, **({"threads": 1} | options)).to_dict()
-        found.append({name: _at(answer, path) for name, (path, _) in read.items()})
+        try:
+            asked = copy.deepcopy(scenario)
+            for key, value in point:
+                _put(asked, key, value)
+            answer = question(asked, **({"threads": 1} | options)).to_dict()
+            row = {name: _at(answer, path) for name, (path, _) in read.items()}
+        except Exception as error:
+            # One point must not take the others with it.
+            message = str(error) if isinstance(error, hadar.HadarError) else f"{type(error).__name__}: {error}"
+            found.append(dict.fromkeys(read) | {"error": message})
+        else:
+            found.append(row | {"error": ""})
     return found
 
 
 def _put(table: Any, key: str, value: Any) -> None:
     *above, last = key.split(".")
-    for name in above:
-        table = table[int(name)] if isinstance(table, list) else table.setdefault(name, {})
-    if isinstance(table, list):
-        table[int(last)] = value
-    else:
-        table[last] = value
+    try:
+        for name in above:
+            table = table[int(name)] if isinstance(table, list) else table.setdefault(name, {})
+        table[int(last) if isinstance(table, list) else last] = value
+    except (AttributeError, IndexError, TypeError, ValueError):
+        raise hadar.HadarError(f"{key}: there is no such place in the scenario") from None
 
 
 def _at(answer: Any, path: str) -> Any:
@@ -196,6 +226,8 @@ def _array(cube: Any, dims: tuple[str, str, str]) -> xarray.DataArray:
         missing = [dim for dim in dims if dim not in cube.dims]
         if missing or cube.ndim != 3:
             raise hadar.HadarError(f"a cube over {cube.dims}; name its rows, columns and bands with dims={dims}")
+        # Blocks know no unit.
+        _hadar.plain(xarray.DataArray(0.0, attrs=cube.attrs), "cube", "counts")
         return cube.transpose(*dims)
     return xarray.DataArray(cube, dims=dims)
 
@@ -211,23 +243,26 @@ def _over_edges(function, data, depth, channels, **fixed):
 
 def decompose(
     cube: Any,
-    library: Any,
-    light: Any,
-    bands: Any,
+    library: Numbers,
+    light: Numbers,
+    bands: Numbers,
     *,
     dims: tuple[str, str, str] = ("y", "x", "band"),
     names: Sequence[str] | None = None,
     overlap: int = 32,
-    **options: Any,
+    **options: Unpack[DecomposeOptions],
 ) -> xarray.Dataset:
-    """:func:`hadar.decompose` of a cube in chunks, lazily.
+    """:func:`hadar_limits.decompose` of a cube in chunks, lazily.
 
     Parameters
     ----------
     cube : xarray.DataArray, dask array or array of (rows, columns, bands)
-        All bands of a pixel are put into one chunk.
+        All bands of a pixel are put into one chunk. A coordinate of an xarray array over its bands says where they are, and with
+        it their order: that of their dimension, or one called ``wavelength``, ``wavenumber`` or ``frequency``, with the unit in
+        ``attrs["units"]``. They are put in rising wavenumber, and must be those of ``bands``, each within half its width. So are
+        ``library`` and ``light`` where they are xarray arrays. Lists over bands among the options have the order of ``bands``.
     library, light, bands, options
-        As :func:`hadar.decompose`; every task has one thread.
+        As :func:`hadar_limits.decompose`; every task has one thread.
     dims : names of rows, columns and bands
     names : names of the library's materials, kept with the answer
     overlap : int
@@ -238,19 +273,22 @@ def decompose(
     Returns
     -------
     xarray.Dataset
-        The maps of :class:`hadar.Maps` with their units; ``lighting`` also over ``surroundings``. Without a prior over the image
+        The maps of :class:`hadar_limits.Maps` with their units; ``lighting`` also over ``surroundings``. Without a prior over the image
         those of the whole cube, but for rounding: where fits start is laid out for the mean of a chunk. The same chunks give the
         same bits.
     """
-    data = _array(cube, dims)
-    library, light = np.asarray(library, dtype=float), np.asarray(light, dtype=float)
+    bands = _hadar.plain(bands, "bands", "cm^-1")
+    data = in_order(_array(cube, dims), bands, "cube", dims[2])
+    in_counts = bool(options.get("light_in_counts"))
+    library = _hadar.plain(in_order(library, bands, "library", at_nodes=True), "library", "1")
+    light = _hadar.plain(in_order(light, bands, "light", at_nodes=not in_counts), "light", "counts" if in_counts else "radiance")
     surroundings = np.atleast_2d(light).shape[0] if light.size else 0
     rows, columns, band = dims
     spatial = options.get("potts") is not None or options.get("tex_sgd") is not None
     potts = options.get("potts")
     if potts is not None and (len(potts) < 2 or potts[1] is None):
         raise hadar.HadarError("a potts prior without its step over chunks; give potts=(weight, step in K), one for all of them")
-    fixed = (library, light, np.asarray(bands, dtype=float), {"threads": 1} | options)
+    fixed = (library, light, bands, {"threads": 1} | options)
     if data.chunks is not None:
         data = data.chunk({band: -1})
     if spatial and data.chunks is not None:
@@ -294,11 +332,11 @@ def window_information(
     window: tuple[int, int] = (5, 5),
     *,
     dims: tuple[str, str, str] = ("y", "x", "band"),
-    cells: Sequence[str] = ("full",),
-    derivative: str = "central",
-    **options: Any,
+    cells: Sequence[Cell] = ("full",),
+    derivative: Derivative = "central",
+    **options: Unpack[NoiseOptions],
 ) -> xarray.Dataset:
-    """:func:`hadar.window_information` of a cube in chunks, lazily: the same as of the whole cube.
+    """:func:`hadar_limits.window_information` of a cube in chunks, lazily: the same as of the whole cube.
 
     Each chunk is given the pixels around it that windows and derivative reach; derivatives that take whole rows
     (``"cubic-spline"``, ``"fourier"``) get whole rows.

@@ -9,7 +9,7 @@ photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, cubes ``[row][column][band]`` in coun
 name a unit (xarray, pandas), are converted where they mean the same (temperatures, wavelengths, frequencies, percent), and else refused by
 the name of their unit.
 
->>> import hadar
+>>> import hadar_limits as hadar
 >>> answer = hadar.size({
 ...     "target": {"material": "skin", "temperature": "37 degC"},
 ...     "alternatives": {"materials": ["aluminium"]},
@@ -20,7 +20,7 @@ the name of their unit.
 Method: Bao et al., Heat-assisted detection and ranging, Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.
 """
 
-from hadar._hadar import (
+from hadar_limits._hadar import (
     HadarError,
     Local,
     Nearest,
@@ -36,18 +36,22 @@ from hadar._hadar import (
     planck,
     planck_slope,
 )
-from hadar._cubes import FLAGS, NO_MATERIAL, Maps, Windows, decompose, window_information
-from hadar._questions import identify, range_, rule, simulate, size
-from hadar._results import Identification, Ranging, Record, Result, RuleAnswer, Simulation, Sizing
+from hadar_limits._cubes import FLAGS, NO_MATERIAL, Maps, Windows, decompose, window_information
+from hadar_limits._questions import LibraryWarning, identify, range_, rule, simulate, size
+from hadar_limits._results import Identification, Ranging, Record, Result, RuleAnswer, Simulation, Sizing
+from hadar_limits._types import DecomposeOptions, QuestionOptions, WindowOptions
 
 __all__ = [
+    "DecomposeOptions",
     "FLAGS",
     "HadarError",
     "Identification",
+    "LibraryWarning",
     "Local",
     "Maps",
     "NO_MATERIAL",
     "Nearest",
+    "QuestionOptions",
     "Ranging",
     "Record",
     "Result",
@@ -55,6 +59,7 @@ __all__ = [
     "Scene",
     "Simulation",
     "Sizing",
+    "WindowOptions",
     "Windows",
     "__version__",
     "brightness_temperature",

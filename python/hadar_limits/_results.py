@@ -5,7 +5,10 @@ from __future__ import annotations
 import html
 import json
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    import pandas
 
 
 def _read(value: Any) -> Any:
@@ -16,7 +19,7 @@ def _read(value: Any) -> Any:
     return value
 
 
-class Record(Mapping):
+class Record(Mapping[str, Any]):
     """An object of the JSON: ``record.key``, or ``record["key"]`` where the key is no name of Python."""
 
     __slots__ = ("_data",)
@@ -48,7 +51,7 @@ class Record(Mapping):
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *(key for key in self._data if key.isidentifier())]
 
-    def __reduce__(self):
+    def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._data,)
 
     def __repr__(self) -> str:
@@ -83,7 +86,8 @@ class Result(Record):
     def sentence(self) -> str:
         """The verdict."""
         verdict = self._data.get("verdict", self._data)
-        return verdict.get("sentence") or self._text.strip().split("\n", 1)[0]
+        sentence: str | None = verdict.get("sentence")
+        return sentence or self._text.strip().split("\n", 1)[0]
 
     def to_json(self) -> str:
         """The JSON that the command prints with ``--json``, to the last byte."""
@@ -95,13 +99,15 @@ class Result(Record):
             object.__setattr__(self, "_pictures", dict(self._answer.pictures()))
         return self._pictures
 
-    def to_pandas(self, rows: str | None = None):
+    def to_pandas(self, rows: str | None = None) -> pandas.DataFrame:
         """A list of the answer as a table, one row each, nested keys joined by dots.
 
         ``rows`` names the list; silent it is the main one, such as the pairs.
         """
-        import pandas
-
+        try:
+            import pandas
+        except ImportError as error:
+            raise ImportError('to_pandas needs pandas: pip install "hadar-limits[pandas]"') from error
         rows = rows or next(name for name in self._rows if name in self)
         return pandas.json_normalize(self.to_dict()[rows])
 
@@ -109,9 +115,15 @@ class Result(Record):
         return self._text
 
     def __repr__(self) -> str:
-        return f"<hadar.{type(self).__name__}: {self.sentence}>"
+        return f"<hadar_limits.{type(self).__name__}: {self.sentence}>"
 
-    def __reduce__(self):
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, _: Any) -> Self:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
         return _again, (type(self), self._json, self._text, self.pictures())
 
     def _repr_html_(self) -> str:
@@ -137,7 +149,7 @@ def _again(kind: type[Result], json: str, text: str, pictures: dict[str, str]) -
 
 
 class Sizing(Result):
-    """Answer of :func:`hadar.size`."""
+    """Answer of :func:`hadar_limits.size`."""
 
     __slots__ = ()
     if TYPE_CHECKING:
@@ -156,7 +168,7 @@ class Sizing(Result):
 
 
 class Identification(Result):
-    """Answer of :func:`hadar.identify`; the last five where they were asked for."""
+    """Answer of :func:`hadar_limits.identify`; the last five where they were asked for."""
 
     __slots__ = ()
     if TYPE_CHECKING:
@@ -176,7 +188,7 @@ class Identification(Result):
 
 
 class RuleAnswer(Result):
-    """Answer of :func:`hadar.rule`."""
+    """Answer of :func:`hadar_limits.rule`."""
 
     __slots__ = ()
     _rows = ("cameras",)
@@ -194,7 +206,7 @@ class RuleAnswer(Result):
 
 
 class Ranging(Result):
-    """Answer of :func:`hadar.range_`: ``objects`` and ``cells`` of two views, ``curve`` and ``bands`` of the air on the path."""
+    """Answer of :func:`hadar_limits.range_`: ``objects`` and ``cells`` of two views, ``curve`` and ``bands`` of the air on the path."""
 
     __slots__ = ()
     _rows = ("curve", "objects")
@@ -208,7 +220,7 @@ class Ranging(Result):
 
 
 class Simulation(Result):
-    """Answer of :func:`hadar.simulate`: ``points`` of classifiers, ``rows`` of thermometry."""
+    """Answer of :func:`hadar_limits.simulate`: ``points`` of classifiers, ``rows`` of thermometry."""
 
     __slots__ = ()
     _rows = ("points", "rows")
