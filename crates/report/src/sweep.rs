@@ -1,12 +1,18 @@
 //! A sweep: one table of all rows, what is said of it, pictures over one or two of its keys.
 
+mod basis;
 mod figures;
 mod gathered;
+mod journal;
+mod keys;
 mod over;
 mod swept;
 
 pub use crate::words::sweep::{kept, text};
+pub use basis::{Basis, Hashes};
 pub use gathered::Gathered;
+pub use journal::{Journal, Row};
+pub use keys::Keys;
 pub use swept::Swept;
 
 pub(crate) use over::{Undrawn, none};
