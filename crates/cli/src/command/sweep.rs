@@ -31,7 +31,8 @@ pub(super) struct SweepArgs {
     /// Vary a key: FROM..TO:COUNT or FROM..TO:COUNT:log, or values A,B,C; given several times, all combinations are rows
     #[arg(long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
-    /// Rows of a CSV table whose header names keys; an empty cell leaves what the file says
+    /// Rows of a CSV table whose header names keys; an empty cell leaves what the file says; the `sweep.csv`
+    /// of another sweep asks its rows again
     #[arg(long, value_name = "CSV")]
     cases: Option<PathBuf>,
     /// What is asked of every row: size, identify, simulate, rule, range, decompose (default: what the file is for)
@@ -198,12 +199,7 @@ fn sample(of_others: &BTreeSet<usize>, most: Recompute) -> Vec<usize> {
 }
 
 /// Refuses rows of others, of which one is not what is found now.
-fn is_same(
-    row: usize,
-    gathered: &Gathered,
-    now: Outcome,
-    out: &Path,
-) -> Result<()> {
+fn is_same(row: usize, gathered: &Gathered, now: Outcome, out: &Path) -> Result<()> {
     let before = gathered.record(row);
     let told =
         |cell: Option<&Cell>| cell.map_or_else(|| "nothing".to_owned(), |cell| cell.to_json().to_string());

@@ -338,10 +338,18 @@ fn rows_keep_the_columns_that_were_asked_for() {
     // A verdict rests on the errors of the emissivities, which nobody has computed yet.
     assert_eq!(of("verdict.margin"), (2, 0));
     let alone = folder.run(&[
-        "sweep", "a.toml", "--out", "alone", "--vary", "target.distance=5 m,6 m", "--columns", "verdict.margin",
+        "sweep",
+        "a.toml",
+        "--out",
+        "alone",
+        "--vary",
+        "target.distance=5 m,6 m",
+        "--columns",
+        "verdict.margin",
     ]);
     assert_eq!(alone.code, 0, "{}", alone.stderr);
-    let [again, alone] = ["out", "alone"].map(|out| fs::read(folder.path().join(out).join("sweep.csv")).unwrap());
+    let [again, alone] =
+        ["out", "alone"].map(|out| fs::read(folder.path().join(out).join("sweep.csv")).unwrap());
     assert_eq!(again, alone);
 }
 

@@ -66,7 +66,9 @@ impl Cases {
         let cells = header.len();
         let varied = varied_by_a_sweep(&header);
         let (keys, units): (Vec<String>, Vec<&str>) = match &varied {
-            Some(varied) => header.iter().take(varied.end).skip(varied.start).map(|head| parted(head)).unzip(),
+            Some(varied) => {
+                header.iter().take(varied.end).skip(varied.start).map(|head| parted(head)).unzip()
+            }
             None => header.into_iter().map(|key| (key, "")).unzip(),
         };
         let header = "name keys in the first line, as in target.material,target.distance";
@@ -115,7 +117,8 @@ fn parted(head: &str) -> (String, &'static str) {
     let is_key = |path: &str| !keys::find(path).is_empty();
     let units = Dimension::ALL.into_iter().flat_map(Dimension::spellings);
     let key = |unit: &'static str| Some((head.strip_suffix(&with_unit("", unit))?, unit));
-    let mut found: Vec<(&str, &str)> = if is_key(head) { Vec::new() } else { units.filter_map(key).collect() };
+    let mut found: Vec<(&str, &str)> =
+        if is_key(head) { Vec::new() } else { units.filter_map(key).collect() };
     // `speed_m_s` is a speed and no time.
     found.sort_by_key(|(key, _)| key.len());
     let known = found.iter().find(|(key, _)| is_key(key)).or(found.first());

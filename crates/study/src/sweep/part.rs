@@ -7,12 +7,16 @@ use super::record::CODED;
 use serde::Serialize;
 use serde::ser::{SerializeMap, SerializeSeq, SerializeStruct, Serializer};
 use serde_json::value::Serializer as Whole;
-use serde_json::{Error, Map, Value, to_value};
+use serde_json::{Error, Map, Value};
 
 /// Makes the parts of an answer that are wanted; all of it where nothing is named.
 pub(super) fn parts(answer: &impl Serialize, paths: &[String]) -> Result<Value, Error> {
     let wanted: Vec<&str> = paths.iter().map(String::as_str).collect();
-    if wanted.is_empty() { to_value(answer) } else { answer.serialize(Part { wanted: &wanted }) }
+    if wanted.is_empty() { whole(answer) } else { answer.serialize(Part { wanted: &wanted }) }
+}
+
+fn whole(value: &(impl Serialize + ?Sized)) -> Result<Value, Error> {
+    serde_json::to_value(value)
 }
 
 /// What is wanted of a value.
@@ -30,7 +34,7 @@ impl Part<'_> {
             match rest.strip_prefix('.') {
                 Some(rest) => inside.push(rest),
                 None if rest.is_empty() && CODED.contains(&name) => inside.push("code"),
-                None if rest.is_empty() || rest.starts_with('[') => return to_value(value).map(Some),
+                None if rest.is_empty() || rest.starts_with('[') => return whole(value).map(Some),
                 None => {}
             }
         }
@@ -199,7 +203,7 @@ impl SerializeMap for Made<'_> {
     type Error = Error;
 
     fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), Error> {
-        self.key = Some(match to_value(key)? {
+        self.key = Some(match whole(key)? {
             Value::String(name) => name,
             other => other.to_string(),
         });

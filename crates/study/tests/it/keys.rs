@@ -192,7 +192,19 @@ fn every_key_is_read_as_its_row_says() {
 
 /// Values of every kind, most of them wrong at any one key.
 const VALUES: [&str; 14] = [
-    "true", "-1", "0.5", "7", "1e300", "[]", "{}", "\"\"", "\"5 kg\"", "\"30 degC\"", "\"2,5 m\"", "[\"1 m\", \"2 m\"]", "[0.1, 0.9]",
+    "true",
+    "-1",
+    "0.5",
+    "7",
+    "1e300",
+    "[]",
+    "{}",
+    "\"\"",
+    "\"5 kg\"",
+    "\"30 degC\"",
+    "\"2,5 m\"",
+    "[\"1 m\", \"2 m\"]",
+    "[0.1, 0.9]",
     "{ nothing = 1 }",
 ];
 
@@ -247,7 +259,8 @@ fn a_value_that_is_set_in_a_parsed_text_is_read_as_in_one_that_is_written() {
                     Ok(_) => read_alike += 1,
                     Err(_) => refused_alike += 1,
                 }
-                let moved = path.starts_with("camera") && OF_NOISE.iter().any(|figure| path.ends_with(figure));
+                let moved =
+                    path.starts_with("camera") && OF_NOISE.iter().any(|figure| path.ends_with(figure));
                 let Some(file) = written(&table, &alone).filter(|_| !moved) else { continue };
                 let set = read(kind.name, &once.with(alone.clone())).map_err(told);
                 let in_file = read(kind.name, &Written::of(&file, None)).map_err(told);
