@@ -1,13 +1,15 @@
 //! `hadar sweep`: one question about many scenes or cameras, a row of a table for each.
 
+mod there;
 mod work;
 
+use self::there::{Outcome, There};
 use super::global::{self, Global};
 use super::provenance;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
-use hadar::inputs::{self, Held, inputs_of};
+use hadar::inputs::{self, inputs_of};
 use hadar::stop::unless_it_panics;
 use hadar_formats::hash;
 use hadar_report::bundle::About;
@@ -17,12 +19,12 @@ use hadar_report::sweep::{self, Basis, Gathered, Hashes, Journal, Keys, Swept};
 use hadar_report::words;
 use hadar_scenario::Written;
 use hadar_study::Remembered;
-use hadar_study::sweep::{Asking, Axis, Cases, Cell, Plan, Question, Record, asked_of};
+use hadar_study::sweep::{Asking, Axis, Cases, Cell, Plan, Question};
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher as _, RandomState};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 #[derive(Debug, Args)]
 pub(super) struct SweepArgs {
@@ -130,9 +132,9 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
     let journal = Journal::open(out, shard)?;
     let mut done = vec![false; plan.rows()];
     if args.recompute != Recompute::All {
-        journal.read(&|key| !keys.rows(key).is_empty(), &hashes, &mut |row| {
+        journal.read(&keys, &|_| true, &hashes, &mut |row| {
             if row.outcome.is_ok() && row.basis.covers(&columns) {
-                keys.rows(row.key).iter().for_each(|row| done[*row] = true);
+                row.rows.iter().for_each(|row| done[*row] = true);
             }
         })?;
     }
@@ -274,79 +276,6 @@ fn answered(
     // A sweep in which nothing went well is a mistake in what all rows share.
     let lost = failed > 0 && answered == 0 && to_go == 0;
     Ok(if lost { ExitCode::from(1) } else { ExitCode::SUCCESS })
-}
-
-/// What a row answers, or why it failed.
-type Outcome = std::result::Result<Record, String>;
-
-/// What is there of the rows.
-struct There {
-    gathered: Gathered,
-    /// Rows that this run has answered.
-    own: Vec<bool>,
-    /// What the rows rest on, by where it is in memory.
-    bases: BTreeMap<usize, Arc<Basis>>,
-    /// Rows that were answered by others: by an earlier run, by another shard, or by whoever wrote into the folder.
-    of_others: BTreeSet<usize>,
-    /// What of the program itself all rest on.
-    built_in: BTreeMap<String, Input>,
-}
-
-impl There {
-    fn new(gathered: Gathered) -> Self {
-        let (own, bases) = (vec![false; gathered.rows()], BTreeMap::new());
-        Self { gathered, own, bases, of_others: BTreeSet::new(), built_in: BTreeMap::new() }
-    }
-
-    /// Puts what this run has found of rows that ask the same.
-    fn put(&mut self, rows: &[usize], basis: &Arc<Basis>, outcome: &Outcome) {
-        for row in rows {
-            self.own[*row] = true;
-            self.gathered.put(*row, outcome.clone());
-        }
-        self.rests_on(basis);
-    }
-
-    fn rests_on(&mut self, basis: &Arc<Basis>) {
-        self.bases.entry(Arc::as_ptr(basis).addr()).or_insert_with(|| Arc::clone(basis));
-    }
-
-    /// Adds the rows of others whose files are as they were; the files of all rows are noted as read.
-    ///
-    /// # Errors
-    /// A file that was changed after this run had read it: its rows are not of one table.
-    fn gather(&mut self, journal: &Journal, keys: &Keys, columns: &[String]) -> Result<()> {
-        // As they are now, not as they were when the work began.
-        let hashes = Hashes::default();
-        if let Some(path) = self.bases.values().find_map(|basis| basis.changed(&hashes)) {
-            let reason = "it was changed while the sweep ran; run it again, and the rows that rest on it are computed anew";
-            return Err(Error::file("take as an input of all rows", path, reason));
-        }
-        let own = std::mem::take(&mut self.own);
-        let wanted = |key: &str| keys.rows(key).first().is_some_and(|row| !own[*row]);
-        journal.read(&wanted, &hashes, &mut |row| {
-            if !row.basis.covers(columns) {
-                return;
-            }
-            let outcome = row.outcome.map(|record| asked_of(record, columns));
-            for same in keys.rows(row.key) {
-                if outcome.is_ok() {
-                    self.of_others.insert(*same);
-                }
-                self.gathered.put(*same, outcome.clone());
-            }
-            self.rests_on(row.basis);
-        })?;
-        let mut files: BTreeMap<&Path, &str> = BTreeMap::new();
-        for basis in self.bases.values() {
-            files.extend(basis.files());
-            self.built_in.extend(basis.built_in.iter().map(|input| (input.path.clone(), input.clone())));
-        }
-        for (path, hash) in files {
-            inputs::file(path, Held::Sha256(hash.to_owned()));
-        }
-        Ok(())
-    }
 }
 
 /// Which rows of how many are this run's, from 1.

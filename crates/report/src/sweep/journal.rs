@@ -2,13 +2,14 @@
 //!
 //! A line is written when its row is done, so that a process that is killed loses no more than the rows in work; what it left of a
 //! line is no JSON and is passed over. What many rows rest on ([`Basis`]) has a line of its own before the first of them. Every process
-//! writes into a file of its own shard, which it holds locked. A row is found again by what it was asked ([`Keys`](super::Keys)), not by
+//! writes into a file of its own shard, which it holds locked. A row is found again by what it was asked ([`Keys`]), not by
 //! its number; it counts as done as long as every file that it read is as it was.
 //!
 //! Anybody may have written a line. Rows of this run are not read from here; a sample of the others is computed again before they are
 //! believed. No link is followed, neither of the folder nor of a file in it.
 
 use super::basis::{Basis, Hashes};
+use super::keys::Keys;
 use crate::folder::Inside;
 use crate::json;
 use crate::manifest::sha256;
@@ -51,8 +52,8 @@ struct Line {
 /// A row that stands in the journal.
 #[derive(Debug)]
 pub struct Row<'a> {
-    /// What was asked of whom.
-    pub key: &'a str,
+    /// The rows of the sweep that ask it.
+    pub rows: &'a [usize],
     /// What it rests on.
     pub basis: &'a Arc<Basis>,
     /// What was answered, or why it failed.
@@ -151,14 +152,15 @@ impl Journal {
             .map_err(|error| Error::file("write the rows of the sweep", &self.folder, error.to_string()))
     }
 
-    /// Hands on every row that is `wanted` by its key and whose files are as `hashes` finds them, whichever shard has written it, in no
+    /// Hands on every row that is `wanted` and whose files are as `hashes` finds them, whichever shard has written it, in no
     /// order of meaning.
     ///
     /// # Errors
     /// A file that cannot be read.
     pub fn read(
         &self,
-        wanted: &dyn Fn(&str) -> bool,
+        keys: &Keys,
+        wanted: &dyn Fn(&[usize]) -> bool,
         hashes: &Hashes,
         each: &mut dyn FnMut(Row<'_>),
     ) -> Result<()> {
@@ -180,14 +182,17 @@ impl Journal {
                     Ok(Line { id: Some(id), basis: Some(basis), .. }) => {
                         known.insert(id, (Arc::new(basis), None));
                     }
-                    Ok(Line { key: Some(key), on: Some(on), error, values, .. }) if wanted(&key) => {
-                        if let Some((basis, holds)) = known.get_mut(&on)
+                    Ok(Line { key: Some(key), on: Some(on), error, values, .. }) => {
+                        let rows = keys.rows(&key);
+                        if !rows.is_empty()
+                            && wanted(rows)
+                            && let Some((basis, holds)) = known.get_mut(&on)
                             && *holds.get_or_insert_with(|| basis.holds(hashes))
                         {
                             let cell = |(name, value)| Some((name, Cell::of_json(&value)?));
                             let record = || values.into_iter().filter_map(cell).collect();
                             let outcome = error.map_or_else(|| Ok(record()), Err);
-                            each(Row { key: &key, basis, outcome });
+                            each(Row { rows, basis, outcome });
                         }
                     }
                     _ => {}

@@ -211,14 +211,11 @@ const VALUES: [&str; 14] = [
 /// Figures that a noise of the file's own is stated for: set over the file they leave that noise as it is, written into it they do not.
 const OF_NOISE: [&str; 5] = ["exposure", "frame_rate", "f_number", "optics_efficiency", "pixel"];
 
-/// A message and its key, without what says where that is written.
-fn told(error: hadar::error::Error) -> (Option<String>, String) {
+/// A message without its place, which says what was set instead of a line.
+fn told(error: hadar::error::Error) -> String {
     match error {
-        hadar::error::Error::At { place, source } => {
-            let key = place.key.map(|key| key.trim_start_matches("--set ").to_owned());
-            (key, source.to_string())
-        }
-        other => (None, other.to_string()),
+        hadar::error::Error::At { source, .. } => source.to_string(),
+        other => other.to_string(),
     }
 }
 
@@ -259,8 +256,9 @@ fn a_value_that_is_set_in_a_parsed_text_is_read_as_in_one_that_is_written() {
                     Ok(_) => read_alike += 1,
                     Err(_) => refused_alike += 1,
                 }
-                let moved =
-                    path.starts_with("camera") && OF_NOISE.iter().any(|figure| path.ends_with(figure));
+                // A rule wants a source of every figure that is written into it.
+                let moved = kind.name == "rule"
+                    || path.starts_with("camera") && OF_NOISE.iter().any(|figure| path.ends_with(figure));
                 let Some(file) = written(&table, &alone).filter(|_| !moved) else { continue };
                 let set = read(kind.name, &once.with(alone.clone())).map_err(told);
                 let in_file = read(kind.name, &Written::of(&file, None)).map_err(told);
@@ -289,7 +287,12 @@ fn written(table: &toml::Table, settings: &[Setting]) -> Option<String> {
     let mut table = table.clone();
     for setting in settings {
         let value: toml::Table = format!("value = {}", setting.value).parse().ok()?;
-        put(&mut table, &setting.key, value.get("value")?.clone())?;
+        let value = value.get("value")?.clone();
+        // A number of other digits is another one in a message.
+        if value.to_string() != setting.value {
+            return None;
+        }
+        put(&mut table, &setting.key, value)?;
     }
     toml::to_string(&table).ok()
 }
