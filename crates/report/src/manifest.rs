@@ -69,7 +69,7 @@ pub struct Provenance {
 }
 
 /// A file or something built in, by its content.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Input {
     /// The way to it from the scenario's folder, of what is not in it its name alone; `built-in: material skin` of what comes with the program.
     pub path: String,

@@ -1,19 +1,25 @@
 //! A sweep: one table of all rows, what is said of it, pictures over one or two of its keys.
 
+mod basis;
 mod figures;
 mod gathered;
+mod journal;
+mod keys;
 mod over;
 mod swept;
 
 pub use crate::words::sweep::{kept, text};
+pub use basis::{Basis, Hashes};
 pub use gathered::Gathered;
+pub use journal::{Journal, Row};
+pub use keys::Keys;
 pub use swept::Swept;
 
 pub(crate) use over::{Undrawn, none};
 
 use crate::bundle::Bundle;
 use crate::parquet::{self, Column};
-use crate::table::Table;
+use crate::table;
 use hadar::error::Result;
 
 /// The table and the pictures of a sweep.
@@ -32,15 +38,9 @@ pub fn bundle(swept: &Swept, title: &str) -> Result<Bundle> {
 }
 
 fn csv(columns: &[Column]) -> Result<String> {
-    let mut table = Table::new(columns.iter().map(|column| column.name.as_str()));
+    let header: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
+    let cell = |column: &Column, row: usize| column.cells.get(row).map_or_else(String::new, parquet::text);
+    let row = |row: usize| columns.iter().map(|column| cell(column, row)).collect();
     let rows = columns.first().map_or(0, |column| column.cells.len());
-    for row in 0..rows {
-        table.push(
-            columns
-                .iter()
-                .map(|column| column.cells.get(row).map_or_else(String::new, parquet::text))
-                .collect(),
-        );
-    }
-    table.to_csv()
+    table::csv_of(std::iter::once(header).chain((0..rows).map(row)))
 }

@@ -76,16 +76,25 @@ impl Table {
     /// # Errors
     /// A row whose length is not the header's.
     pub fn to_csv(&self) -> Result<String> {
-        let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
-        let failed = |error: csv::Error| Error::malformed(error.to_string(), "report this as a bug");
-        for row in std::iter::once(&self.header).chain(&self.rows) {
-            writer.write_record(row.iter().map(|cell| inert(cell).into_owned())).map_err(failed)?;
-        }
-        let bytes = writer
-            .into_inner()
-            .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-        Ok(String::from_utf8_lossy(&bytes).into_owned())
+        csv_of(std::iter::once(&self.header).chain(&self.rows))
     }
+}
+
+/// The same of rows that are made one by one, the header first.
+///
+/// # Errors
+/// As [`Table::to_csv`].
+pub(crate) fn csv_of<R: IntoIterator<Item: AsRef<str>>>(rows: impl Iterator<Item = R>) -> Result<String> {
+    let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+    let failed = |error: String| Error::malformed(error, "report this as a bug");
+    for row in rows {
+        for cell in row {
+            writer.write_field(inert(cell.as_ref()).as_bytes()).map_err(|error| failed(error.to_string()))?;
+        }
+        writer.write_record(None::<&[u8]>).map_err(|error| failed(error.to_string()))?;
+    }
+    let bytes = writer.into_inner().map_err(|error| failed(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| failed(error.to_string()))
 }
 
 /// Whether a spreadsheet would take a cell for a formula, behind apostrophes that were before it. A dash alone is none, nor is what
@@ -94,11 +103,13 @@ fn is_formula(cell: &str) -> bool {
     let cell = cell.trim_start_matches('\'');
     let signed = cell.starts_with(['+', '-']) && cell != "-";
     let first = cell.split(' ').next().unwrap_or_default().trim_end_matches([';', ',']);
-    let harmless = first.parse::<f64>().is_ok_and(f64::is_finite)
-        && !cell.chars().skip(1).any(|letter| "*/^&=<>|!(\"'@".contains(letter))
-        && !cell.contains(" +");
+    let harmless = || {
+        first.parse::<f64>().is_ok_and(f64::is_finite)
+            && !cell.chars().skip(1).any(|letter| "*/^&=<>|!(\"'@".contains(letter))
+            && !cell.contains(" +")
+    };
     cell.starts_with(['=', '@', '\t', '\r', '\n', '\u{FF1D}', '\u{FF0B}', '\u{FF0D}', '\u{FF20}'])
-        || signed && !harmless
+        || signed && !harmless()
 }
 
 /// A cell as it is written, which no spreadsheet computes and in which all letters are seen.

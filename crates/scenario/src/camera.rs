@@ -48,9 +48,8 @@ pub(super) fn read_with(
     let spec = &mut stated;
     for row in TABLE {
         let (key, example) = (row.key, row.example);
-        if let Some(entry) = section.get(key)
-            && uncertain(row, &entry)?
-        {
+        let Some(entry) = section.get(key) else { continue };
+        if uncertain(row, &entry)? {
             // Its value alone, if it has one of its own.
             let table = entry.section_of(&UNCERTAIN)?;
             let value = ["value", "at_most"].into_iter().find_map(|key| table.get(key));
@@ -67,27 +66,23 @@ pub(super) fn read_with(
             continue;
         }
         match row.kind {
-            Kind::Quantity(_, _, slot) => *(slot.at)(spec) = section.quantity(key)?,
-            Kind::Number(_, slot) => *(slot.at)(spec) = section.number(key)?,
+            Kind::Quantity(_, _, slot) => *(slot.at)(spec) = Some(entry.quantity()?),
+            Kind::Number(_, slot) => *(slot.at)(spec) = Some(entry.number(example)?),
             Kind::Efficiency(_, slot) => {
-                *(slot.at)(spec) = section.read(key, |entry| match entry.is_text() {
-                    true => file(entry).map(Efficiency::File),
-                    false => entry.number(example).map(Efficiency::Number),
-                })?;
+                *(slot.at)(spec) = Some(match entry.is_text() {
+                    true => Efficiency::File(file(&entry)?),
+                    false => Efficiency::Number(entry.number(example)?),
+                });
             }
-            Kind::Count(slot) => *(slot.at)(spec) = section.read(key, |entry| entry.count(example))?,
-            Kind::Flag(slot) => *(slot.at)(spec) = section.read(key, Entry::boolean)?,
+            Kind::Count(slot) => *(slot.at)(spec) = Some(entry.count(example)?),
+            Kind::Flag(slot) => *(slot.at)(spec) = Some(entry.boolean()?),
             Kind::Readout(slot) => {
                 let choices = Readout::ALL.map(|readout| (readout.name(), readout));
-                *(slot.at)(spec) = section.choice(key, &choices)?;
+                *(slot.at)(spec) = Some(entry.choice(&choices)?);
             }
-            Kind::Span(slot) => {
-                *(slot.at)(spec) = section.read(key, |entry| Ok(wavenumbers(range(entry)?)))?
-            }
-            Kind::File(slot) => *(slot.at)(spec) = section.read(key, file)?,
-            Kind::Name(slot) => {
-                *(slot.at)(spec) = section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()))?;
-            }
+            Kind::Span(slot) => *(slot.at)(spec) = Some(wavenumbers(range(&entry)?)),
+            Kind::File(slot) => *(slot.at)(spec) = Some(file(&entry)?),
+            Kind::Name(slot) => *(slot.at)(spec) = Some(entry.name(example)?),
         }
     }
     stated.own = stated.preset.as_deref().and_then(|name| entry.source().own_camera(name));

@@ -31,6 +31,7 @@ pub mod find;
 pub mod keys;
 mod kind;
 pub mod library;
+mod parsed;
 mod paths;
 pub mod range;
 mod read;

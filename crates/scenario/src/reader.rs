@@ -114,8 +114,14 @@ pub(super) fn open<T>(
     if text.trim().is_empty() {
         return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
     }
-    let mut document = parse(text, &source)?;
-    source.note_lines(text, &document);
+    let mut document = match written.parsed_before() {
+        Some(parsed) => parsed.document(&mut source),
+        None => {
+            let document = parse(text, &source)?;
+            source.note_lines(text, &document);
+            document
+        }
+    };
     kind.check(&document, &source)?;
     if written.settings.iter().any(camera::moves_noise) {
         let mut filed = document.clone();
@@ -133,7 +139,7 @@ pub(super) fn open<T>(
 }
 
 /// The table behind the text, or the first thing that is not TOML.
-fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
     let (document, errors) = DeTable::parse_recoverable(text);
     let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
     let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {

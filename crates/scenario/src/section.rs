@@ -56,8 +56,8 @@ impl<'a> Section<'a> {
         source: &'a Source,
         known: &'static Table,
     ) -> Result<Self> {
-        let (section, names) = (Known::Keys(known), known.keys().map(|key| key.name).collect::<Vec<_>>());
-        let is_known = |key: &str| matches!(known.more, More::Names(_)) || names.contains(&key);
+        let section = Known::Keys(known);
+        let is_known = |key: &str| matches!(known.more, More::Names(_)) || known.key(key).is_some();
         let unknown = table.keys().filter(|key| !is_known(key.get_ref().as_ref()));
         match unknown.min_by_key(|key| key.span().start) {
             None => Ok(Self { table, known: section, name: name.to_owned(), source, beneath: None }),
@@ -67,6 +67,7 @@ impl<'a> Section<'a> {
                     Some(place) => place,
                     None => Place { line: source.place(&own).line, ..source.place(name) },
                 };
+                let names: Vec<&str> = known.keys().map(|key| key.name).collect();
                 Err(unknown_key(key.get_ref(), &names).at(place))
             }
         }
@@ -79,11 +80,11 @@ impl<'a> Section<'a> {
 
     /// What stands at a key; nothing at one that the table has no row for.
     pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
-        let allowed = match self.known {
+        let allowed = || match self.known {
             Known::Keys(table) => table.value(key),
             Known::Names(value) => Some(value),
         };
-        match self.table.get(key).zip(allowed) {
+        match self.table.get(key).and_then(|value| Some((value, allowed()?))) {
             Some((value, allowed)) => Some(Entry {
                 value: value.get_ref(),
                 allowed,

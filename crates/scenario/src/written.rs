@@ -1,5 +1,6 @@
 //! A file as it is to be read: its text, where it is from, and the values that stand in the place of its own.
 
+use super::parsed::Parsed;
 use super::report_inputs::ReportInputs;
 use super::setting::Setting;
 use super::source::Source;
@@ -32,6 +33,8 @@ pub struct Written {
     pub cameras: Arc<[StatedCamera]>,
     /// Whether it may name files: a text of a stranger may not.
     pub files_refused: bool,
+    /// Its text parsed, for many readings that differ by what is set.
+    parsed: Option<Arc<Parsed>>,
 }
 
 impl Written {
@@ -90,6 +93,29 @@ impl Written {
         Self { settings, ..self.clone() }
     }
 
+    /// The same, parsed once for all readings that differ by what is set ([`Written::with`]); each reads what it would have read.
+    ///
+    /// ```
+    /// use hadar_scenario::{Scenario, Setting, Written};
+    /// let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"";
+    /// let (once, anew) = (Written::of(text, None).parsed(), Written::of(text, None));
+    /// for value in ["20 degC", "20 kg"] {
+    ///     let set = [Setting { key: "target.temperature".into(), value: value.into(), by: "--vary" }];
+    ///     let read = |written: &Written| Scenario::from_written(&written.with(set.clone()));
+    ///     assert_eq!(read(&once), read(&anew));
+    /// }
+    /// ```
+    #[must_use]
+    pub fn parsed(self) -> Self {
+        let parsed = Parsed::of(&self).map(Arc::new);
+        Self { parsed, ..self }
+    }
+
+    /// Its text parsed before, if it is still that text of that file.
+    pub(super) fn parsed_before(&self) -> Option<&Parsed> {
+        self.parsed.as_deref().filter(|parsed| parsed.is_of(self))
+    }
+
     /// The same with cameras of the user's own that it may name.
     #[must_use]
     pub fn with_cameras(self, cameras: Arc<[StatedCamera]>) -> Self {
@@ -118,8 +144,12 @@ impl Written {
     /// Where it is read from, before anything is read.
     pub(super) fn source(&self) -> Source {
         let (path, settings, cameras) = (self.path.clone(), self.settings.clone(), Arc::clone(&self.cameras));
+        let report = match self.parsed_before() {
+            Some(parsed) => parsed.report.clone(),
+            None => path.as_deref().and_then(ReportInputs::beside).map(Arc::new),
+        };
         Source {
-            report: path.as_deref().and_then(ReportInputs::beside).map(Arc::new),
+            report,
             path,
             inputs: self.inputs.clone(),
             text: self.text.as_str().into(),

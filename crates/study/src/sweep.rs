@@ -7,6 +7,7 @@
 mod axis;
 mod cases;
 mod cell;
+mod part;
 mod plan;
 mod question;
 mod record;
@@ -16,4 +17,4 @@ pub use cases::Cases;
 pub use cell::Cell;
 pub use plan::{Input, Plan};
 pub use question::{Answer, Asking, Question, SPECTRA};
-pub use record::Record;
+pub use record::{Record, asked_of, is_within};

@@ -1,26 +1,26 @@
 //! `hadar sweep`: one question about many scenes or cameras, a row of a table for each.
 
-mod journal;
+mod there;
 mod work;
 
-use self::journal::{By, Entry, Hashes, Journal};
+use self::there::{Outcome, There};
 use super::global::{self, Global};
 use super::provenance;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
-use hadar::inputs::{self, Held, inputs_of};
+use hadar::inputs::{self, inputs_of};
 use hadar::stop::unless_it_panics;
 use hadar_formats::hash;
 use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Input, VERSION, sha256, sha256_of_file};
-use hadar_report::sweep::{self, Gathered, Swept};
+use hadar_report::sweep::{self, Basis, Gathered, Hashes, Journal, Keys, Swept};
 use hadar_report::words;
 use hadar_scenario::Written;
 use hadar_study::Remembered;
-use hadar_study::sweep::{Asking, Axis, Cases, Cell, Plan, Question, Record};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use hadar_study::sweep::{Asking, Axis, Cases, Cell, Plan, Question};
+use std::collections::{BTreeMap, BTreeSet};
 use std::hash::{BuildHasher as _, RandomState};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -33,7 +33,8 @@ pub(super) struct SweepArgs {
     /// Vary a key: FROM..TO:COUNT or FROM..TO:COUNT:log, or values A,B,C; given several times, all combinations are rows
     #[arg(long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
-    /// Rows of a CSV table whose header names keys; an empty cell leaves what the file says
+    /// Rows of a CSV table whose header names keys; an empty cell leaves what the file says; the `sweep.csv`
+    /// of another sweep asks its rows again
     #[arg(long, value_name = "CSV")]
     cases: Option<PathBuf>,
     /// What is asked of every row: size, identify, simulate, rule, range, decompose (default: what the file is for)
@@ -126,44 +127,54 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
         voice: words::voice,
     };
     global.inputs_are_safe()?;
-    let (hashes, sweep) = (Hashes::default(), common(&file, question, &asking, global)?);
-    let keys: Vec<String> = (0..plan.rows()).map(|row| key(&sweep, &plan, row)).collect();
+    let hashes = Hashes::default();
+    let keys = Keys::of(&common(&file, question, &asking, global)?, &plan);
     let journal = Journal::open(out, shard)?;
-    let mut done = BTreeSet::new();
-    journal.read(&mut |entry, _| {
-        if args.recompute != Recompute::All && entry.error.is_none() && entry.holds(&hashes) {
-            done.insert(entry.key);
-        }
-    })?;
+    let mut done = vec![false; plan.rows()];
+    if args.recompute != Recompute::All {
+        journal.read(&keys, &|_| true, &hashes, &mut |row| {
+            if row.outcome.is_ok() && row.basis.covers(&columns) {
+                row.rows.iter().for_each(|row| done[*row] = true);
+            }
+        })?;
+    }
     let own = |row: &usize| row % shard[1] + 1 == shard[0] && !args.merge;
-    let open: Vec<usize> = (0..plan.rows()).filter(own).filter(|row| !done.contains(&keys[*row])).collect();
+    let open: Vec<usize> = (0..plan.rows()).filter(own).filter(|row| !done[*row]).collect();
     drop(done);
     let stats = Mutex::new(Work::default());
-    let answered_anew = |row: usize| -> Result<Entry> {
+    let file = file.parsed();
+    let answered_anew = |row: usize| -> Result<(Basis, Outcome)> {
         let written = file.with(plan.settings(row));
         let (answer, read) = inputs_of(|| unless_it_panics(|| question.answer(&written, &asking)));
-        let outcome = match answer {
+        let (outcome, is_whole) = match answer {
             Some(Ok(answer)) => {
                 stats.lock().unwrap_or_else(PoisonError::into_inner).add(&answer.work);
-                Ok(answer.record)
+                (Ok(answer.record), answer.is_whole)
             }
-            Some(Err(error)) => Err(error.to_string()),
-            None => Err("the program failed in this row; report this as a bug".to_owned()),
+            Some(Err(error)) => (Err(error.to_string()), true),
+            None => (Err("the program failed in this row; report this as a bug".to_owned()), true),
         };
-        Entry::new(keys.get(row).cloned().unwrap_or_default(), &read, outcome)
+        Ok((Basis::of(&read, (!is_whole).then_some(&*columns), &hashes)?, outcome))
     };
+    let there = Mutex::new(There::new(Gathered::new(plan.inputs(), plan.rows())));
     let bar = global.progress("rows");
     let job = |index: usize| match open.get(index) {
-        Some(row) => journal.write(&answered_anew(*row)?),
+        Some(row) => {
+            let (key, (basis, outcome)) = (keys.of_row(*row), answered_anew(*row)?);
+            let basis = journal.write(&key, basis, &outcome)?;
+            there.lock().unwrap_or_else(PoisonError::into_inner).put(keys.rows(&key), &basis, &outcome);
+            Ok(())
+        }
         None => Ok(()),
     };
     work::each(open.len(), &job, &|done, all| bar.set(done, all))?;
     bar.finish();
     journal.lock_report();
-    let there = gathered(&journal, &plan, &keys)?;
+    let mut there = there.into_inner().unwrap_or_else(PoisonError::into_inner);
+    there.gather(&journal, &keys, &columns)?;
     let again = sample(&there.of_others, args.recompute);
     let same = |index: usize| match again.get(index) {
-        Some(row) => is_same(*row, &there.gathered, answered_anew(*row)?.outcome(), out),
+        Some(row) => is_same(*row, &there.gathered, answered_anew(*row)?.1, out),
         None => Ok(()),
     };
     work::each(again.len(), &same, &|_, _| ())?;
@@ -190,12 +201,7 @@ fn sample(of_others: &BTreeSet<usize>, most: Recompute) -> Vec<usize> {
 }
 
 /// Refuses rows of others, of which one is not what is found now.
-fn is_same(
-    row: usize,
-    gathered: &Gathered,
-    now: std::result::Result<Record, String>,
-    out: &Path,
-) -> Result<()> {
+fn is_same(row: usize, gathered: &Gathered, now: Outcome, out: &Path) -> Result<()> {
     let before = gathered.record(row);
     let told =
         |cell: Option<&Cell>| cell.map_or_else(|| "nothing".to_owned(), |cell| cell.to_json().to_string());
@@ -272,59 +278,6 @@ fn answered(
     Ok(if lost { ExitCode::from(1) } else { ExitCode::SUCCESS })
 }
 
-/// What is there of the rows.
-struct There {
-    gathered: Gathered,
-    /// Rows that were answered by others.
-    of_others: BTreeSet<usize>,
-    /// What of the program itself they rest on.
-    built_in: BTreeMap<String, Input>,
-}
-
-/// Gathers the rows whose files are as they were; the files are noted as read.
-///
-/// # Errors
-/// A file that was changed after this run had read it: its rows are not of one table.
-fn gathered(journal: &Journal, plan: &Plan, keys: &[String]) -> Result<There> {
-    let mut rows: HashMap<&str, Vec<usize>> = HashMap::new();
-    for (row, key) in keys.iter().enumerate() {
-        rows.entry(key).or_default().push(row);
-    }
-    let (gathered, of_others, built_in) =
-        (Gathered::new(plan.inputs(), plan.rows()), BTreeSet::new(), BTreeMap::new());
-    let mut there = There { gathered, of_others, built_in };
-    // As they are now, not as they were when the work began.
-    let hashes = Hashes::default();
-    let mut files: BTreeMap<PathBuf, String> = BTreeMap::new();
-    let mut changed = None;
-    journal.read(&mut |entry, by| {
-        let Some(rows) = rows.get(entry.key.as_str()) else { return };
-        if !entry.holds(&hashes) {
-            if by == By::Own {
-                changed = changed.take().or_else(|| entry.changed(&hashes));
-            }
-            return;
-        }
-        files.extend(entry.files().map(|(path, hash)| (path.to_owned(), hash.to_owned())));
-        there.built_in.extend(entry.built_in.iter().map(|input| (input.path.clone(), input.clone())));
-        let outcome = entry.outcome();
-        for row in rows {
-            if by == By::Another && outcome.is_ok() {
-                there.of_others.insert(*row);
-            }
-            there.gathered.put(*row, outcome.clone());
-        }
-    })?;
-    if let Some(path) = changed {
-        let reason = "it was changed while the sweep ran; run it again, and the rows that rest on it are computed anew";
-        return Err(Error::file("take as an input of all rows", &path, reason));
-    }
-    for (path, hash) in files {
-        inputs::file(&path, Held::Sha256(hash));
-    }
-    Ok(there)
-}
-
 /// Which rows of how many are this run's, from 1.
 fn shard(text: &str) -> Result<[usize; 2]> {
     let read = text.split_once('/').and_then(|(i, n)| Some([i.trim().parse().ok()?, n.trim().parse().ok()?]));
@@ -350,7 +303,7 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
         .map(std::path::absolute)
         .and_then(std::result::Result::ok);
     parts.push(format!("{home:?} {:?} {:?} {}", asking.by, asking.skipping, asking.skip_uncovered));
-    parts.push(format!("{} {}", asking.wants("solve_for"), asking.wants("sensitivity")));
+    parts.push(format!("{:?}", ["solve_for", "sensitivity", "verdict"].map(|part| asking.wants(part))));
     parts.push(format!("{} {:?}", asking.seed, asking.items().collect::<Vec<_>>()));
     for path in &global.library {
         parts.push(format!("{}", path.display()));
@@ -366,14 +319,4 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
         parts.push(format!("{} {hash}", path.display()));
     }
     Ok(sha256(parts.join("\0").as_bytes()))
-}
-
-/// What a row asks of whom.
-fn key(common: &str, plan: &Plan, row: usize) -> String {
-    let settings = plan.settings(row);
-    let set = settings.iter().map(|setting| format!("\0{}={}", setting.key, setting.value));
-    let mut hash = sha256(format!("{common}{}", set.collect::<String>()).as_bytes());
-    // Half of it tells as many rows apart as anybody has.
-    hash.truncate(32);
-    hash
 }

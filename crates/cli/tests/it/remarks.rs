@@ -128,7 +128,7 @@ fn the_json_of_answers_is_written_in_one_place() {
     let writes = |path: &PathBuf| code(&fs::read_to_string(path).unwrap()).contains("serde_json::to_");
     let found: Vec<_> =
         all.iter().filter(|path| writes(path)).map(|path| path.strip_prefix(root).unwrap()).collect();
-    let expected = ["crates/report/src/json.rs", "crates/study/src/sweep/question.rs"].map(Path::new);
+    let expected = ["crates/report/src/json.rs", "crates/study/src/sweep/part.rs"].map(Path::new);
     assert!(found.len() == 2 && expected.iter().all(|one| found.contains(one)), "{found:?}");
 }
 

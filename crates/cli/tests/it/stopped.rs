@@ -168,12 +168,13 @@ mod signals {
         let both = rows("bands.step=50 cm^-1,0.01 cm^-1");
         let child = begun(&folder, &both);
         let journal = folder.path().join("out/.sweep/1-of-1.jsonl");
-        when(|| fs::read_to_string(&journal).is_ok_and(|text| text.contains('\n')));
+        // What the row rests on, and the row.
+        when(|| fs::read_to_string(&journal).is_ok_and(|text| text.matches('\n').count() == 2));
         let output = signalled(child, "-INT");
         assert_eq!(output.status.code(), Some(130), "{}", String::from_utf8_lossy(&output.stderr));
         let text = fs::read_to_string(&journal).unwrap();
         assert!(
-            text.ends_with('\n') && text.lines().count() == 1 && !text.contains("report this as a bug"),
+            text.ends_with('\n') && text.lines().count() == 2 && !text.contains("report this as a bug"),
             "{text}"
         );
         let stopped = folder.run(&[&both[..], &["--time-limit", "1 ms"]].concat());

@@ -319,6 +319,60 @@ fn a_column_that_is_none_is_refused_with_those_that_are_like_it_and_no_row_is_lo
     assert_eq!(said["computed"], 0, "{said}");
 }
 
+/// What is kept of a row is what was asked for: less of it is there at once, more is computed.
+#[test]
+fn rows_keep_the_columns_that_were_asked_for() {
+    let folder = Folder::with(SCENARIO);
+    let of = |columns: &str| {
+        let said = sweep(&folder, &["--vary", "target.distance=5 m,6 m", "--columns", columns]);
+        (said["computed"].as_u64().unwrap(), said["kept"].as_u64().unwrap())
+    };
+    assert_eq!(of("requirement,limiting"), (2, 0));
+    let journal = fs::read_to_string(folder.path().join("out/.sweep/1-of-1.jsonl")).unwrap();
+    assert_eq!(journal.lines().count(), 3, "{journal}");
+    assert!(journal.contains("\"requirement.photons\"") && !journal.contains("photon_radiance"), "{journal}");
+    let photons = |name: &str| rows(&folder.path().join("out/sweep.csv"))[1][name].clone();
+    let first = photons("requirement.photons");
+    assert_eq!(of("requirement.photons"), (0, 2));
+    assert_eq!(photons("requirement.photons"), first);
+    // A verdict rests on the errors of the emissivities, which nobody has computed yet.
+    assert_eq!(of("verdict.margin"), (2, 0));
+    let alone = folder.run(&[
+        "sweep",
+        "a.toml",
+        "--out",
+        "alone",
+        "--vary",
+        "target.distance=5 m,6 m",
+        "--columns",
+        "verdict.margin",
+    ]);
+    assert_eq!(alone.code, 0, "{}", alone.stderr);
+    let [again, alone] =
+        ["out", "alone"].map(|out| fs::read(folder.path().join(out).join("sweep.csv")).unwrap());
+    assert_eq!(again, alone);
+}
+
+/// The table that a sweep has written is asked again, to the last byte, bad rows among it.
+#[test]
+fn a_table_of_a_sweep_is_asked_again() {
+    let folder = Folder::with(SCENARIO);
+    folder.file(
+        "cases.csv",
+        "target.temperature,target.material,camera.exposure,camera.frames,alternatives.lighting\n\
+         30 degC,skin,1 ms,,\"[0.1, 0.9]\"\n31.5 degC,none-such,0.5 ms,4,\n,pmma,,2,\n",
+    );
+    let of = |cases: &str, out: &str| {
+        let columns = "verdict.margin,requirement.photons";
+        let said = folder.json(&["sweep", "a.toml", "--cases", cases, "--out", out, "--columns", columns]);
+        assert_eq!((&said["answered"], &said["failed"]), (&2.into(), &1.into()), "{said}");
+        fs::read_to_string(folder.path().join(out).join("sweep.csv")).unwrap()
+    };
+    let first = of("cases.csv", "out");
+    assert!(first.starts_with("row,target.temperature_degC,target.material,camera.exposure_ms,"), "{first}");
+    assert_eq!(of("out/sweep.csv", "again"), first);
+}
+
 #[test]
 fn two_processes_do_not_work_on_the_same_rows() {
     let folder = Folder::with(SCENARIO);
@@ -350,9 +404,10 @@ fn a_forged_row_is_not_believed() {
     ];
     for forged in forgeries {
         for which in 0..3 {
+            // Before the rows stands what they rest on.
             let rows = true_rows.lines().enumerate();
             let rows: Vec<String> =
-                rows.map(|(at, row)| if at == which { forged(row) } else { row.to_owned() }).collect();
+                rows.map(|(at, row)| if at == which + 1 { forged(row) } else { row.to_owned() }).collect();
             assert_ne!(rows.join("\n"), true_rows.trim_end());
             fs::write(&journal, rows.join("\n") + "\n").unwrap();
             let message = folder.refusal(&arguments);

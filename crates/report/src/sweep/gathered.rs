@@ -2,7 +2,7 @@
 
 use crate::parquet::Column;
 use hadar::error::{Error, Result};
-use hadar_study::sweep::{Cell, Input, Record};
+use hadar_study::sweep::{Cell, Input, Record, is_within};
 use std::collections::BTreeMap;
 
 /// What is there of the rows of a sweep.
@@ -88,12 +88,8 @@ impl Gathered {
             return Ok(names);
         }
         for asked in chosen {
-            let within = |name: &str| {
-                name.strip_prefix(asked.as_str())
-                    .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
-            };
-            let found: Vec<&str> =
-                self.values.keys().map(String::as_str).filter(|name| within(name)).collect();
+            let all = self.values.keys().map(String::as_str);
+            let found: Vec<&str> = all.filter(|name| is_within(name, asked)).collect();
             // Where every row failed nothing is known of the columns.
             if found.is_empty() && self.answered() > 0 {
                 let known = self.values.keys().map(String::as_str);

@@ -109,15 +109,20 @@ impl Table {
 
     /// Its keys, those of a camera's figures included.
     pub fn keys(&self) -> impl Iterator<Item = Key> + '_ {
+        self.keys.iter().copied().flatten().copied().chain(self.figures().iter().map(Key::of_figure))
+    }
+
+    /// The figures of a camera that may stand in it.
+    fn figures(&self) -> &'static [Row] {
         let has_figures = matches!(self.more, More::Figures | More::UncertainFigures);
-        let rows = if has_figures { figures::TABLE } else { &[] };
-        self.keys.iter().copied().flatten().copied().chain(rows.iter().map(Key::of_figure))
+        if has_figures { figures::TABLE } else { &[] }
     }
 
     /// A key of it by its name.
     #[must_use]
     pub fn key(&self, name: &str) -> Option<Key> {
-        self.keys().find(|key| key.name == name)
+        let own = self.keys.iter().copied().flatten().find(|key| key.name == name).copied();
+        own.or_else(|| self.figures().iter().find(|row| row.key == name).map(Key::of_figure))
     }
 
     /// What may be written at a name.

@@ -1,6 +1,7 @@
 //! A row answered as the command of a name answers its file.
 
-use super::record::{Record, record};
+use super::part::parts;
+use super::record::{Record, asked_of, has_all, is_within, record};
 use crate::air_ranging::{AirPlan, AirRangingStudy};
 use crate::decompose::{DecomposeStudy, Keep};
 use crate::range::{RangePlan, RangeStudy};
@@ -65,8 +66,10 @@ pub struct Asking<'a> {
 /// What a row says, and what it took.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Its values.
+    /// Its values: of the columns that are wanted, or all of them ([`asked_of`]).
     pub record: Record,
+    /// Whether these are all.
+    pub is_whole: bool,
     /// What was computed.
     pub work: Work,
 }
@@ -75,9 +78,7 @@ impl Asking<'_> {
     /// Whether anything of a part of the answer is wanted.
     #[must_use]
     pub fn wants(&self, part: &str) -> bool {
-        let within =
-            |column: &String| column.strip_prefix(part).is_some_and(|rest| rest.starts_with(['.', '[']));
-        self.columns.is_empty() || self.columns.iter().any(|column| column == part || within(column))
+        self.columns.is_empty() || self.columns.iter().any(|column| is_within(column, part))
     }
 
     /// Items of lists that are wanted.
@@ -248,11 +249,18 @@ impl Question {
     }
 
     fn told(self, found: &impl Serialize, work: &Work, asking: &Asking<'_>) -> Result<Answer> {
-        let json = with_voice(asking.voice, || serde_json::to_value(found))
-            .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
         let items: Vec<String> =
             asking.items().cloned().chain(self.lists().iter().map(|list| (*list).to_owned())).collect();
-        Ok(Answer { record: record(&json, &items), work: work.clone() })
+        let of = |columns: &[String]| match with_voice(asking.voice, || parts(found, columns)) {
+            Ok(json) => Ok(record(&json, &items)),
+            Err(error) => Err(Error::malformed(error.to_string(), "report this as a bug")),
+        };
+        let mut found = of(asking.columns)?;
+        let is_whole = asking.columns.is_empty() || !has_all(&found, asking.columns);
+        if is_whole && !asking.columns.is_empty() {
+            found = of(&[])?;
+        }
+        Ok(Answer { record: asked_of(found, asking.columns), is_whole, work: work.clone() })
     }
 }
 

@@ -7,10 +7,30 @@ use std::collections::BTreeMap;
 /// What an answer says of how it was asked and found, and not of the scene.
 const LEFT_OUT: [&str; 3] = ["scenario", "stats", "warnings"];
 /// Lists of what has a code: the codes of a list are a column.
-const CODED: [&str; 2] = ["warnings", "conditions"];
+pub(super) const CODED: [&str; 2] = ["warnings", "conditions"];
 
 /// The values of a row by the names of their columns, such as `verdict.margin`.
 pub type Record = BTreeMap<String, Cell>;
+
+/// Whether a value is a part of an answer, or within it: `camera.frames` of `camera`, `pairs[0].proof` of `pairs`.
+#[must_use]
+pub fn is_within(name: &str, part: &str) -> bool {
+    name.strip_prefix(part).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// Whether a record has a value of everything that is asked for.
+pub(super) fn has_all(record: &Record, columns: &[String]) -> bool {
+    columns.iter().all(|column| record.keys().any(|name| is_within(name, column)))
+}
+
+/// What is asked for of a record. Where it has none of a column it is left whole, so that a message can name those that are like it.
+#[must_use]
+pub fn asked_of(mut record: Record, columns: &[String]) -> Record {
+    if !columns.is_empty() && has_all(&record, columns) {
+        record.retain(|name, _| columns.iter().any(|column| is_within(name, column)));
+    }
+    record
+}
 
 /// The values of an answer. Of lists, which have tables of their own, only the `items` that are named are there
 /// (`pairs[0].distance_nearest`, or `cameras[0]` for all of it), and what the scenario asks of safety; of warnings the codes.

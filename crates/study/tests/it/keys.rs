@@ -190,6 +190,113 @@ fn every_key_is_read_as_its_row_says() {
     assert!(read_as_told > 600, "{read_as_told}");
 }
 
+/// Values of every kind, most of them wrong at any one key.
+const VALUES: [&str; 14] = [
+    "true",
+    "-1",
+    "0.5",
+    "7",
+    "1e300",
+    "[]",
+    "{}",
+    "\"\"",
+    "\"5 kg\"",
+    "\"30 degC\"",
+    "\"2,5 m\"",
+    "[\"1 m\", \"2 m\"]",
+    "[0.1, 0.9]",
+    "{ nothing = 1 }",
+];
+
+/// Figures that a noise of the file's own is stated for: set over the file they leave that noise as it is, written into it they do not.
+const OF_NOISE: [&str; 5] = ["exposure", "frame_rate", "f_number", "optics_efficiency", "pixel"];
+
+/// A message without its place, which says what was set instead of a line.
+fn told(error: hadar::error::Error) -> String {
+    match error {
+        hadar::error::Error::At { source, .. } => source.to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// The same is read, or the same message given, whether a text is parsed once or for every reading, and whether a value is set or
+/// written into it: for every key of every file, its example, values of every kind, and a second key that is set beside it.
+#[test]
+fn a_value_that_is_set_in_a_parsed_text_is_read_as_in_one_that_is_written() {
+    let mut draw = 1_u64;
+    let mut any = move |below: usize| {
+        draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (draw >> 33) as usize % below
+    };
+    let (mut read_alike, mut refused_alike, mut written_alike) = (0, 0, 0);
+    for kind in FILES {
+        let text = base(kind.name);
+        let (anew, once) = (Written::of(&text, None), Written::of(&text, None).parsed());
+        let table: toml::Table = text.parse().unwrap();
+        let mut all = Vec::new();
+        paths(kind.root, "", &mut all);
+        for (path, key) in &all {
+            let example = key.example.split(" or ").next().unwrap();
+            let beside = needed(kind.root, path, &table);
+            for value in VALUES.into_iter().chain([example]) {
+                let mut settings = beside.clone();
+                settings.push(set(path, value));
+                let alone = settings.clone();
+                if any(3) == 0 {
+                    let other = &all[any(all.len())];
+                    settings.insert(any(settings.len()), set(&other.0, VALUES[any(VALUES.len())]));
+                }
+                let own = format!("{} {settings:?}", kind.name);
+                let of = |file: &Written| {
+                    read(kind.name, &file.with(settings.clone())).map_err(|error| error.to_string())
+                };
+                let found = of(&once);
+                assert_eq!(found, of(&anew), "{own}");
+                match found {
+                    Ok(_) => read_alike += 1,
+                    Err(_) => refused_alike += 1,
+                }
+                // A rule wants a source of every figure that is written into it.
+                let moved = kind.name == "rule"
+                    || path.starts_with("camera") && OF_NOISE.iter().any(|figure| path.ends_with(figure));
+                let Some(file) = written(&table, &alone).filter(|_| !moved) else { continue };
+                let set = read(kind.name, &once.with(alone.clone())).map_err(told);
+                let in_file = read(kind.name, &Written::of(&file, None)).map_err(told);
+                assert_eq!(set, in_file, "{own}\n{file}");
+                written_alike += 1;
+            }
+        }
+    }
+    let counts = [read_alike, refused_alike, written_alike];
+    assert!(counts.iter().all(|count| *count > 1000), "{counts:?}");
+}
+
+/// The text of a file with values in their places; none where it has no place for them.
+fn written(table: &toml::Table, settings: &[Setting]) -> Option<String> {
+    fn put(table: &mut toml::Table, path: &str, value: toml::Value) -> Option<()> {
+        let Some((first, rest)) = path.split_once('.') else {
+            table.insert(path.to_owned(), value);
+            return Some(());
+        };
+        let inner = match first.strip_suffix("[0]") {
+            Some(list) => table.get_mut(list)?.as_array_mut()?.first_mut()?,
+            None => table.entry(first).or_insert_with(|| toml::Table::new().into()),
+        };
+        put(inner.as_table_mut()?, rest, value)
+    }
+    let mut table = table.clone();
+    for setting in settings {
+        let value: toml::Table = format!("value = {}", setting.value).parse().ok()?;
+        let value = value.get("value")?.clone();
+        // A number of other digits is another one in a message.
+        if value.to_string() != setting.value {
+            return None;
+        }
+        put(&mut table, &setting.key, value)?;
+    }
+    toml::to_string(&table).ok()
+}
+
 /// The value at a path, places in lists included.
 fn at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
     let (first, rest) = path.split_once('.').map_or((path, None), |(first, rest)| (first, Some(rest)));
