@@ -41,7 +41,7 @@ pub use mat::mat_file;
 pub use npy::{Value, npy_map, write_npy, write_npy_to};
 pub use npy_rows::NpyRows;
 pub(crate) use open::is_cube;
-pub use open::{is_zarr, open, open_as};
+pub use open::{ENDINGS, cubes_in, is_called_so, is_zarr, open, open_as};
 pub use sample_unit::{SampleUnit, TemperatureUnit};
 
 /// What opening a cube is called in messages.

@@ -18,6 +18,7 @@ use hadar_scenario::decompose::{
 };
 use hadar_scenario::{BandSource, BandsSpec, DecomposeScenario, Filters};
 use hadar_study::render::{Picture, Rendered};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// 0 degC, K.
@@ -46,7 +47,11 @@ pub fn bundle(result: &Rendered, layout: Layout, format: CubeFormat) -> Result<B
     let spectra = |names: &[String], columns: &[Vec<f64>]| {
         let header = std::iter::once("wavenumber_cm1").chain(names.iter().map(String::as_str));
         let mut table = Table::new(header);
-        for (i, nu) in result.wavenumbers_cm1.iter().enumerate() {
+        // Filters that overlap are sampled at some wavenumbers together.
+        let mut written = BTreeSet::new();
+        for (i, nu) in
+            result.wavenumbers_cm1.iter().enumerate().filter(|(_, nu)| written.insert(nu.to_bits()))
+        {
             let values =
                 std::iter::once(*nu).chain(columns.iter().filter_map(|column| column.get(i).copied()));
             // Every digit: what is taken apart with it must be what was put together.

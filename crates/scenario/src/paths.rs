@@ -89,18 +89,6 @@ pub(super) fn axes(section: &Section<'_>) -> Result<Option<Axes>> {
     })
 }
 
-/// Endings of files that hold a cube and nothing else.
-pub(super) const CUBES: [&str; 26] = [
-    "npy", "npz", "mat", "hdr", "img", "dat", "bsq", "bil", "bip", "h5", "hdf5", "nc", "nc4", "cdf", "zarr",
-    "fits", "fit", "fts", "tif", "tiff", "jpg", "jpeg", "fff", "seq", "csq", "hcc",
-];
-
-/// Whether a path names a cube by its ending.
-pub(super) fn is_cube(path: &Path) -> bool {
-    let end = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
-    end.is_some_and(|end| CUBES.contains(&end.as_str()))
-}
-
 /// A path, from the scenario's directory, made absolute.
 pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
     let text = entry.text("\"my_data.csv\"")?.trim();

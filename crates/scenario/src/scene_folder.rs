@@ -32,7 +32,7 @@ fn of_folder(folder: &Path, side: &str) -> Result<PathBuf> {
     let cubes = folder.join(CUBES);
     let entries = std::fs::read_dir(&cubes).map_err(|_| {
         let found = format!("the folder {} has no {CUBES}", folder.display());
-        Error::malformed(found, "name the file of a cube, or a scene of the HADAR database")
+        Error::malformed(found, "name the file of a cube, or a scene of the HADAR database; all cubes of a folder are rows of a table: hadar sweep FILE --vary cube.data=FOLDER --out DIR")
     })?;
     let mut names: Vec<String> =
         entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();

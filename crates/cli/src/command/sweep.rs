@@ -30,7 +30,8 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct SweepArgs {
     /// The file (TOML) whose keys are varied
     scenario: PathBuf,
-    /// Vary a key: FROM..TO:COUNT or FROM..TO:COUNT:log, or values A,B,C; given several times, all combinations are rows
+    /// Vary a key: FROM..TO:COUNT or FROM..TO:COUNT:log, or values A,B,C; of cube.data also a folder of cubes; given several times, all
+    /// combinations are rows
     #[arg(long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
     /// Rows of a CSV table whose header names keys; an empty cell leaves what the file says; the `sweep.csv`
@@ -104,7 +105,9 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
         Some(name) => Question::named(name.trim()).map_err(|error| error.for_key("--command"))?,
         None => Question::of(&file)?,
     };
-    let axes = args.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_>>()?;
+    let home = args.scenario.parent().unwrap_or(Path::new(""));
+    let axis = |text: &String| Axis::parse(text)?.with_cubes_of_folder(home);
+    let axes = args.vary.iter().map(axis).collect::<Result<_>>()?;
     let plan = Plan::new(axes, args.cases.as_deref().map(Cases::from_file).transpose()?)?;
     if let Some(set) =
         file.settings.iter().find(|set| plan.inputs().iter().any(|varied| varied.key == set.key))

@@ -565,3 +565,43 @@ fn a_file_more_in_a_folder_is_noticed() {
     assert_eq!(rows(&folder.path().join("out/sweep.csv")).len(), 2);
     assert_eq!(sweep(&folder, &asked)["computed"], 2);
 }
+
+/// A folder of cubes is a table with a row for each: a bad one fails in its row, and what was done is not done again.
+#[test]
+fn every_cube_of_a_folder_is_a_row() {
+    let folder = crate::decompose::with(crate::decompose::SCENARIO);
+    let cubes = folder.path().join("cubes");
+    std::fs::create_dir(&cubes).unwrap();
+    let whole = std::fs::read(folder.path().join("counts.npy")).unwrap();
+    for name in ["b.npy", "a.npy", "c.npy"] {
+        std::fs::write(cubes.join(name), &whole).unwrap();
+    }
+    std::fs::write(cubes.join("d.npy"), &whole[..whole.len() / 2]).unwrap();
+    std::fs::write(cubes.join("readme.txt"), "no cube").unwrap();
+    let sweep = [
+        "sweep",
+        "a.toml",
+        "--vary",
+        "cube.data=cubes",
+        "--columns",
+        "truth.temperature_rmse_k",
+        "--out",
+        "rows",
+    ];
+    let found = folder.json(&sweep);
+    assert_eq!(
+        (found["rows"].as_u64(), found["answered"].as_u64(), found["failed"].as_u64()),
+        (Some(4), Some(3), Some(1))
+    );
+    let table = std::fs::read_to_string(folder.path().join("rows/sweep.csv")).unwrap();
+    let rows: Vec<&str> = table.lines().filter(|line| line.contains("cubes/")).collect();
+    assert!(rows[0].contains("cubes/a.npy") && rows[3].contains("cubes/d.npy"), "{table}");
+    let again = folder.json(&[&sweep[..], &["--force"]].concat());
+    assert_eq!(again["computed"].as_u64(), Some(1), "only the one that failed: {again}");
+    std::fs::create_dir(folder.path().join("none")).unwrap();
+    let refused = folder.refusal(&["sweep", "a.toml", "--vary", "cube.data=none", "--out", "rows2"]);
+    assert!(refused.contains("the folder has no cube"), "{refused}");
+    folder.file("b.toml", &crate::decompose::SCENARIO.replace("counts.npy", "cubes"));
+    let refused = folder.refusal(&["decompose", "b.toml"]);
+    assert!(refused.contains("hadar sweep FILE --vary cube.data=FOLDER"), "{refused}");
+}

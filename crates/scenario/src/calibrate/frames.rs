@@ -2,11 +2,12 @@
 
 use super::super::decompose::read::bad_bands;
 use super::super::entries::Entries;
-use super::super::paths::{Paths, axes, file, is_cube, variable};
+use super::super::paths::{Paths, axes, file, variable};
 use super::super::section::Entry;
 use crate::Source;
 use hadar::error::Result;
 use hadar_formats::cube::Axes;
+use hadar_formats::cube::is_called_so as is_cube;
 use std::path::{Path, PathBuf};
 use toml::Value;
 

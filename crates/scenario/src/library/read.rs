@@ -4,13 +4,13 @@ use super::super::decompose::read::{air, heat_cube, light, no_air_without, truth
 use super::super::decompose::{PixelUnknown, SharedUnknown};
 use super::super::keys::files;
 use super::super::kind::Kind;
-use super::super::paths::is_cube;
 use super::super::reader::file;
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
 use super::{ClustersSpec, EMISSIVITY, LibraryScenario};
 use hadar::error::{Error, Result};
 use hadar::fisher::emissivity::Smoothness;
+use hadar_formats::cube::is_called_so as is_cube;
 use std::path::Path;
 
 const MINIMUM: &str =

@@ -3,7 +3,7 @@
 use super::super::decompose::read::BAD;
 use super::super::keys::files;
 use super::super::kind::Kind as FileKind;
-use super::super::paths::{axes, file, is_cube, variable};
+use super::super::paths::{axes, file, variable};
 use super::super::reader::file;
 use super::super::scene::scene_of;
 use super::super::scene_folder::{LEFT, RIGHT, cube_file};
@@ -16,6 +16,7 @@ use hadar::error::{Error, Result};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::Joined;
+use hadar_formats::cube::is_called_so as is_cube;
 use std::path::Path;
 
 const MINIMUM: &str = "write [scene] for the built-in street or [cube] with left = \"left.npy\", \

@@ -6,6 +6,8 @@
 use super::cell::Cell;
 use hadar::error::{Error, Result};
 use hadar::units::{Dimension, decimal_comma, parts, with_plain_micro};
+use hadar_formats::cube::{cubes_in, is_zarr};
+use std::path::{Path, PathBuf};
 
 /// Values of a key at most; more are no table that anybody reads.
 pub(super) const MOST_VALUES: usize = 1_000_000;
@@ -49,6 +51,38 @@ impl Axis {
             None => (listed(values).map_err(named)?, false),
         };
         Ok(Self { key, values, logarithmic })
+    }
+}
+
+/// Keys of cubes, which a folder of them may be given for.
+const CUBES: [&str; 2] = ["cube.data", "cube.left"];
+
+impl Axis {
+    /// The same with the cubes of a folder in the place of it: of a key of a cube whose only value names a folder, from that of the
+    /// file; none of one that is a cube itself, as a Zarr array or a scene of the HADAR database is.
+    ///
+    /// # Errors
+    /// A folder without cubes.
+    pub fn with_cubes_of_folder(self, home: &Path) -> Result<Self> {
+        let [folder] = self.values.as_slice() else { return Ok(self) };
+        let path = home.join(folder.trim());
+        let is_cube = is_zarr(&path) || path.join("HeatCubes").is_dir();
+        if !CUBES.contains(&self.key.as_str()) || !path.is_dir() || is_cube {
+            return Ok(self);
+        }
+        let cubes = cubes_in(&path)?;
+        if cubes.is_empty() {
+            let error = Error::malformed(
+                "the folder has no cube",
+                "name a folder of NPY, ENVI, HDF5 or other files of cubes",
+            );
+            return Err(error.in_file(&path).for_key(format!("--vary {}", self.key)));
+        }
+        let named = |cube: &PathBuf| {
+            let name = cube.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            format!("{}/{name}", folder.trim().trim_end_matches(['/', '\\']))
+        };
+        Ok(Self { values: cubes.iter().map(named).collect(), ..self })
     }
 }
 
