@@ -167,7 +167,7 @@ fn a_list_of_bands_is_written_in_the_order_of_the_cube() {
         );
         folder.file(
             "filters.csv",
-            "wavelength_um,short,long,middle\n8,1,0,0\n9,1,0,1\n10,0,0,1\n11,0,1,0\n12.5,0,1,0\n",
+            "wavelength_um,c,a,e,b,d\n8,0,1,0,0,0\n8.5,0,1,0,1,0\n9,0,0,0,1,0\n9.5,1,0,0,1,0\n10,1,0,0,0,1\n11,0,0,1,0,1\n12,0,0,1,0,0\n12.5,0,0,1,0,0\n",
         );
         folder.file("bands.csv", "wavenumber_cm1,width_cm1\n1200,90\n800,100\n1100,80\n900,70\n1000,90\n");
         folder.json(&["render", "a.toml", "--out", "out", "--no-noise"]);
