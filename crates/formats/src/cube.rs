@@ -19,6 +19,7 @@ mod geotiff;
 mod hdf5;
 mod image;
 mod mat;
+mod names;
 mod netcdf3;
 mod npy;
 mod npy_rows;
@@ -38,10 +39,11 @@ pub use axes::Axes;
 pub use envi::{EnviBands, envi_files};
 pub use found::{Found, Opened};
 pub use mat::mat_file;
+pub use names::{ENDINGS, cubes_in, is_called_so, is_zarr};
 pub use npy::{Value, npy_map, write_npy, write_npy_to};
 pub use npy_rows::NpyRows;
 pub(crate) use open::is_cube;
-pub use open::{ENDINGS, cubes_in, is_called_so, is_zarr, open, open_as};
+pub use open::{open, open_as};
 pub use sample_unit::{SampleUnit, TemperatureUnit};
 
 /// What opening a cube is called in messages.

@@ -84,6 +84,16 @@ pub fn from_text(text: &str, source: &Path) -> Result<Vec<Material>> {
     content(text, source, None, &Reading::default())?.materials()
 }
 
+impl Reading {
+    /// All materials of a file.
+    ///
+    /// # Errors
+    /// As [`from_file`](from_file); columns of a file that has a header, or another number of columns.
+    pub fn file(&self, path: &Path) -> Result<Vec<Material>> {
+        content_of_file(path, self)?.materials()
+    }
+}
+
 fn content_of_file(path: &Path, reading: &Reading) -> Result<Content> {
     if let Some((header, data)) = envi::files(path)? {
         return envi::read(&header, &data, reading).map(Content::noticed);

@@ -5,12 +5,13 @@
 //!
 //! A parsed document borrows its text, which therefore stays until the program ends: it is parsed once a job.
 
-use super::reader::parse;
 use super::report_inputs::ReportInputs;
-use super::source::Source;
-use super::written::Written;
+use super::source::{LineStarts, Source};
+use hadar::error::{Error, Result};
+use hadar::instrument::figures::BLANK;
+use hadar::units::decimal_comma;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeTable;
 
@@ -27,15 +28,15 @@ pub(super) struct Parsed {
 }
 
 impl Parsed {
-    pub(super) fn of(written: &Written) -> Option<Self> {
-        let mut source = written.source();
-        parse(&written.text, &source).ok()?;
-        let text: &'static str = Box::leak(written.text.clone().into_boxed_str());
+    /// The text of a file, whose places `source` says; none of what is no TOML.
+    pub(super) fn of(text: &str, path: Option<&Path>, mut source: Source) -> Option<Self> {
+        parse(text, &source).ok()?;
+        let text: &'static str = Box::leak(text.to_owned().into_boxed_str());
         let document = parse(text, &source).ok()?;
         source.note_lines(text, &document);
         Some(Self {
             text,
-            path: written.path.clone(),
+            path: path.map(Path::to_owned),
             document,
             lines: source.lines,
             texts: source.texts,
@@ -44,8 +45,8 @@ impl Parsed {
     }
 
     /// Whether it is that of a text and file.
-    pub(super) fn is_of(&self, written: &Written) -> bool {
-        self.text == written.text && self.path == written.path
+    pub(super) fn is_of(&self, text: &str, path: Option<&Path>) -> bool {
+        self.text == text && self.path.as_deref() == path
     }
 
     /// The document, and in `source` where its keys stand.
@@ -54,4 +55,33 @@ impl Parsed {
         source.texts = Arc::clone(&self.texts);
         self.document.clone()
     }
+}
+
+/// The table behind the text, or the first thing that is not TOML.
+pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+    let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
+        return Ok(document.into_inner());
+    };
+    let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
+    let line = LineStarts::of(text).line(offset(first));
+    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
+        let error =
+            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    // `f_number = 1,3`: a list of nothing, and a number.
+    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
+    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    let error = Error::malformed(
+        format!("this is not TOML: {message}"),
+        match message.as_str() {
+            "duplicate key" => "write each key and each [table] once",
+            _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
+        },
+    );
+    Err(error.on_line(line).at(source.place("")))
 }

@@ -5,13 +5,11 @@
 use super::camera;
 use super::keys::Table;
 use super::kind::Kind;
+use super::parsed::parse;
 use super::section::Section;
-use super::source::{LineStarts, Source};
+use super::source::Source;
 use super::written::Written;
 use hadar::error::{Error, Result};
-use hadar::instrument::figures::BLANK;
-use hadar::units::decimal_comma;
-use toml::de::DeTable;
 
 /// `from_file` and `from_toml` of a type that has `from_written`.
 macro_rules! from_file_and_text {
@@ -136,33 +134,4 @@ pub(super) fn open<T>(
     }
     let read = read(&Section::open(&document, "", &source, keys)?)?;
     Ok((read, source))
-}
-
-/// The table behind the text, or the first thing that is not TOML.
-pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
-    let (document, errors) = DeTable::parse_recoverable(text);
-    let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
-    let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
-        return Ok(document.into_inner());
-    };
-    let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
-    let line = LineStarts::of(text).line(offset(first));
-    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
-        let error =
-            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
-        return Err(error.on_line(line).at(source.place("")));
-    }
-    // `f_number = 1,3`: a list of nothing, and a number.
-    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
-    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
-        return Err(error.on_line(line).at(source.place("")));
-    }
-    let error = Error::malformed(
-        format!("this is not TOML: {message}"),
-        match message.as_str() {
-            "duplicate key" => "write each key and each [table] once",
-            _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
-        },
-    );
-    Err(error.on_line(line).at(source.place("")))
 }

@@ -107,13 +107,13 @@ impl Written {
     /// ```
     #[must_use]
     pub fn parsed(self) -> Self {
-        let parsed = Parsed::of(&self).map(Arc::new);
+        let parsed = Parsed::of(&self.text, self.path.as_deref(), self.source()).map(Arc::new);
         Self { parsed, ..self }
     }
 
     /// Its text parsed before, if it is still that text of that file.
     pub(super) fn parsed_before(&self) -> Option<&Parsed> {
-        self.parsed.as_deref().filter(|parsed| parsed.is_of(self))
+        self.parsed.as_deref().filter(|parsed| parsed.is_of(&self.text, self.path.as_deref()))
     }
 
     /// The same with cameras of the user's own that it may name.

@@ -9,7 +9,7 @@
 
 mod header;
 
-use self::header::Header;
+use self::header::{Header, damaged};
 use super::axes::Axes;
 use super::band_list;
 use super::choice::{Listed, choose};
@@ -124,9 +124,4 @@ fn images(file: &File, path: &Path, len: u64) -> Result<Vec<Image>> {
         number += 1;
     }
     Ok(images)
-}
-
-/// A file that cannot be read.
-fn damaged(error: impl std::fmt::Display) -> Error {
-    Error::malformed(format!("the FITS file cannot be read: {error}"), "write or copy it again")
 }

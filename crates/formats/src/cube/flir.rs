@@ -13,7 +13,8 @@
 
 mod block;
 
-use self::block::{Block, Bytes};
+pub(super) use self::block::BLOCK;
+use self::block::{Block, Bytes, damaged};
 use super::axes::Axes;
 use super::found::{Found, Opened};
 use super::image::Image;
@@ -22,9 +23,8 @@ use hadar::error::{Error, Result};
 use std::fs::File;
 use std::path::Path;
 
-/// What a JPEG picture, a block and a segment with a part of one begin with.
+/// What a JPEG picture and a segment with a part of a block begin with.
 pub(super) const JPEG: &[u8] = b"\xff\xd8\xff";
-pub(super) const BLOCK: &[u8] = b"FFF\0";
 const SEGMENT: &[u8] = b"FLIR\0";
 /// Longest picture, bytes.
 const LONGEST: u64 = 1 << 28;
@@ -155,9 +155,4 @@ fn assembled(jpeg: &[u8]) -> Result<Vec<u8>> {
         }
     }
     Ok(parts.into_iter().flat_map(|(_, part)| part.iter().copied()).collect())
-}
-
-/// A file that cannot be read.
-fn damaged(error: impl std::fmt::Display) -> Error {
-    Error::malformed(format!("the radiometric file cannot be read: {error}"), "copy it again from the camera")
 }

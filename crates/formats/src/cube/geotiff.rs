@@ -7,7 +7,7 @@
 
 mod said;
 
-use self::said::Said;
+use self::said::{Said, damaged};
 use super::axes::Axes;
 use super::choice::one_of_frames;
 use super::found::{Found, Opened};
@@ -179,12 +179,4 @@ fn numbers(result: DecodingResult) -> (Vec<f64>, Stored) {
         DecodingResult::F32(numbers) => (of(&numbers), Stored::F32),
         DecodingResult::F64(numbers) => (numbers, Stored::F64),
     }
-}
-
-/// A file that cannot be read.
-fn damaged(error: impl std::fmt::Display) -> Error {
-    Error::malformed(
-        format!("the TIFF file cannot be read: {error}"),
-        "write or copy it again, unpacked: tifffile.imwrite('cube.tif', tifffile.imread('old.tif'))",
-    )
 }

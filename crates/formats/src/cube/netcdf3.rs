@@ -7,7 +7,8 @@
 
 mod header;
 
-use self::header::{Header, Variable};
+pub(super) use self::header::MAGIC;
+use self::header::{Header, Variable, damaged};
 use super::arrange;
 use super::axes::Axes;
 use super::band_list;
@@ -20,9 +21,6 @@ use hadar::cube::{Cube, MemoryCube, Sample, Shape};
 use hadar::error::{Error, Result};
 use std::fs::File;
 use std::path::Path;
-
-/// What files of this kind begin with, before a byte of the version.
-pub(super) const MAGIC: &[u8] = b"CDF";
 
 /// Opens a file whose first bytes have been seen.
 pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
@@ -152,9 +150,4 @@ impl Header {
         }
         (None, unused)
     }
-}
-
-/// A file that cannot be read.
-fn damaged(error: impl std::fmt::Display) -> Error {
-    Error::malformed(format!("the NetCDF file cannot be read: {error}"), "write or copy it again")
 }

@@ -9,13 +9,14 @@
 mod blosc;
 mod codecs;
 mod meta;
+mod streams;
 
-use self::meta::Meta;
+use self::meta::{Meta, damaged};
 use super::axes::Axes;
 use super::band_list;
 use super::choice::{Listed, choose};
 use super::found::{Found, Opened};
-use super::open::is_zarr;
+use super::names::is_zarr;
 use super::packed::{self, Slices};
 use super::stored::{Stored, decode};
 use super::values::Values;
@@ -27,8 +28,6 @@ use std::path::{Path, PathBuf};
 /// Groups within groups, and arrays, that are looked at.
 const MOST_DEPTH: usize = 8;
 const MOST_ARRAYS: usize = 1000;
-/// Largest chunk, bytes.
-const LARGEST_CHUNK: u64 = 1 << 32;
 
 /// An array, and where its chunks are.
 #[derive(Debug)]
@@ -268,12 +267,4 @@ fn places(mut number: usize, sides: &[usize]) -> Vec<usize> {
 /// The other way round.
 fn index(places: &[usize], sides: &[usize]) -> usize {
     places.iter().zip(sides).fold(0, |index, (place, side)| index * side + place)
-}
-
-/// An array that cannot be read.
-fn damaged(error: impl std::fmt::Display) -> Error {
-    Error::malformed(
-        format!("the Zarr array cannot be read: {error}"),
-        "write or copy it again, or write the cube with np.save('cube.npy', zarr.open('cube.zarr')[:])",
-    )
 }

@@ -7,8 +7,10 @@
 //! Nothing between a few kelvin and the sun sends more or less than bodies of these temperatures do: numbers of a column without unit
 //! that would are of another unit.
 
+mod column;
 mod simulated;
 
+use self::column::{Column, Unit};
 use super::header;
 use crate::file;
 use crate::foreign;
@@ -24,26 +26,6 @@ use std::path::Path;
 const BRIGHTEST_K: (f64, f64) = (40.0, 2e4);
 /// How a unit is written, in messages.
 const EXAMPLE: &str = "write its unit behind its name, as in `sky [W m^-2 sr^-1 um^-1]`";
-
-/// What the numbers of a column are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Unit {
-    /// Photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, as nothing says another.
-    Silent,
-    /// A unit that is stated.
-    Stated(RadianceUnit),
-    /// Temperatures of a blackbody that sends as much, K.
-    Brightness,
-}
-
-/// A column of wavenumbers, cm⁻¹, and values.
-struct Column {
-    name: String,
-    unit: Unit,
-    /// The line each stands on.
-    lines: Vec<usize>,
-    rows: Vec<(f64, f64)>,
-}
 
 /// Wavenumber (cm⁻¹) and photon radiance (photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹) of the rows of a column, in the order of the file.
 ///

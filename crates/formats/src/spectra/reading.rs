@@ -2,8 +2,6 @@
 
 use super::checked::MOST_CLIP;
 use hadar::error::{Error, Result};
-use hadar::material::Material;
-use std::path::Path;
 
 /// How files of spectra are read.
 ///
@@ -46,14 +44,6 @@ impl Reading {
             return Err(Error::out_of_range("clip", by, "", expected));
         }
         Ok(Self { clip: Some(by), ..self })
-    }
-
-    /// All materials of a file.
-    ///
-    /// # Errors
-    /// As [`from_file`](super::from_file); columns of a file that has a header, or another number of columns.
-    pub fn file(&self, path: &Path) -> Result<Vec<Material>> {
-        super::content_of_file(path, self)?.materials()
     }
 
     /// What the columns are said to be.

@@ -9,7 +9,7 @@
 
 mod header;
 
-use self::header::{FLOATS, Flags, Header};
+use self::header::{FLOATS, Flags, Header, TRACE_HEADER};
 use super::bytes::{Bytes, FETCH_AGAIN};
 use super::content::{Content, stem};
 use super::reading::Reading;
@@ -18,8 +18,6 @@ use crate::envi_header::{ByteOrder, DataType};
 use hadar::error::{Error, Result};
 use std::path::Path;
 
-/// Bytes of the header of a trace.
-const TRACE_HEADER: usize = 32;
 /// The most traces of a file.
 const MOST_TRACES: usize = 100_000;
 /// Whether bytes look like one: the version in the second of them, and some that no text has.

@@ -1,6 +1,5 @@
 //! The header of a FITS image: its cards, by their keywords.
 
-use super::damaged;
 use crate::cube::raw::read_at;
 use crate::cube::stored::Stored;
 use hadar::error::{Error, Result};
@@ -202,4 +201,9 @@ fn value_of(text: &str) -> String {
         }
     }
     value.trim_end().to_owned()
+}
+
+/// A file that cannot be read.
+pub(super) fn damaged(error: impl std::fmt::Display) -> Error {
+    Error::malformed(format!("the FITS file cannot be read: {error}"), "write or copy it again")
 }

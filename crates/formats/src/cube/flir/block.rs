@@ -1,12 +1,13 @@
 //! A block of records: its readings, and the constants of its camera.
 
-use super::{BLOCK, damaged};
 use crate::cube::raw::read_at;
 use crate::cube::stored::{Stored, decode};
 use hadar::error::{Error, Result};
 use std::fs::File;
 use std::path::PathBuf;
 
+/// What a block begins with.
+pub(in crate::cube) const BLOCK: &[u8] = b"FFF\0";
 /// Bytes of the head of a block, and of a line of its list.
 const HEAD: u64 = 64;
 const LINE: u64 = 32;
@@ -232,4 +233,9 @@ fn u16_at(bytes: &[u8], at: usize, little_endian: bool) -> Option<u16> {
 fn u32_at(bytes: &[u8], at: usize, little_endian: bool) -> Option<u32> {
     let word = *bytes.get(at..)?.first_chunk::<4>()?;
     Some(if little_endian { u32::from_le_bytes(word) } else { u32::from_be_bytes(word) })
+}
+
+/// A file that cannot be read.
+pub(super) fn damaged(error: impl std::fmt::Display) -> Error {
+    Error::malformed(format!("the radiometric file cannot be read: {error}"), "copy it again from the camera")
 }

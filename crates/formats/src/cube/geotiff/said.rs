@@ -1,7 +1,6 @@
 //! What GDAL says beside a picture of its samples.
 
-use super::damaged;
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use std::fs::File;
 use std::io::BufReader;
 use tiff::decoder::Decoder;
@@ -89,4 +88,12 @@ impl<'a> Item<'a> {
         };
         Some(Self { name: of("name=\""), role: of("role=\""), sample: of("sample=\"").parse().ok(), value })
     }
+}
+
+/// A file that cannot be read.
+pub(super) fn damaged(error: impl std::fmt::Display) -> Error {
+    Error::malformed(
+        format!("the TIFF file cannot be read: {error}"),
+        "write or copy it again, unpacked: tifffile.imwrite('cube.tif', tifffile.imread('old.tif'))",
+    )
 }

@@ -1,13 +1,14 @@
 //! The header of a classic NetCDF file.
 
-use super::{MAGIC, damaged};
 use crate::cube::attributes::{Attribute, Attributes};
 use crate::cube::raw::read_at;
 use crate::cube::stored::{Stored, decode};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use std::fs::File;
 use std::path::Path;
 
+/// What files of this kind begin with, before a byte of the version.
+pub(in crate::cube) const MAGIC: &[u8] = b"CDF";
 /// Longest header that is read, bytes.
 const LONGEST: u64 = 1 << 24;
 /// Tags of lists.
@@ -228,4 +229,9 @@ impl<'a> Reader<'a> {
         let begin = self.wide(self.wide_places)?;
         Ok(Variable { name, dimensions, attributes, kind, begin })
     }
+}
+
+/// A file that cannot be read.
+pub(super) fn damaged(error: impl std::fmt::Display) -> Error {
+    Error::malformed(format!("the NetCDF file cannot be read: {error}"), "write or copy it again")
 }

@@ -5,7 +5,7 @@
 //!
 //! Source: Blosc, 'Blosc Header Format' (c-blosc 1.21, README_CHUNK_FORMAT).
 
-use super::codecs::{lz4, unshuffled, zlib, zstd};
+use super::streams::{lz4, unshuffled, zlib, zstd};
 
 const HEADER: usize = 16;
 /// Flags.

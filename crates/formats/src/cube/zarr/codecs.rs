@@ -1,9 +1,9 @@
 //! What unpacks the chunks of a Zarr array.
 
 use super::blosc;
-use flate2::read::{MultiGzDecoder, ZlibDecoder};
+use super::streams::{lz4, read, unshuffled, zlib, zstd};
+use flate2::read::MultiGzDecoder;
 use hadar::error::{Error, Result};
-use std::io::Read;
 
 /// A step of unpacking.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub(super) fn unpacked(
     for codec in codecs {
         content = match codec {
             Codec::Gzip => read(MultiGzDecoder::new(content.as_slice()), bytes)?,
-            Codec::Zlib => read(ZlibDecoder::new(content.as_slice()), bytes)?,
+            Codec::Zlib => zlib(&content, bytes)?,
             Codec::Zstd => zstd(&content, bytes)?,
             Codec::Lz4 => {
                 // The number of bytes stands before the block.
@@ -78,44 +78,6 @@ pub(super) fn unpacked(
         true => Ok(content),
         false => Err(format!("{} bytes where {bytes} are due", content.len())),
     }
-}
-
-/// No more than are due, and four of a checksum.
-fn read(from: impl Read, bytes: usize) -> std::result::Result<Vec<u8>, String> {
-    let mut out = Vec::new();
-    from.take(bytes as u64 + 5).read_to_end(&mut out).map_err(|error| error.to_string())?;
-    Ok(out)
-}
-
-pub(super) fn zstd(packed: &[u8], bytes: usize) -> std::result::Result<Vec<u8>, String> {
-    let decoder = ruzstd::decoding::StreamingDecoder::new(packed).map_err(|error| error.to_string())?;
-    read(decoder, bytes)
-}
-
-pub(super) fn zlib(packed: &[u8], bytes: usize) -> std::result::Result<Vec<u8>, String> {
-    read(ZlibDecoder::new(packed), bytes)
-}
-
-pub(super) fn lz4(block: &[u8], bytes: usize) -> std::result::Result<Vec<u8>, String> {
-    let mut out = vec![0; bytes];
-    let length = lz4_flex::block::decompress_into(block, &mut out).map_err(|error| error.to_string())?;
-    match length == bytes {
-        true => Ok(out),
-        false => Err(format!("{length} bytes where {bytes} are due")),
-    }
-}
-
-/// Numbers whose bytes of equal weight stood together; bytes of no whole number are left at the end.
-pub(super) fn unshuffled(bytes: &[u8], size: usize) -> Vec<u8> {
-    let count = bytes.len() / size.max(1);
-    if size < 2 || count == 0 {
-        return bytes.to_vec();
-    }
-    let mut out = bytes.to_vec();
-    for (weight, plane) in bytes.chunks_exact(count).take(size).enumerate() {
-        out.iter_mut().skip(weight).step_by(size).zip(plane).for_each(|(out, byte)| *out = *byte);
-    }
-    out
 }
 
 /// The checksum of Castagnoli (RFC 3720), bit by bit.

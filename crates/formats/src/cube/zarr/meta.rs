@@ -1,7 +1,6 @@
 //! What a Zarr array says of itself: `.zarray` and `.zattrs`, or `zarr.json`.
 
 use super::codecs::Codec;
-use super::{LARGEST_CHUNK, damaged};
 use crate::cube::attributes::{Attribute, Attributes};
 use crate::cube::stored::Stored;
 use crate::cube::values::Values;
@@ -12,6 +11,8 @@ use std::path::Path;
 
 /// Longest description, bytes.
 const LONGEST: u64 = 1 << 24;
+/// Largest chunk, bytes.
+const LARGEST_CHUNK: u64 = 1 << 32;
 /// Most dimensions.
 const MOST: usize = 32;
 
@@ -255,5 +256,13 @@ fn other_type(found: &Value) -> Error {
     Error::malformed(
         format!("the samples are of the type {found}"),
         "write the cube as an array of floats or whole numbers",
+    )
+}
+
+/// An array that cannot be read.
+pub(super) fn damaged(error: impl std::fmt::Display) -> Error {
+    Error::malformed(
+        format!("the Zarr array cannot be read: {error}"),
+        "write or copy it again, or write the cube with np.save('cube.npy', zarr.open('cube.zarr')[:])",
     )
 }

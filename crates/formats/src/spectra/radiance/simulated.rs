@@ -6,7 +6,7 @@
 //!
 //! Source: Berk et al., MODTRAN 5.3 User's Manual (2013), tape7; Clough et al., LBLRTM, output of PLTLBL, and its table of units.
 
-use super::{Column, Unit};
+use super::column::{Column, Unit};
 use crate::spectra::bytes::FETCH_AGAIN;
 use hadar::error::{Error, Result, check};
 use hadar::grid::number;

@@ -3,10 +3,12 @@
 use super::super::bytes::{Bytes, FETCH_AGAIN};
 use super::super::header::{self, Axis, Meaning, Quantity, Values};
 use super::super::samples::Said;
-use super::TRACE_HEADER;
 use crate::envi_header::DataType;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
+
+/// Bytes of the header of a trace.
+pub(super) const TRACE_HEADER: usize = 32;
 
 /// Bytes of the header of the new version.
 pub(super) const NEW: usize = 512;
