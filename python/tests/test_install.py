@@ -1,5 +1,6 @@
 """The distribution has a name of its own, which is the one that every hint and document names."""
 
+import importlib
 import importlib.metadata
 import re
 import subprocess
@@ -20,7 +21,10 @@ def test_the_distribution_and_its_extras():
     found = importlib.metadata.metadata(NAME)
     assert set(found.get_all("Provides-Extra")) == {"pandas", "dask", "test"}
     assert importlib.metadata.packages_distributions()["hadar_limits"] == [NAME]
-    assert "hadar" not in importlib.metadata.packages_distributions()
+    # The older name is a module beside the package, which no other package's folder of that name overwrites.
+    files = [str(file) for file in importlib.metadata.files(NAME)]
+    assert "hadar.py" in files and not any(file.startswith("hadar/") for file in files)
+    assert importlib.import_module("hadar") is importlib.import_module("hadar_limits")
 
 
 def test_every_hint_names_it():
