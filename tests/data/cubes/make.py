@@ -218,6 +218,14 @@ for kind in ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA"]:
         v[:] = data
         f.createVariable("records", "f4", ("y", "x", "wavelength"))[:] = CUBE
         f.createVariable("odd", "i1", ("y", "x"))[:] = np.arange(ROWS * COLUMNS).reshape(ROWS, COLUMNS)
+with netCDF4.Dataset("netcdf3_record_axis.nc", "w", format="NETCDF3_CLASSIC") as f:
+    for name, size in [("frequency", None), ("y", ROWS), ("x", COLUMNS)]:
+        f.createDimension(name, size)
+    axis = f.createVariable("frequency", "f8", ("frequency",))
+    axis.units = "THz"
+    v = f.createVariable("radiance", "f4", ("frequency", "y", "x"))
+    v[:] = IMAGES
+    axis[:] = 299.792458 / LISTED_UM
 with scipy.io.netcdf_file("scipy_records.nc", "w") as f:
     for name, size in [("y", None), ("x", COLUMNS), ("band", BANDS)]:
         f.createDimension(name, size)
@@ -243,6 +251,7 @@ tifffile.imwrite("tiff_samples.tif", CUBE.astype("f4"), photometric="minisblack"
 tifffile.imwrite("tiff_planes.tif", IMAGES.astype("u2"), photometric="minisblack", planarconfig="separate", byteorder=">")
 tifffile.imwrite("tiff_pages.tif", IMAGES.astype("f8"), photometric="minisblack", compression="zlib", predictor=False, metadata=None)
 tifffile.imwrite("tiff_big.tif", CUBE.astype("i2"), bigtiff=True, photometric="minisblack", planarconfig="contig", compression="lzw", tile=(16, 16))
+tifffile.imwrite("tiff_pages_gdal.tif", IMAGES.astype("f4"), photometric="minisblack", metadata=None, extratags=[(42113, "s", 0, "11", False)])
 tifffile.imwrite("tiff_one.tif", CUBE[:, :, 0].astype("u2"), photometric="minisblack")
 tifffile.imwrite("tiff_colours.tif", np.zeros((3, 4, 3), "u1"), photometric="rgb")
 items = "".join(

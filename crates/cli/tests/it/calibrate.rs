@@ -6,6 +6,7 @@ use hadar::planck::photon_radiance;
 use hadar::statistics::Statistics;
 use hadar_formats::cube::write_npy;
 use hadar_simulate::draws::{Draws, generator};
+use hadar_testing::repository;
 use rand::RngExt;
 
 const ROWS: usize = 24;
@@ -332,6 +333,14 @@ fn mistakes_are_one_message() {
     // A file of [cube] data alone is of whichever command it is given to.
     folder.file("alone.toml", "[cube]\ndata = [\"frame_1.npy\", \"frame_2.npy\"]\n");
     assert_eq!(folder.run(&["calibrate", "noise", "alone.toml"]).code, 0);
+    // Temperatures are not in proportion to photons.
+    let flir = repository().join("tests/data/cubes/flir.jpg");
+    folder.file(
+        "warm.toml",
+        &format!("[cube]\ndata = [{0:?}, {0:?}]\nvariable = \"temperature\"\n", flir.display().to_string()),
+    );
+    let other = folder.refusal(&["calibrate", "noise", "warm.toml"]);
+    assert!(other.contains("the samples are `K` by their file"), "{other}");
     let other = folder.refusal(&["range", "alone.toml"]);
     assert!(other.contains("there is no key `data`"), "{other}");
     let other = folder.refusal(&["range", "stripes.toml"]);

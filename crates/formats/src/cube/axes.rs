@@ -24,6 +24,7 @@ const NAMES: [(Axis, &[&str]); 3] = [
             "wavenumber",
             "wavenumbers",
             "lambda",
+            "frequency",
             "wl",
             "nu",
             "channel",

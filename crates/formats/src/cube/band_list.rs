@@ -35,7 +35,8 @@ pub(super) fn unit_of(name: &str) -> Option<Option<SpectralUnit>> {
 }
 
 /// What the spectral axis of a file is called, in lower case.
-pub(super) const AXIS: [&str; 5] = ["wavelength", "wavelengths", "wavenumber", "wavenumbers", "lambda"];
+pub(super) const AXIS: [&str; 7] =
+    ["wavelength", "wavelengths", "wavenumber", "wavenumbers", "lambda", "frequency", "frequencies"];
 
 /// Whether an array is called as a spectral axis is.
 pub(super) fn is_axis(name: &str) -> bool {

@@ -69,14 +69,12 @@ pub(super) fn open(file: File, name: Option<&str>, axes: Option<Axes>) -> Result
         None => pages,
     };
     let mut read: Vec<Page> = Vec::new();
-    let mut said = None;
+    let mut said: Vec<Said> = Vec::new();
     for number in &chosen {
         hadar::stop::check();
         decoder.seek_to_image(*number).map_err(damaged)?;
         let page = page(&mut decoder, len)?;
-        if said.is_none() {
-            said = Some(Said::of(&mut decoder, page.samples)?);
-        }
+        said.push(Said::of(&mut decoder, page.samples)?);
         let fits = |first: &Page| {
             (first.rows, first.columns, first.samples, first.stored)
                 == (page.rows, page.columns, 1, page.stored)
@@ -102,11 +100,9 @@ pub(super) fn open(file: File, name: Option<&str>, axes: Option<Axes>) -> Result
         return Err(Error::malformed(found, format!("leave axes out: they are \"{own}\" by its tags")));
     }
     let shape = own.shape(&sides)?;
-    // What is said of bands is said on the first page alone.
-    let said = said.filter(|_| count == 1).unwrap_or_default();
+    let said = Said::of_pages(said)?;
     let list = |list: Vec<f64>| (list.len() == bands).then_some(list);
-    let values =
-        Values::new(list(said.scale), list(said.offset), said.missing.into_iter().collect(), ALL_VALID);
+    let values = Values::new(list(said.scale), list(said.offset), said.missing, ALL_VALID);
     let format = if count > 1 { "TIFF, pages as bands" } else { "TIFF" };
     let numbers = read.into_iter().flat_map(|page| page.numbers).collect();
     let opened = Image { format, shape, order: own, stored, numbers, values }.opened(&[])?;
@@ -116,6 +112,7 @@ pub(super) fn open(file: File, name: Option<&str>, axes: Option<Axes>) -> Result
         unit: said.unit,
         centres_cm1: list(said.centres_cm1),
         widths_cm1: list(said.widths_cm1),
+        axis_without_unit: said.axis_unused,
         ..opened.found
     };
     Ok(Opened { found, ..opened })

@@ -129,7 +129,6 @@ impl Header {
         let is_axis = |variable: &&Variable| {
             variable.dimensions.len() == 1
                 && cube.dimensions.contains(&variable.dimensions[0])
-                && !self.is_record(variable)
                 && self.sides(variable) == [bands]
                 && band_list::is_axis(&variable.name)
         };
@@ -137,15 +136,18 @@ impl Header {
         for variable in self.variables.iter().filter(is_axis) {
             unused = true;
             let Some(stored) = variable.stored() else { continue };
-            let mut bytes = vec![0; bands * stored.size()];
-            let mut numbers = vec![0.0; bands];
-            if read_at(file, path, &mut bytes, variable.begin).is_ok() {
-                decode(&bytes, stored, false, &mut numbers);
-                if let Some(centres) =
-                    variable.attributes.text("units").and_then(|unit| band_list::in_unit(unit, &numbers))
-                {
-                    return (Some(centres), false);
-                }
+            let (mut word, mut numbers) = (vec![0; stored.size()], vec![0.0; bands]);
+            let step = if self.is_record(variable) { self.record_bytes } else { stored.size() as u64 };
+            let mut read = |(place, number): (usize, &mut f64)| {
+                let at = variable.begin.saturating_add(step.saturating_mul(place as u64));
+                read_at(file, path, &mut word, at)
+                    .map(|()| decode(&word, stored, false, std::slice::from_mut(number)))
+            };
+            let unit = variable.attributes.text("units").unwrap_or_default();
+            if numbers.iter_mut().enumerate().try_for_each(&mut read).is_ok()
+                && let Some(centres) = band_list::in_unit(unit, &numbers)
+            {
+                return (Some(centres), false);
             }
         }
         (None, unused)

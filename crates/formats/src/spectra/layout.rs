@@ -426,7 +426,7 @@ fn numbers(form: Form, row: &str, header: &[String], reading: &Reading) -> Resul
         form.number(cell).map_err(|error| {
             let hole = is_hole.then(|| {
                 let instead =
-                    "leave the row out, as `hadar materials import --clip 0` does, or write a number";
+                    "write a number, or leave the row out, as `hadar materials import --clip 0` does";
                 let found = match cell.is_empty() {
                     true => "the cell is empty".to_owned(),
                     false => format!("`{cell}` is not a finite number"),

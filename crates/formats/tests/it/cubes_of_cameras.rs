@@ -48,6 +48,8 @@ fn classic_netcdf_in_all_three_kinds() {
         assert!(refusal(name, None, None).contains("`fixed` (5 x 3 x 4 i16), `records` (3 x 4 x 5 f32)"));
         assert!(refusal(name, Some("record"), None).contains("records"));
     }
+    check("netcdf3_record_axis.nc", None, None, "f32", plain);
+    says_its_bands("netcdf3_record_axis.nc", None);
     // Records of one variable alone stand one behind the other.
     check("scipy_records.nc", None, None, "i16", plain);
 }
@@ -87,6 +89,10 @@ fn tiff_samples_planes_pages_and_what_gdal_says() {
         "f32",
         |r, c, b| if plain(r, c, b) == 11.0 { f64::NAN } else { plain(r, c, b) },
     );
+    // Of pages the number for nothing is that of the first.
+    check("tiff_pages_gdal.tif", None, None, "f32", |r, c, b| {
+        if plain(r, c, b) == 11.0 { f64::NAN } else { plain(r, c, b) }
+    });
     says_its_bands("tiff_gdal.tif", None);
     assert_eq!(open("tiff_gdal.tif", None, None).unwrap().found.unit.as_deref(), Some("W m-2 sr-1 um-1"));
     let page = open("tiff_pages.tif", Some("2"), None).unwrap();

@@ -111,8 +111,11 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
             return Err(entry.fail(Error::malformed(found, "leave one of them out")));
         }
         (Some(counts), ..) => CubeUnit::CountsPerPhotonRadiance(counts),
-        (None, Some(_), _) if noise.is_none() => {
-            let found = "samples in this unit alone do not say how they scatter";
+        (None, Some(unit), _) if noise.is_none() => {
+            let found = match unit {
+                CubeUnit::BrightnessTemperature { .. } => "temperatures alone do not say how they scatter",
+                _ => "radiances alone do not say how they scatter",
+            };
             let instead = "write noise = 1e-4, the deviation of a sample in that unit";
             return Err(section.fail("unit", Error::malformed(found, instead)));
         }

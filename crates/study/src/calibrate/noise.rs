@@ -2,6 +2,7 @@
 
 use super::opened::Measured;
 use crate::Warning;
+use crate::cube_unit::check_light;
 use hadar::cube::{Cube, Ordered, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
@@ -69,7 +70,12 @@ impl NoiseStudy {
     /// # Errors
     /// Files that cannot be used, with file, line and key.
     pub fn new(scenario: &NoiseScenario) -> Result<Self> {
-        Ok(Self { frames: Measured::open(&scenario.cube, &scenario.source)?, scenario: scenario.clone() })
+        let frames = Measured::open(&scenario.cube, &scenario.source)?;
+        // Photons are counted in what is in proportion to light.
+        for (found, path) in frames.read.iter().zip(&scenario.cube.data) {
+            check_light(found).map_err(|error| error.in_file(path))?;
+        }
+        Ok(Self { frames, scenario: scenario.clone() })
     }
 
     /// The noise.

@@ -15,10 +15,12 @@ const NOTHING: Tag = Tag::Unknown(42113);
 pub(super) struct Said {
     pub(super) scale: Vec<f64>,
     pub(super) offset: Vec<f64>,
-    pub(super) missing: Option<f64>,
+    pub(super) missing: Vec<f64>,
     pub(super) unit: Option<String>,
     pub(super) centres_cm1: Vec<f64>,
     pub(super) widths_cm1: Vec<f64>,
+    /// Whether there are wavelengths that are not used.
+    pub(super) axis_unused: bool,
 }
 
 impl Said {
@@ -34,6 +36,14 @@ impl Said {
             .filter(|number: &f64| number.is_finite());
         let metadata = text(METADATA)?;
         let items: Vec<Item<'_>> = metadata.split("<Item ").skip(1).filter_map(Item::read).collect();
+        // What is no number would be taken as if nothing were said.
+        let wrong = |item: &&Item<'_>| {
+            matches!(item.role, "scale" | "offset") && item.value.trim().parse::<f64>().is_err()
+        };
+        if let Some(item) = items.iter().find(wrong) {
+            let found = format!("the {} of a band is `{}`", item.role, item.value.escape_debug());
+            return Err(Error::malformed(found, "write it as a number, with a decimal point"));
+        }
         let numbers = |is: &dyn Fn(&Item<'_>) -> bool, silent: Option<f64>| -> Vec<f64> {
             let of = |band: usize| {
                 let item = items.iter().find(|item| is(item) && item.sample == Some(band));
@@ -51,12 +61,14 @@ impl Said {
             .filter(|first| units.iter().all(|unit| unit == *first))
             .map(|unit| (*unit).to_owned());
         let centres_um = numbers(&named("CENTRAL_WAVELENGTH_UM"), None);
+        let is_axis = |item: &Item<'_>| item.name.to_lowercase().contains("wavelength");
         let widths_um = numbers(&named("FWHM_UM"), None);
         let width = |(centre, width): (&f64, &f64)| 1e4 * width / (centre * centre);
         Ok(Self {
             scale: numbers(&role("scale"), Some(1.0)),
             offset: numbers(&role("offset"), Some(0.0)),
-            missing,
+            missing: missing.into_iter().collect(),
+            axis_unused: centres_um.is_empty() && items.iter().any(is_axis),
             unit: unit.filter(|unit| !unit.trim().is_empty()),
             widths_cm1: centres_um.iter().zip(&widths_um).map(width).collect(),
             centres_cm1: centres_um
@@ -65,6 +77,38 @@ impl Said {
                 .filter(|nu| *nu > 0.0 && nu.is_finite())
                 .collect(),
         })
+    }
+}
+
+impl Said {
+    /// What pages say that are the bands of one picture, each of its own.
+    ///
+    /// # Errors
+    /// Scales, offsets or units that are not those of all.
+    pub(super) fn of_pages(mut pages: Vec<Self>) -> Result<Self> {
+        if pages.len() < 2 {
+            return Ok(pages.pop().unwrap_or_default());
+        }
+        let scaled = pages.iter().any(|page| !(page.scale.is_empty() && page.offset.is_empty()));
+        let differ = pages.windows(2).any(|pair| pair[0].unit != pair[1].unit);
+        if scaled || differ {
+            let found = format!("{} pages with a scale, an offset or a unit of their own", pages.len());
+            return Err(Error::malformed(
+                found,
+                "write one page with all bands, or name one as the variable",
+            ));
+        }
+        let axis_unused = pages.iter().any(|page| page.axis_unused);
+        let mut all = Self { axis_unused, ..Self::default() };
+        for page in pages {
+            all.unit = page.unit;
+            all.centres_cm1.extend(page.centres_cm1);
+            all.widths_cm1.extend(page.widths_cm1);
+            all.missing.extend(page.missing);
+        }
+        all.missing.sort_by(f64::total_cmp);
+        all.missing.dedup();
+        Ok(all)
     }
 }
 

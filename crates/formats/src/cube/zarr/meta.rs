@@ -137,7 +137,7 @@ impl Meta {
             prefix: if is_2 { "" } else { "c" },
             separator,
             attributes: said(&array["attributes"]),
-            fill: None,
+            fill: number(&array["fill_value"]),
             dimensions: names(&array["dimension_names"]),
         }
         .checked()
@@ -161,7 +161,7 @@ impl Meta {
         Ok(self)
     }
 
-    /// What the numbers stand for. A number that arrays of version 2 are filled with stands for nothing, unless it is 0.
+    /// What the numbers stand for. A number that arrays are filled with stands for nothing, unless it is 0.
     pub(super) fn values(&self) -> Result<Option<Values>> {
         let filled = self.fill.filter(|fill| *fill != 0.0 && fill.is_finite());
         match filled {
