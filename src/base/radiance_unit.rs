@@ -278,7 +278,7 @@ impl Reader<'_> {
             return Ok(Product { factor, ..NOTHING });
         }
         self.rest = rest;
-        named(name).ok_or_else(|| format!("what is `{}`?", shown(name)))
+        named(name).ok_or_else(|| unknown(name))
     }
 
     /// The power of what was read, if one stands behind it.
@@ -310,6 +310,25 @@ impl Reader<'_> {
 /// What follows a word, if a text begins with it.
 fn word<'a>(text: &'a str, word: &str) -> Option<&'a str> {
     text.strip_prefix(word).filter(|rest| rest.starts_with([' ', '(']))
+}
+
+/// What is said of a name that is none, with those that are like it.
+fn unknown(name: &str) -> String {
+    let prefixed = |(own, _, _, _, takes_prefix): &(&str, usize, f64, i32, bool)| -> Vec<String> {
+        // `cm` and `centimetre`, not `centim`.
+        let suits = |prefix: &str| *takes_prefix && (prefix.len() > 1) == (own.len() > 2);
+        let prefixes = PREFIXES.iter().filter(|(prefix, _)| prefix.is_empty() || suits(prefix));
+        prefixes.map(|(prefix, _)| format!("{prefix}{own}")).collect()
+    };
+    let names: Vec<String> =
+        NAMES.iter().flat_map(prefixed).chain(FLICKS.iter().map(|(flick, _)| (*flick).to_owned())).collect();
+    let as_long = names.iter().map(String::as_str).filter(|own| own.len().abs_diff(name.len()) < 3);
+    match Error::unknown_name("unit", &shown(name), as_long) {
+        Error::UnknownName { name, nearest, .. } if !nearest.is_empty() => {
+            format!("what is `{name}`? The nearest are `{}`", nearest.join("`, `"))
+        }
+        _ => format!("what is `{}`?", shown(name)),
+    }
 }
 
 fn named(name: &str) -> Option<Product> {
@@ -405,6 +424,8 @@ mod tests {
             ("K", "what is `K`"),
             ("m-2 sr-1 um-1", "neither one power"),
             ("DN", "what is `DN`"),
+            ("micrflick", "`microflick`"),
+            ("W m-2 sr-1 per cn^-1", "`cm`"),
             ("photons m-2 sr-1 um-1", "not per area and per"),
             ("W m-2 sr-1 furlong-1", "what is `furlong`"),
             ("W m-2 sr-1 (um-1", "not closed"),

@@ -35,7 +35,7 @@ pub use library::Library;
 pub use manifest::ManifestFiles;
 pub use provenance::{Basis, Provenance};
 pub use table::{Fault, Table, ascending};
-pub use write::Summary;
+pub use write::{Summary, WARNING};
 
 use crate::error::{Error, Result, check};
 use dielectric::Dielectric;
@@ -170,7 +170,11 @@ impl Material {
     /// Adds what a user should know.
     #[must_use]
     pub fn warn(mut self, warnings: impl IntoIterator<Item = String>) -> Self {
-        self.warnings.extend(warnings);
+        for warning in warnings {
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
         self
     }
 

@@ -52,7 +52,7 @@ pub use holes::measured;
 use crate::file;
 use crate::foreign;
 use hadar::error::{Error, Result};
-use hadar::material::{Material, OpticalConstants};
+use hadar::material::{Material, OpticalConstants, WARNING};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -142,9 +142,17 @@ fn content(text: &str, source: &Path, beside: Option<&Path>, reading: &Reading) 
     } else {
         layout::read(&text, reading)
             .and_then(|sheet| columns::materials(&sheet, source, reading))
-            .map(Content::Materials)
+            .map(|materials| Content::Materials(warned(materials, &text)))
     };
     placed(content, source)
+}
+
+/// Materials with the warnings that a table has which was written here.
+fn warned(materials: Vec<Material>, text: &str) -> Vec<Material> {
+    let written: Vec<&str> =
+        text.lines().filter_map(|line| line.strip_prefix(WARNING)).map(str::trim).collect();
+    let warned = |material: Material| material.warn(written.iter().map(|one| (*one).to_owned()));
+    materials.into_iter().map(warned).collect()
 }
 
 /// The same, with the file where something is wrong and what is to be noticed.

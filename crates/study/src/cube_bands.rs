@@ -194,7 +194,7 @@ impl InOrder {
                 Bands::from_centers(centres)
             }
             (None, _) if self.found.axis_without_unit => Err(Error::malformed(
-                "the table is missing, and the cube's file lists its wavelengths without a unit",
+                "the table is missing, and the cube's file lists its wavelengths without a unit, or on an axis that is not read",
                 "write the unit into the file (ENVI: wavelength units = Micrometers; NPZ, MATLAB: call the list wavelengths_um), or write [bands]",
             )),
             (None, _) => Err(Error::malformed(

@@ -5,6 +5,9 @@ use crate::error::Result;
 use serde::Serialize;
 use std::fmt::Write;
 
+/// What a line begins with that says what is to be known of a spectrum, in the files that are written here.
+pub const WARNING: &str = "# warning: ";
+
 /// What a list or an import says about a material.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
@@ -59,6 +62,10 @@ impl Material {
                 let value = value.lines().collect::<Vec<_>>().join(" ");
                 let _ = writeln!(text, "# {key}: {value}");
             }
+        }
+        // What is to be known of it stays with it.
+        for warning in &self.warnings {
+            let _ = writeln!(text, "{WARNING}{}", warning.lines().collect::<Vec<_>>().join(" "));
         }
         text.push_str("wavenumber_cm1,emissivity\n");
         for (wavenumber, emissivity) in wavenumbers_cm1.iter().zip(emissivities) {

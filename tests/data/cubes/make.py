@@ -226,6 +226,17 @@ with netCDF4.Dataset("netcdf3_record_axis.nc", "w", format="NETCDF3_CLASSIC") as
     v = f.createVariable("radiance", "f4", ("frequency", "y", "x"))
     v[:] = IMAGES
     axis[:] = 299.792458 / LISTED_UM
+# A packed axis of wavelengths
+with netCDF4.Dataset("netcdf3_packed_axis.nc", "w", format="NETCDF3_CLASSIC") as f:
+    for name, size in [("wavelength", BANDS), ("y", ROWS), ("x", COLUMNS)]:
+        f.createDimension(name, size)
+    axis = f.createVariable("wavelength", "i2", ("wavelength",))
+    axis.units, axis.scale_factor, axis.add_offset = "um", 0.001, 8.0
+    axis[:] = LISTED_UM
+    v = f.createVariable("radiance", "i2", ("wavelength", "y", "x"))
+    data = np.ma.array(IMAGES)
+    data[3, 1, 2] = np.ma.masked
+    v[:] = data
 with scipy.io.netcdf_file("scipy_records.nc", "w") as f:
     for name, size in [("y", None), ("x", COLUMNS), ("band", BANDS)]:
         f.createDimension(name, size)

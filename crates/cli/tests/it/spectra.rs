@@ -190,3 +190,24 @@ fn names_that_clash_are_told_apart() {
         3
     );
 }
+
+/// What is to be known of a spectrum stays with what is imported of it.
+#[test]
+fn an_import_keeps_the_warnings() {
+    let folder = Folder::with("");
+    let rows: String = (0..80)
+        .map(|i| {
+            format!(
+                "{},{}\n",
+                700 + 8 * i,
+                if i == 9 { "nan".into() } else { format!("{}", 0.9 + 0.002 * f64::from(i % 3)) }
+            )
+        })
+        .collect();
+    folder.file("noisy.csv", &format!("wavenumber_cm1,emissivity\n{}", rows));
+    folder.json(&["materials", "import", "noisy.csv", "--clip", "0", "--out", "lib"]);
+    let text = std::fs::read_to_string(folder.path().join("lib/noisy.csv")).unwrap();
+    assert!(text.contains("# warning: 1 row without a number left out"), "{text}");
+    let shown = folder.json(&["materials", "show", "noisy", "--library", "lib"]);
+    assert!(shown.to_string().contains("1 row without a number left out"), "{shown}");
+}

@@ -39,11 +39,9 @@ impl Attributes {
         self.0.iter().find(|(name, _)| name.eq_ignore_ascii_case(key)).map(|(_, value)| value)
     }
 
-    /// The same, of which a number means that nothing was measured.
-    #[cfg(feature = "zarr")]
-    pub(super) fn with_missing(mut self, number: f64) -> Self {
-        self.0.push(("missing_value".to_owned(), Attribute::Floating(vec![number])));
-        self
+    /// Whether there is an attribute of this name.
+    pub(super) fn says(&self, key: &str) -> bool {
+        self.get(key).is_some()
     }
 
     pub(super) fn text(&self, key: &str) -> Option<&str> {
@@ -80,6 +78,11 @@ impl Attributes {
 
     /// What the numbers stand for.
     pub(super) fn values(&self, stored: Stored) -> Result<Option<Values>> {
+        self.values_with(stored, None)
+    }
+
+    /// The same where one more number may mean that nothing was measured.
+    pub(super) fn values_with(&self, stored: Stored, filled: Option<f64>) -> Result<Option<Values>> {
         let wrong = |key: &str, found: String, instead: &str| {
             Error::malformed(format!("the attribute is {found}"), instead).for_key(key)
         };
@@ -105,6 +108,7 @@ impl Attributes {
         let unsigned = if self.says_unsigned() { (8.0 * stored.size() as f64).exp2() } else { 0.0 };
         let of_bits = |value: f64| if value < 0.0 { value + unsigned } else { value };
         let mut missing = [numbers("_FillValue")?, numbers("missing_value")?].concat();
+        missing.extend(filled);
         missing.iter_mut().for_each(|value| *value = of_bits(*value));
         // Whether NetCDF wrote the file is not asked: no reading is of that value.
         if missing.is_empty() && matches!(stored, Stored::F32 | Stored::F64) {

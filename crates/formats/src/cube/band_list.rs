@@ -4,6 +4,8 @@
 //! (or several of them) with a unit behind it, as in `wavelengths_um`. A unit is not guessed: of a list without one it is only
 //! said that there is one.
 
+use super::attributes::Attributes;
+use super::stored::Stored;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 
@@ -48,6 +50,19 @@ pub(super) fn in_unit(unit: &str, numbers: &[f64]) -> Option<Vec<f64>> {
     let unit = SpectralUnit::spelt(unit)?;
     let centres: Vec<f64> = numbers.iter().map(|number| unit.wavenumber_cm1(*number)).collect();
     centres.iter().all(|centre| *centre > 0.0 && centre.is_finite()).then_some(centres)
+}
+
+/// The numbers of a list as its attributes say what they stand for, and its unit; none where they do not say it, or a number is missing.
+pub(super) fn said_by(
+    attributes: &Attributes,
+    stored: Stored,
+    mut numbers: Vec<f64>,
+) -> Option<(String, Vec<f64>)> {
+    let unit = attributes.text("units")?.to_owned();
+    if let Some(values) = attributes.values(stored).ok()? {
+        values.of_stored(&mut numbers, 1);
+    }
+    Some((unit, numbers))
 }
 
 /// Widths of bands, cm⁻¹, from their centres and widths in a unit; none where one is no width of a band.

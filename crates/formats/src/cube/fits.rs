@@ -80,7 +80,9 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let mut found = Found { variable: Some(name), axes, unit, ..found };
     values.iter().for_each(|values| values.tell(&mut found));
     if let Some(axis) = spectral {
-        found.centres_cm1 = axis.unit.as_deref().and_then(|unit| {
+        // Centres are of the axis that is that of the bands, and of no other.
+        let is_of_bands = usual.is_some() && axes == usual;
+        found.centres_cm1 = axis.unit.as_deref().filter(|_| is_of_bands).and_then(|unit| {
             let places = (1..=shape.bands()).map(|pixel| axis.at(pixel as f64)).collect::<Vec<_>>();
             band_list::in_unit(unit, &places)
         });

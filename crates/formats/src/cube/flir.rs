@@ -6,8 +6,8 @@
 //!   n + O = R1 / (R2 (exp(B/T) − F)),      T = B / ln(R1/(R2 (n + O)) + F):
 //!
 //! T is the temperature of a blackbody that is read as n, K. In a JPEG the block stands in pieces, in APP1 segments that begin with `FLIR`.
-//! The arrays of a file are `raw` (n, in proportion to radiance but for an offset) and `temperature` (T, of the radiance as it arrives: what the
-//! camera was told of emissivity, air and surroundings is not used); of a sequence `raw[0]`, `temperature[0]` and so on.
+//! The arrays of a file are `signal` (n + O, which is in proportion to radiance) and `temperature` (T, of the radiance as it arrives: what the
+//! camera was told of emissivity, air and surroundings is not used); of a sequence `signal[0]`, `temperature[0]` and so on.
 //!
 //! Sources: tags of ExifTool ('FLIR Tags', P. Harvey), FLIR's A3xx/A6xx streaming format.
 
@@ -19,6 +19,7 @@ use super::axes::Axes;
 use super::found::{Found, Opened};
 use super::image::Image;
 use super::stored::Stored;
+use super::values::{ALL_VALID, Values};
 use hadar::error::{Error, Result};
 use std::fs::File;
 use std::path::Path;
@@ -31,7 +32,7 @@ const LONGEST: u64 = 1 << 28;
 /// Frames that are counted.
 const MOST: usize = 1_000_000;
 
-const RAW: &str = "raw";
+const SIGNAL: &str = "signal";
 const TEMPERATURE: &str = "temperature";
 
 /// Opens a JPEG picture.
@@ -59,7 +60,14 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let mut starts = Vec::new();
     let mut place = 0;
     while place < len && starts.len() < MOST {
-        let Some(start) = Block::next(&bytes, place)? else { break };
+        let Some(start) = Block::next(&bytes, place)? else {
+            // What is behind the last frame is short; more may be frames that are not found.
+            if len - place > block::GAP {
+                let found = format!("{} bytes behind frame {} are no frame", len - place, starts.len());
+                return Err(damaged(found));
+            }
+            break;
+        };
         place = Block::read(&bytes, start)?.end;
         starts.push(start);
     }
@@ -85,15 +93,19 @@ fn frame(
     let readings = block.readings(&bytes)?;
     let sides = [readings.rows, readings.columns];
     let shape = Axes::default().shape(&sides)?;
+    let camera = block.camera(&bytes)?;
+    let mut values = None;
     let (numbers, stored, unit) = match what {
-        RAW => (readings.numbers, Stored::U16, "DN"),
+        SIGNAL => {
+            values = Values::new(None, Some(vec![camera.offset()]), Vec::new(), ALL_VALID);
+            (readings.numbers, Stored::U16, "DN")
+        }
         _ => {
-            let camera = block.camera(&bytes)?;
             let kelvin = readings.numbers.iter().map(|number| camera.temperature_k(*number)).collect();
             (kelvin, Stored::F64, "K")
         }
     };
-    let image = Image { format, shape, order: Axes::default(), stored, numbers, values: None };
+    let image = Image { format, shape, order: Axes::default(), stored, numbers, values };
     let opened = image.opened(&sides)?;
     let variable = if starts.len() > 1 { format!("{what}[{number}]") } else { what.to_owned() };
     let found = Found { variable: Some(variable), unit: Some(unit.to_owned()), ..opened.found };
@@ -102,18 +114,34 @@ fn frame(
 
 /// What is asked for, and of which frame.
 fn asked(name: Option<&str>, frames: usize) -> Result<(&'static str, usize)> {
-    let numbers = || (0..frames).flat_map(|frame| [RAW, TEMPERATURE].map(|what| (what, frame)));
-    let called =
-        |(what, frame): (&str, usize)| if frames > 1 { format!("{what}[{frame}]") } else { what.to_owned() };
+    let asked = |name: &str| {
+        let what = [SIGNAL, TEMPERATURE].into_iter().find(|what| name.starts_with(what))?;
+        let rest = name.strip_prefix(what)?;
+        let number = match rest {
+            "" if frames <= 1 => Some(0),
+            _ if frames <= 1 => None,
+            _ => rest.strip_prefix('[')?.strip_suffix(']')?.parse().ok(),
+        };
+        number.filter(|number| *number < frames.max(1)).map(|number| (what, number))
+    };
+    let last = frames.saturating_sub(1);
     match name {
-        None if frames <= 1 => Ok((RAW, 0)),
+        None if frames <= 1 => Ok((SIGNAL, 0)),
         None => Err(Error::malformed(
             format!("the file has {frames} frames"),
-            format!("name one as the variable, as in \"{RAW}[0]\" or \"{TEMPERATURE}[{}]\"", frames - 1),
+            format!("name one as the variable, as in \"{SIGNAL}[0]\" or \"{TEMPERATURE}[{last}]\""),
         )),
-        Some(name) => numbers().find(|one| called(*one) == name).ok_or_else(|| {
-            let shown: Vec<String> = numbers().take(4).map(called).collect();
-            Error::unknown_name("variable", name, shown.iter().map(String::as_str))
+        Some(name) => asked(name).ok_or_else(|| {
+            let known = match frames {
+                0 | 1 => format!("`{SIGNAL}` and `{TEMPERATURE}`"),
+                _ => format!(
+                    "`{SIGNAL}[0]` to `{SIGNAL}[{last}]`, and `{TEMPERATURE}[0]` to `{TEMPERATURE}[{last}]`"
+                ),
+            };
+            Error::malformed(
+                format!("there is no variable `{}`", name.escape_debug()),
+                format!("the file has {known}"),
+            )
         }),
     }
 }

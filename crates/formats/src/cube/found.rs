@@ -162,7 +162,9 @@ impl fmt::Display for Found {
             more.push(format!("axes {axes}"));
         }
         if !self.missing.is_empty() {
-            let numbers: Vec<String> = self.missing.iter().map(f64::to_string).collect();
+            let number =
+                |value: &f64| if value.abs() < 1e15 { value.to_string() } else { format!("{value:e}") };
+            let numbers: Vec<String> = self.missing.iter().map(number).collect();
             more.push(format!("{} taken as missing", numbers.join(" and ")));
         }
         if let Some([least, most]) = self.valid {

@@ -12,6 +12,7 @@ use super::axes::Axes;
 use super::choice::one_of_frames;
 use super::found::{Found, Opened};
 use super::image::Image;
+use super::raw::MAX_INFLATION;
 use super::stored::Stored;
 use super::values::{ALL_VALID, Values};
 use hadar::error::{Error, Result};
@@ -21,8 +22,6 @@ use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
-/// Most that one byte of a packed strip can stand for (RFC 1951: 258 bytes in two bits).
-const MAX_INFLATION: u64 = 1032;
 /// Pages that are looked at.
 const MOST: usize = 100_000;
 

@@ -20,15 +20,12 @@ use super::axes::Axes;
 use super::choice::{Listed, choose};
 use super::found::{Found, Opened};
 use super::packed;
-use super::raw::Raw;
+use super::raw::{MAX_INFLATION, Raw};
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hdf5_pure::Layout;
 use std::fs::File;
 use std::path::Path;
-
-/// Most that one byte of a packed chunk can stand for (RFC 1951: 258 bytes in two bits).
-const MAX_INFLATION: u64 = 1032;
 
 /// Opens a file whose first bytes have been seen.
 pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axes>) -> Result<Opened> {

@@ -33,8 +33,11 @@ pub fn cubes_in(folder: &Path) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let hidden = path.file_name().is_none_or(|name| name.to_string_lossy().starts_with('.'));
+        // Of several files of one stem only that is left out which the header is of.
         let header = envi_header::header_of(&path).filter(|header| *header != path);
-        if !hidden && is_called_so(&path) && header.is_none() && (path.is_file() || is_zarr(&path)) {
+        let is_data =
+            header.is_some_and(|header| envi_header::data_of(&header).is_ok_and(|data| data == path));
+        if !hidden && is_called_so(&path) && !is_data && (path.is_file() || is_zarr(&path)) {
             cubes.push(path);
         }
     }

@@ -50,7 +50,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let axes = axes.or_else(by_name);
     let order = axes.unwrap_or_default();
     let shape = order.shape(&sides).map_err(of_variable)?;
-    let values = variable.attributes.values(stored).map_err(of_variable)?;
+    let values = variable.attributes.values_with(stored, variable.filled()).map_err(of_variable)?;
     let found = Found::array("NetCDF-3", shape, stored.name(), &sides);
     let mut found =
         Found { variable: Some(variable.name.clone()), axes, unit: variable.attributes.unit(), ..found };
@@ -143,9 +143,9 @@ impl Header {
                 read_at(file, path, &mut word, at)
                     .map(|()| decode(&word, stored, false, std::slice::from_mut(number)))
             };
-            let unit = variable.attributes.text("units").unwrap_or_default();
             if numbers.iter_mut().enumerate().try_for_each(&mut read).is_ok()
-                && let Some(centres) = band_list::in_unit(unit, &numbers)
+                && let Some((unit, numbers)) = band_list::said_by(&variable.attributes, stored, numbers)
+                && let Some(centres) = band_list::in_unit(&unit, &numbers)
             {
                 return (Some(centres), false);
             }

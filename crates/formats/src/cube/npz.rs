@@ -9,6 +9,7 @@ use super::axes::Axes;
 use super::band_list;
 use super::found::{Found, Opened};
 use super::npy::{self, Array};
+use super::raw::MAX_INFLATION;
 use super::stored::decode_next;
 use super::{READ_CUBE, arrange};
 use hadar::cube::{Cube, MemoryCube, Sample};
@@ -22,8 +23,6 @@ use zip::{CompressionMethod, ZipArchive};
 
 /// Arrays that are looked at where none is named.
 const MOST: usize = 1000;
-/// Most that one byte of a deflate stream can stand for (RFC 1951: 258 bytes in two bits).
-const MAX_INFLATION: u64 = 1032;
 const FORMAT: &str = "NPZ";
 
 /// Opens an archive.

@@ -93,7 +93,7 @@ pub fn open(path: &Path, variable: Option<&str>) -> Result<Cube> {
 /// * FITS, the image of the file or an extension: `BSCALE`, `BZERO`, `BLANK`, `BUNIT` and a linear spectral axis are read;
 /// * NetCDF of the classic kinds and Zarr of versions 2 and 3, with the attributes of NetCDF;
 /// * TIFF and GeoTIFF: samples of a page, or pages, are bands;
-/// * radiometric JPEG, FFF and SEQ of FLIR (`variable` is `raw` or `temperature`), HCC of Telops: one frame is one band;
+/// * radiometric JPEG, FFF and SEQ of FLIR (`variable` is `signal` or `temperature`), HCC of Telops: one frame is one band;
 /// * MATLAB of version 5 (`save` with `-v6` or `-v7`); in NPZ and MATLAB a list `wavelengths_um`, `wavenumbers_cm1` or in another
 ///   unit, of as many numbers as there are bands, says where they are;
 /// * with the feature `hdf5`, HDF5, NetCDF-4 and MATLAB of version 7.3: `_FillValue`, `scale_factor` and `add_offset` are

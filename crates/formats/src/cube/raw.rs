@@ -16,6 +16,8 @@ use std::marker::PhantomData;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+/// Most that one byte of a packed stream can stand for (RFC 1951: 258 bytes in two bits).
+pub(super) const MAX_INFLATION: u64 = 1032;
 /// Bytes of a run below which many runs are read at once, with what lies between them.
 const SHORT_RUN: usize = 1 << 12;
 /// Bytes that are then read at once.

@@ -33,8 +33,6 @@ const COUNTS: &[&str] = &[
     "unknown",
     "n/a",
 ];
-const TEMPERATURES: &[&str] =
-    &["k", "mk", "ck", "degk", "°k", "c", "degc", "degreec", "degreesc", "°c", "℃", "f", "degf", "°f"];
 /// What a word holds that names one.
 const TEMPERATURE_WORDS: &[&str] = &["kelvin", "celsius", "centigrade", "fahrenheit", "temperature"];
 const SHARE_WORDS: &[&str] = &[
@@ -65,6 +63,7 @@ impl SampleUnit {
     /// use hadar_formats::cube::SampleUnit;
     /// assert_eq!(SampleUnit::spelt("Photon counts"), SampleUnit::Counts);
     /// assert_eq!(SampleUnit::spelt("0.01 K"), SampleUnit::Temperature);
+    /// assert_eq!(SampleUnit::spelt("0.01*K"), SampleUnit::Temperature);
     /// assert_eq!(SampleUnit::spelt("toa_brightness_temperature"), SampleUnit::Temperature);
     /// assert_eq!(SampleUnit::spelt("%"), SampleUnit::Share);
     /// assert_eq!(SampleUnit::spelt("W m-2 sr-1 um-1"), SampleUnit::Other);
@@ -80,7 +79,7 @@ impl SampleUnit {
         let factors = parts.iter().take_while(|part| is_factor(part)).count();
         let unit = parts.get(factors..).unwrap_or_default().concat();
         let holds = |words: &[&str]| words.iter().any(|word| unit.contains(word));
-        if TEMPERATURES.contains(&unit.as_str()) || holds(TEMPERATURE_WORDS) {
+        if TemperatureUnit::spelt(text).is_some() || holds(TEMPERATURE_WORDS) {
             Self::Temperature
         } else if holds(SHARE_WORDS) {
             Self::Share
@@ -100,6 +99,9 @@ pub struct TemperatureUnit {
 }
 
 impl TemperatureUnit {
+    /// K.
+    pub const KELVIN: Self = Self { kelvin: 1.0, zero_k: 0.0 };
+
     /// The unit of a spelling, with a factor and with what the temperatures are of before it: `K`, `0.01 K`, `mK`, `degC`, `brightness temperature (K)`.
     ///
     /// ```

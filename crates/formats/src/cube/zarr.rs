@@ -28,6 +28,8 @@ use std::path::{Path, PathBuf};
 /// Groups within groups, and arrays, that are looked at.
 const MOST_DEPTH: usize = 8;
 const MOST_ARRAYS: usize = 1000;
+/// Chunks of an array.
+const MOST_CHUNKS: usize = 1_000_000;
 
 /// An array, and where its chunks are.
 #[derive(Debug)]
@@ -73,15 +75,16 @@ pub(super) fn open(path: &Path, name: Option<&str>, axes: Option<Axes>) -> Resul
     let variable = (!name.is_empty()).then(|| name.clone());
     let mut found = Found { variable, axes, unit: meta.attributes.unit(), ..found };
     values.iter().for_each(|values| values.tell(&mut found));
-    let dimension =
-        axes.and_then(|_| meta.dimensions.iter().find(|name| band_list::is_axis(name))).map(String::as_str);
-    (found.centres_cm1, found.axis_without_unit) = axis_of(shape.bands(), dimension);
     let chunk = meta.chunk.first().copied().unwrap_or(1);
     let array = Array { folder, meta, values };
-    let (absent, of) = array.absent();
+    let (absent, of) = array.absent().map_err(of_array)?;
     if absent == of {
         return Err(of_array(damaged("none of its chunks is there")));
     }
+    let dimension = axes
+        .and_then(|_| array.meta.dimensions.iter().find(|name| band_list::is_axis(name)))
+        .map(String::as_str);
+    (found.centres_cm1, found.axis_without_unit) = axis_of(shape.bands(), dimension);
     found.absent_chunks = absent;
     let (cube, memory_bytes) = packed::cube(array, shape, order, chunk).map_err(of_array)?;
     found.memory_bytes = memory_bytes;
@@ -140,8 +143,8 @@ fn band_axis(
         let array = Array { folder: path.clone(), meta: meta.clone(), values: None };
         let mut numbers = vec![0.0_f64; bands];
         if array.slices(0, bands, &mut numbers).is_ok()
-            && let Some(centres) =
-                meta.attributes.text("units").and_then(|unit| band_list::in_unit(unit, &numbers))
+            && let Some((unit, numbers)) = band_list::said_by(&meta.attributes, meta.stored, numbers)
+            && let Some(centres) = band_list::in_unit(&unit, &numbers)
         {
             return (Some(centres), false);
         }
@@ -156,11 +159,20 @@ impl Array {
     }
 
     /// How many chunks are not there, of how many.
-    fn absent(&self) -> (usize, usize) {
+    ///
+    /// # Errors
+    /// More than anybody has.
+    fn absent(&self) -> Result<(usize, usize)> {
         let counts = self.counts();
-        let all: usize = counts.iter().product();
-        let absent = |number: &usize| !self.folder.join(self.meta.key(&places(*number, &counts))).is_file();
-        ((0..all).filter(absent).count(), all)
+        let all = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
+        let Some(all) = all.filter(|all| *all <= MOST_CHUNKS) else {
+            return Err(damaged(format!("it announces more than {MOST_CHUNKS} chunks")));
+        };
+        let absent = |number: &usize| {
+            hadar::stop::check();
+            !self.folder.join(self.meta.key(&places(*number, &counts))).is_file()
+        };
+        Ok(((0..all).filter(absent).count(), all))
     }
 
     /// The numbers of a chunk, in the order of the array's dimensions; none of one that is not there.

@@ -62,7 +62,8 @@ pub(super) fn beyond(emissivity: f64) -> f64 {
 fn clipped(table: Table<1>, by: f64) -> Result<(Table<1>, String)> {
     let all: Vec<(f64, f64)> = table.rows().map(|(wavenumber, [e])| (wavenumber, e)).collect();
     let mut said = Vec::new();
-    let is_noise = |e: f64| beyond(e) > 0.0 && beyond(e) <= by;
+    // 1.02 is outside by 0.02, whatever it is rounded to.
+    let is_noise = |e: f64| beyond(e) > 0.0 && beyond(e) <= by + 1e-12;
     let noise = all.iter().filter(|row| is_noise(row.1));
     if let Some((at, worst)) = noise.clone().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1))) {
         said.push(format!(
@@ -100,8 +101,7 @@ struct Bridged {
     widest: Option<(f64, f64)>,
 }
 
-/// One row without a number alone is left out, several where they are in a narrow gap or at an end; in a wide gap they stay, so that
-/// nothing is known there.
+/// Rows without a number are left out in a narrow gap or at an end; in a wide gap they stay, so that nothing is known there.
 fn bridged(all: &[(f64, f64)]) -> Bridged {
     let mut bridged = Bridged::default();
     let width = |gap: Option<(f64, f64)>| gap.map_or(0.0, |(low, high)| high - low);
@@ -110,7 +110,7 @@ fn bridged(all: &[(f64, f64)]) -> Bridged {
         behind = behind.get(run.len()..).unwrap_or_default();
         let is_hole = run.first().is_some_and(|row| row.1.is_nan());
         let gap = bridged.rows.last().zip(behind.first()).map(|(low, high)| (low.0, high.0));
-        if !is_hole || run.len() > 1 && width(gap) > WIDEST_GAP_CM1 {
+        if !is_hole || width(gap) > WIDEST_GAP_CM1 {
             bridged.rows.extend(run);
             continue;
         }
@@ -156,19 +156,22 @@ mod tests {
     #[test]
     fn noise_is_cut_and_holes_are_left_out_and_both_are_said() {
         let noisy =
-            [(800.0, -0.013), (850.0, 0.5), (900.0, f64::NAN), (1000.0, 1.004), (1100.0, 1.2), (1300.0, 0.9)];
+            [(800.0, -0.013), (850.0, 0.5), (860.0, f64::NAN), (868.0, 1.02), (1100.0, 1.2), (1300.0, 0.9)];
         let found = checked(table(&noisy), Some(0.02)).unwrap();
         let rows: Vec<(f64, f64)> = found.table.rows().map(|(x, [e])| (x, e)).collect();
-        assert_eq!(rows, [(800.0, 0.0), (850.0, 0.5), (1000.0, 1.0), (1100.0, 1.2), (1300.0, 0.9)]);
+        assert_eq!(rows, [(800.0, 0.0), (850.0, 0.5), (868.0, 1.0), (1100.0, 1.2), (1300.0, 0.9)]);
         assert_eq!(
             found.note,
-            "2 rows outside 0 to 1 clipped, the worst by 0.013 at 800.0 cm^-1 (clip 0.02); 1 row without a number left out, the \
-             widest gap from 850.0 to 1000.0 cm^-1 is bridged"
+            "2 rows outside 0 to 1 clipped, the worst by 0.020 at 868.0 cm^-1 (clip 0.02); 1 row without a number left out, the \
+             widest gap from 850.0 to 868.0 cm^-1 is bridged"
         );
         assert!(found.warnings[1].contains("1 rows from 1100.0 to 1100.0"), "{:?}", found.warnings);
         // Nothing to do, nothing said.
         let plain = checked(table(&[(700.0, 0.5), (1300.0, 0.6)]), Some(0.02)).unwrap();
         assert_eq!((plain.note.as_str(), plain.warnings.len()), ("", 0));
+        // One row alone is no narrower gap than its neighbours make it.
+        let alone = [(800.0, 0.9), (1000.0, f64::NAN), (1200.0, 0.9)];
+        assert_eq!(checked(table(&alone), Some(0.0)).unwrap().table.rows().count(), 3);
         // A narrow gap is bridged, a wide one is not, what is at an end is left off.
         let hole = |to: f64| {
             let rows = [

@@ -38,8 +38,7 @@ pub(super) fn check(parse: Parse, bytes: &[u8]) {
         assert!(read(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());
     }
     let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6);
-    let config = ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() };
-    proptest!(config, |(changes in changes)| {
+    proptest!(hadar_testing::seeded(46, 2000), |(changes in changes)| {
         let mut other = bytes.to_vec();
         for (at, byte) in changes {
             other[at.index(bytes.len())] = byte;

@@ -222,6 +222,9 @@ fn points(bytes: Bytes<'_>, block: Block, parameters: &Parameters) -> Result<Vec
         return Err(Error::malformed(found, FETCH_AGAIN));
     }
     let factor = parameters.numbers.get("CSF").copied().unwrap_or(1.0);
+    if factor == 0.0 || !factor.is_finite() {
+        return Err(Error::malformed(format!("CSF is {factor}, which makes all values one"), FETCH_AGAIN));
+    }
     let values = bytes.numbers(block.at, count as usize, kind)?;
     let step = (last - first) / (count - 1.0);
     // The largest and the smallest value are among the parameters.
@@ -230,10 +233,10 @@ fn points(bytes: Bytes<'_>, block: Block, parameters: &Parameters) -> Result<Vec
         ("MNY", values.iter().copied().fold(f64::INFINITY, f64::min)),
     ] {
         if let Some(&due) = parameters.numbers.get(name)
-            && ((own - due).abs() > ROUNDED * due.abs().max(1.0))
-            && ((own * factor - due).abs() > ROUNDED * due.abs().max(1.0))
+            && (own * factor - due).abs() > ROUNDED * due.abs().max(1.0)
         {
-            let found = format!("{own} is the extreme of the values where {name} of the file is {due}");
+            let found =
+                format!("{} is the extreme of the values where {name} of the file is {due}", own * factor);
             return Err(Error::malformed(found, FETCH_AGAIN));
         }
     }

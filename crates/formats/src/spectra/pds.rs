@@ -83,12 +83,18 @@ impl<'a> Field<'a> {
     fn read(text: &'a str) -> Result<Self> {
         let one = |tag: &'a str| inner(text, tag).next().map_or("", str::trim);
         let whole = |tag: &'a str| whole(one(tag), tag);
+        // What is stored is not what is meant.
+        if let Some(tag) = ["scaling_factor", "value_offset"].into_iter().find(|tag| !one(tag).is_empty()) {
+            let found = format!("a {tag} of the field `{}`", one_line(one("name")));
+            return Err(Error::malformed(found, "write a table wavelength_um,reflectance of it"));
+        }
+        let missing = one("missing_constant");
         Ok(Self {
             name: one("name"),
             unit: one("unit"),
             place: whole("field_location")?.saturating_sub(1),
             length: whole("field_length")?,
-            missing: number(one("missing_constant")).ok(),
+            missing: if missing.is_empty() { None } else { Some(number(missing)?) },
         })
     }
 

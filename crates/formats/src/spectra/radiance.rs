@@ -12,6 +12,7 @@ mod simulated;
 
 use self::column::{Column, Unit};
 use super::header;
+use crate::cube::TemperatureUnit;
 use crate::file;
 use crate::foreign;
 use hadar::atmosphere::Atmosphere;
@@ -150,16 +151,15 @@ fn parts(cell: &str) -> (&str, &str) {
 fn unit_of(name: &str, unit: &str) -> Result<Unit> {
     let lower = format!("{name} {unit}").to_lowercase();
     let is_brightness = lower.contains("brightness");
-    let is_kelvin =
-        unit.split_whitespace().next_back().is_some_and(|word| matches!(word, "K" | "kelvin" | "Kelvin"));
-    match unit {
-        "" if is_brightness && lower.contains("temp") => Err(Error::malformed(
+    let temperature = TemperatureUnit::spelt(unit);
+    match (unit, temperature) {
+        ("", _) if is_brightness && lower.contains("temp") => Err(Error::malformed(
             "a brightness temperature without its unit",
             "write `brightness temperature [K]`",
         )),
-        "" => Ok(Unit::Silent),
-        _ if is_kelvin && is_brightness => Ok(Unit::Brightness),
-        _ if is_kelvin => {
+        ("", _) => Ok(Unit::Silent),
+        (_, Some(unit)) if is_brightness => Ok(Unit::Brightness(unit)),
+        (_, Some(_)) => {
             let found = format!("`{}`, a temperature and no radiance", one_line(unit));
             let instead = "write temperature = \"…\" for a blackbody; if these are brightness temperatures, call the column `brightness temperature [K]`";
             Err(Error::malformed(found, instead))
@@ -176,9 +176,10 @@ impl Column {
             let radiance = match unit {
                 Unit::Silent => *value,
                 Unit::Stated(unit) => value * unit.photons_per_cm1(*nu),
-                Unit::Brightness => {
+                Unit::Brightness(unit) => {
                     let at = |error: Error| error.for_key(self.name.as_str()).on_line(*line);
-                    photon_radiance(*nu, check::positive("brightness temperature", *value, "K").map_err(at)?)
+                    let kelvin = check::positive("brightness temperature", unit.kelvin(*value), "K");
+                    photon_radiance(*nu, kelvin.map_err(at)?)
                 }
             };
             Ok((*nu, radiance))

@@ -124,7 +124,10 @@ fn wavelengths(
 ) -> Result<(PathBuf, Vec<f64>, SpectralUnit)> {
     let instrument = title.split_whitespace().rev().nth(1).unwrap_or_default().to_uppercase();
     let family = SPECTROMETERS.into_iter().find(|known| instrument.starts_with(known));
-    let wanted = format!("splib07a_Wavelengths_{}_….txt", family.unwrap_or("BECK"));
+    // Another spectrometer has wavelengths of its own, called after it.
+    let letters: String = instrument.chars().take_while(char::is_ascii_alphabetic).collect();
+    let family = family.map_or(letters, str::to_owned);
+    let wanted = format!("splib07a_Wavelengths_{family}_….txt");
     let missing = |found: String| {
         let instead =
             format!("put the file of its spectrometer's wavelengths, {wanted} of the library, beside it");
@@ -142,7 +145,7 @@ fn wavelengths(
             let is_axis = record(&title).is_some_and(|title| title.to_lowercase().contains("wavelength"));
             let names =
                 format!("{title} {}", file.file_name().unwrap_or_default().to_string_lossy()).to_uppercase();
-            if is_axis && family.is_none_or(|family| names.contains(family)) {
+            if is_axis && !family.is_empty() && names.contains(&family) {
                 found.push((file, title, axis));
             }
         }

@@ -50,6 +50,9 @@ fn classic_netcdf_in_all_three_kinds() {
     }
     check("netcdf3_record_axis.nc", None, None, "f32", plain);
     says_its_bands("netcdf3_record_axis.nc", None);
+    // What nobody wrote is what NetCDF fills its type with.
+    check("netcdf3_packed_axis.nc", None, None, "i16", gap);
+    says_its_bands("netcdf3_packed_axis.nc", None);
     // Records of one variable alone stand one behind the other.
     check("scipy_records.nc", None, None, "i16", plain);
 }
@@ -64,6 +67,9 @@ fn fits_images_and_extensions() {
     let found = open("astropy_extensions.fits", Some("SCENE"), None).unwrap().found;
     assert!(near(&found.centres_cm1.unwrap(), &[800.0, 900.0, 1000.0, 1100.0, 1200.0]));
     assert_eq!(found.missing, [-32768.0]);
+    // Another axis than that of the wavelengths has none.
+    let turned = open("astropy_f4.fits", None, Some("rows,columns,bands")).unwrap().found;
+    assert_eq!((turned.centres_cm1, turned.axis_without_unit), (None, true));
     assert_eq!(open("astropy_extensions.fits", Some("MAP"), None).unwrap().cube.shape().bands(), 1);
     assert!(
         refusal("astropy_packed.fits", None, None)
@@ -124,12 +130,13 @@ fn zarr_of_both_versions_with_every_codec() {
 /// The readings of ExifTool, and T = B/ln(R1/(R2 (n + O)) + F) of them in double precision.
 #[test]
 fn radiometric_files_of_flir() {
-    let raw = [14000.0, 14100.0, 14200.0, 15000.0, 16000.0, 17000.0];
+    // The offset O of the camera is -342.
+    let raw = [13658.0, 13758.0, 13858.0, 14658.0, 15658.0, 16658.0];
     let kelvin = [429.295_521, 430.204_986, 431.111_446, 438.259_191, 446.952_562, 455.404_437];
     for (name, [number, temperature]) in [
-        ("flir.jpg", ["raw", "temperature"]),
-        ("flir.fff", ["raw", "temperature"]),
-        ("flir.seq", ["raw[0]", "temperature[0]"]),
+        ("flir.jpg", ["signal", "temperature"]),
+        ("flir.fff", ["signal", "temperature"]),
+        ("flir.seq", ["signal[0]", "temperature[0]"]),
     ] {
         let found = open(name, Some(number), None).unwrap();
         assert!(same(&samples(&found.cube), &raw), "{name}");
@@ -143,10 +150,12 @@ fn radiometric_files_of_flir() {
         assert_eq!(found.found.unit.as_deref(), Some("K"));
     }
     let second: Vec<f64> = raw.iter().map(|n| n + 100.0).collect();
-    assert!(same(&samples(&open("flir.seq", Some("raw[1]"), None).unwrap().cube), &second));
+    assert!(same(&samples(&open("flir.seq", Some("signal[1]"), None).unwrap().cube), &second));
     assert!(same(&samples(&open("flir.jpg", None, None).unwrap().cube), &raw));
-    assert!(refusal("flir.seq", None, None).contains("2 frames; name one as the variable, as in \"raw[0]\""));
-    assert!(refusal("flir.seq", Some("raw[2]"), None).contains("raw[2]"));
+    assert!(
+        refusal("flir.seq", None, None).contains("2 frames; name one as the variable, as in \"signal[0]\"")
+    );
+    assert!(refusal("flir.seq", Some("signal[2]"), None).contains("signal[2]"));
     let refused = refusal("picture.jpg", None, None);
     assert!(refused.contains("a JPEG picture without radiometry"), "{refused}");
 }
@@ -164,6 +173,32 @@ fn sequences_of_telops() {
     let raw = open("telops_raw.hcc", None, None).unwrap();
     assert!(same(&samples(&raw.cube), &(0..60).map(f64::from).collect::<Vec<_>>()));
     assert_eq!(raw.found.unit.as_deref(), Some("DN"));
+}
+
+/// A block without records ends somewhere; a flat picture has no order of bytes.
+#[test]
+fn damaged_radiometry_is_refused_in_no_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |bytes: &[u8]| {
+        let path = folder.path().join("it.seq");
+        std::fs::write(&path, bytes).unwrap();
+        hadar_formats::cube::open(&path, None).unwrap_err().to_string()
+    };
+    let mut empty = std::fs::read(path("flir.fff")).unwrap();
+    empty[0x18..0x20].fill(0);
+    assert!(
+        refused(&empty).contains("no readings") || refused(&empty).contains("frame"),
+        "{}",
+        refused(&empty)
+    );
+    let whole = std::fs::read(path("flir.fff")).unwrap();
+    let apart = [&whole[..], &[0; 70_000], &whole[..]].concat();
+    assert!(refused(&apart).contains("behind frame 1 are no frame"), "{}", refused(&apart));
+    // The constant B of 1428 K, times ten: no camera sees at 1 µm.
+    let mut odd = whole.clone();
+    let place = odd.windows(4).position(|bytes| bytes == 1428.0_f32.to_le_bytes()).unwrap();
+    odd[place..place + 4].copy_from_slice(&14_280.0_f32.to_le_bytes());
+    assert!(refused(&odd).contains("its constant B is 14280 K"), "{}", refused(&odd));
 }
 
 /// What is not read says what it is.
@@ -226,7 +261,7 @@ const FILES: [(&str, Option<&str>); 13] = [
     ("tiff_pages.tif", None),
     ("tiff_gdal.tif", None),
     ("flir.jpg", Some("temperature")),
-    ("flir.seq", Some("raw[1]")),
+    ("flir.seq", Some("signal[1]")),
     ("telops_rt.hcc", Some("1")),
     ("h5py_links.h5", Some("radiance")),
 ];

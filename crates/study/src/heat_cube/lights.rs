@@ -22,6 +22,9 @@ use hadar_scenario::MaterialRef;
 use hadar_scenario::decompose::LightSource;
 use std::path::Path;
 
+/// By how much a band may be beyond the last row, relative: rounding.
+const ROUNDED: f64 = 1e-9;
+
 impl Said<'_> {
     /// The surroundings: `lit` where they are told, else rows of the cube without what is not like the rest of them, or what is found in it.
     pub(super) fn lights(
@@ -137,11 +140,13 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
     };
     let (xs, ys): (Vec<f64>, Vec<f64>) = rows.iter().copied().unzip();
     let at = |nu: &f64| {
-        if !(*low..=*high).contains(nu) {
+        // Bands in another unit end beside the row that is meant.
+        let end = nu.max(*low).min(*high);
+        if (end - nu).abs() > ROUNDED * nu {
             let found = format!("the spectrum reaches from {low} to {high} cm^-1, the bands to {nu} cm^-1");
             return Err(Error::malformed(found, "give rows that cover the bands"));
         }
-        let value = interpolated(&xs, &ys, *nu);
+        let value = interpolated(&xs, &ys, end);
         if value < 0.0 {
             let found = format!("a radiance of {value} at {nu} cm^-1");
             return Err(Error::malformed(found, "write radiances from 0"));
@@ -154,6 +159,13 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_band_that_rounding_puts_beyond_the_last_row_has_its_value() {
+        let rows = [(800.0, 1.0), (1200.0, 3.0)];
+        assert_eq!(on_nodes(&rows, &[800.0 - 1e-13, 1_200.000_000_000_000_2]), Ok(vec![1.0, 3.0]));
+        assert!(on_nodes(&rows, &[1200.001]).is_err());
+    }
 
     #[test]
     fn a_sky_in_watts_is_that_in_photons() {

@@ -15,7 +15,7 @@ const MOST: u64 = 1000;
 const MOST_AXES: usize = 9;
 /// Kinds of spectral coordinates that are linear in what they are called after, vacuum wavelengths among them.
 const SPECTRAL: [&str; 3] = ["WAVE", "WAVN", "FREQ"];
-const METRES: [&str; 3] = ["m", "m-1", "Hz"];
+const STANDARD_UNITS: [&str; 3] = ["m", "m-1", "Hz"];
 
 /// The cards of an image.
 #[derive(Debug)]
@@ -163,7 +163,7 @@ impl Header {
             let written = self.text(&of("CUNIT")).map(str::trim).filter(|unit| !unit.is_empty());
             let unit = place
                 .filter(|_| !turned)
-                .and_then(|place| written.or(METRES.get(place).copied()))
+                .and_then(|place| written.or(STANDARD_UNITS.get(place).copied()))
                 .map(str::to_owned);
             let known = |number: Option<f64>, keyword: &str| {
                 number.ok_or_else(|| {

@@ -1,6 +1,6 @@
 //! A block of records: its readings, and the constants of its camera.
 
-use crate::cube::raw::read_at;
+use crate::cube::raw::{MAX_INFLATION, read_at};
 use crate::cube::stored::{Stored, decode};
 use hadar::error::{Error, Result};
 use std::fs::File;
@@ -16,7 +16,9 @@ const MOST: u32 = 1000;
 /// Bytes before the readings in their record.
 const BEFORE: u64 = 32;
 /// Bytes up to where the next block is looked for.
-const GAP: u64 = 1 << 16;
+pub(super) const GAP: u64 = 1 << 16;
+/// By how much the order of bytes that is meant is smoother than the other.
+const CLEARLY: f64 = 3.0;
 const READINGS: u16 = 1;
 const CAMERA: u16 = 0x20;
 
@@ -91,6 +93,11 @@ pub(super) struct Constants {
 }
 
 impl Constants {
+    /// What is in proportion to radiance: n + O.
+    pub(super) fn offset(&self) -> f64 {
+        self.o
+    }
+
     /// T = B / ln(R1/(R2 (n + O)) + F), K; no number where no blackbody is read so.
     pub(super) fn temperature_k(&self, reading: f64) -> f64 {
         let inner = self.r1 / (self.r2 * (reading + self.o)) + self.f;
@@ -102,6 +109,10 @@ impl Constants {
 impl Block {
     /// Where the next block begins, from a place on.
     pub(super) fn next(bytes: &Bytes, place: u64) -> Result<Option<u64>> {
+        let head = BLOCK.len() as u64;
+        if bytes.len().saturating_sub(place) >= head && bytes.at(place, head)? == BLOCK {
+            return Ok(Some(place));
+        }
         let count = GAP.min(bytes.len().saturating_sub(place));
         let window = bytes.at(place, count)?;
         let found = window.windows(BLOCK.len()).position(|bytes| bytes == BLOCK);
@@ -127,7 +138,8 @@ impl Block {
             return Err(damaged(format!("a block of {count} records")));
         }
         let lines = bytes.at(start.saturating_add(list), u64::from(count) * LINE)?;
-        let mut block = Self { records: Vec::new(), end: start + list + u64::from(count) * LINE };
+        let listed = list.saturating_add(u64::from(count) * LINE);
+        let mut block = Self { records: Vec::new(), end: start.saturating_add(listed.max(HEAD)) };
         for line in lines.chunks_exact(LINE as usize) {
             let kind = u16_at(line, 0, little_endian).unwrap_or(0);
             let (place, length) = (u64::from(number(line, 0x0c)), u64::from(number(line, 0x10)));
@@ -135,8 +147,8 @@ impl Block {
             if kind == 0 || length == 0 {
                 continue;
             }
-            let record = Record { kind, place: start + place, length };
-            block.end = block.end.max(record.place + length);
+            let record = Record { kind, place: start.saturating_add(place), length };
+            block.end = block.end.max(record.place.saturating_add(length));
             block.records.push(record);
         }
         Ok(block)
@@ -184,6 +196,13 @@ impl Block {
         let constants =
             Constants { r1: float(0x58), b_k: float(0x5c), f: float(0x60), o: offset, r2: float(0x30c) };
         let Constants { r1, r2, b_k, f, o } = constants;
+        // B is hc/(kλ) of the middle of the band: 14 388 µm K by 2 to 20 µm.
+        if !(700.0..8000.0).contains(&b_k) {
+            return Err(damaged(format!(
+                "its constant B is {b_k} K, of a camera that sees at {:.2} um",
+                14387.8 / b_k
+            )));
+        }
         if [r1, r2, b_k].iter().any(|one| !(*one > 0.0 && one.is_finite()))
             || !f.is_finite()
             || !o.is_finite()
@@ -204,6 +223,9 @@ fn of_png(png: &[u8], rows: usize, columns: usize) -> Result<Vec<f64>> {
     if (info.width as usize, info.height as usize) != (columns, rows) || !is_such {
         return Err(damaged("the picture of its readings is no grey one of 16 bits and their size"));
     }
+    if (2 * rows * columns) as u64 > (png.len() as u64).saturating_mul(MAX_INFLATION) {
+        return Err(damaged("it announces more readings than it can stand for"));
+    }
     let mut bytes = vec![0; 2 * rows * columns];
     reader.next_frame(&mut bytes).map_err(damaged)?;
     let numbers = |little_endian| {
@@ -214,7 +236,14 @@ fn of_png(png: &[u8], rows: usize, columns: usize) -> Result<Vec<f64>> {
     // Neighbours are alike in the order that is meant: their greater bytes change less.
     let uneven = |numbers: &[f64]| numbers.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>();
     let [little, big] = [numbers(true), numbers(false)];
-    Ok(if uneven(&little) <= uneven(&big) { little } else { big })
+    match (uneven(&little), uneven(&big)) {
+        (own, other) if own < other && CLEARLY * own <= other => Ok(little),
+        (other, own) if own < other && CLEARLY * own <= other => Ok(big),
+        _ => Err(Error::malformed(
+            "its readings are a PNG picture of which neither order of bytes is the smoother one by far",
+            "write them as 16-bit TIFF with FLIR's own program",
+        )),
+    }
 }
 
 /// The order of bytes in a record, whose first number is small.

@@ -1,5 +1,7 @@
 //! What GDAL says beside a picture of its samples.
 
+use crate::cube::band_list;
+use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use std::fs::File;
 use std::io::BufReader;
@@ -8,7 +10,7 @@ use tiff::tags::Tag;
 
 /// Metadata as `<Item name="…" sample="…" role="…">value</Item>`, and the number for nothing.
 const METADATA: Tag = Tag::Unknown(42112);
-const NOTHING: Tag = Tag::Unknown(42113);
+const NODATA: Tag = Tag::Unknown(42113);
 
 /// What is said, a number for each band where all of them have one.
 #[derive(Debug, Default)]
@@ -29,7 +31,7 @@ impl Said {
             let value = decoder.find_tag(tag).map_err(damaged)?;
             Ok(value.and_then(|value| value.into_string().ok()).unwrap_or_default())
         };
-        let missing = text(NOTHING)?
+        let missing = text(NODATA)?
             .trim_matches(['\0', ' ', '\n'])
             .parse()
             .ok()
@@ -38,11 +40,16 @@ impl Said {
         let items: Vec<Item<'_>> = metadata.split("<Item ").skip(1).filter_map(Item::read).collect();
         // What is no number would be taken as if nothing were said.
         let wrong = |item: &&Item<'_>| {
-            matches!(item.role, "scale" | "offset") && item.value.trim().parse::<f64>().is_err()
+            let number = item.value.trim().parse().ok().filter(|number: &f64| number.is_finite());
+            match item.role {
+                "scale" => number.is_none_or(|scale| scale == 0.0) || item.sample.is_none(),
+                "offset" => number.is_none() || item.sample.is_none(),
+                _ => false,
+            }
         };
         if let Some(item) = items.iter().find(wrong) {
             let found = format!("the {} of a band is `{}`", item.role, item.value.escape_debug());
-            return Err(Error::malformed(found, "write it as a number, with a decimal point"));
+            return Err(Error::malformed(found, "write it as a number, with a decimal point and its sample"));
         }
         let numbers = |is: &dyn Fn(&Item<'_>) -> bool, silent: Option<f64>| -> Vec<f64> {
             let of = |band: usize| {
@@ -55,27 +62,25 @@ impl Said {
         let named = |name: &'static str| move |item: &Item<'_>| item.name.eq_ignore_ascii_case(name);
         let units: Vec<&str> =
             items.iter().filter(|item| item.role == "unittype").map(|item| item.value).collect();
-        // Of one unit alone it is that of all.
-        let unit = units
-            .first()
-            .filter(|first| units.iter().all(|unit| unit == *first))
-            .map(|unit| (*unit).to_owned());
+        let differ = units.windows(2).any(|pair| pair[0] != pair[1]);
+        if differ || !units.is_empty() && units.len() != bands {
+            let found = format!("{} units for {bands} bands", units.len());
+            return Err(Error::malformed(found, "write the same unit for every band"));
+        }
+        let unit = units.first().map(|unit| (*unit).to_owned());
         let centres_um = numbers(&named("CENTRAL_WAVELENGTH_UM"), None);
         let is_axis = |item: &Item<'_>| item.name.to_lowercase().contains("wavelength");
         let widths_um = numbers(&named("FWHM_UM"), None);
-        let width = |(centre, width): (&f64, &f64)| 1e4 * width / (centre * centre);
+        let centres_cm1 = band_list::in_unit("um", &centres_um).filter(|centres| !centres.is_empty());
+        let widths_cm1 = band_list::widths_cm1(SpectralUnit::Micrometre, &centres_um, &widths_um);
         Ok(Self {
             scale: numbers(&role("scale"), Some(1.0)),
             offset: numbers(&role("offset"), Some(0.0)),
             missing: missing.into_iter().collect(),
-            axis_unused: centres_um.is_empty() && items.iter().any(is_axis),
             unit: unit.filter(|unit| !unit.trim().is_empty()),
-            widths_cm1: centres_um.iter().zip(&widths_um).map(width).collect(),
-            centres_cm1: centres_um
-                .iter()
-                .map(|um| 1e4 / um)
-                .filter(|nu| *nu > 0.0 && nu.is_finite())
-                .collect(),
+            widths_cm1: widths_cm1.unwrap_or_default(),
+            axis_unused: centres_cm1.is_none() && items.iter().any(is_axis),
+            centres_cm1: centres_cm1.unwrap_or_default(),
         })
     }
 }

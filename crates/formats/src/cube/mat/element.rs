@@ -1,6 +1,7 @@
 //! One array of a MATLAB file: flags, dimensions and name, then numbers.
 
 use crate::cube::READ_CUBE;
+use crate::cube::raw::MAX_INFLATION;
 use crate::cube::stored::{Stored, decode_next};
 use flate2::read::ZlibDecoder;
 use hadar::cube::Sample;
@@ -11,9 +12,6 @@ use std::io::Read;
 /// The type of an element that is an array, and of one that is a zlib stream of one.
 pub(super) const MATRIX: u32 = 14;
 pub(super) const COMPRESSED: u32 = 15;
-
-/// Most that one byte of a zlib stream can stand for (RFC 1951: 258 bytes in two bits).
-const MAX_INFLATION: u64 = 1032;
 
 /// The longest name and the most dimensions that are looked at, bytes.
 const MAX_SHORT: u32 = 4096;

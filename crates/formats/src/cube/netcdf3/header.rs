@@ -42,6 +42,16 @@ pub(super) struct Variable {
 }
 
 impl Variable {
+    /// What is there where nothing was written and nothing else is said: NetCDF's own numbers.
+    pub(super) fn filled(&self) -> Option<f64> {
+        let said = ["_FillValue", "missing_value"].iter().any(|key| self.attributes.says(key));
+        match self.stored() {
+            Some(Stored::I16) if !said => Some(-32767.0),
+            Some(Stored::I32) if !said => Some(-2_147_483_647.0),
+            _ => None,
+        }
+    }
+
     /// How its numbers are stored; none of text.
     pub(super) fn stored(&self) -> Option<Stored> {
         stored(self.kind).map(|stored| self.attributes.stored(stored))

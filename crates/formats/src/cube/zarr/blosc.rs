@@ -72,7 +72,11 @@ pub(super) fn unpacked(packed: &[u8], most: usize) -> Unpacked {
             let (stream, after) = after.split_at_checked(count).ok_or("it ends within a block")?;
             rest = after;
             let due = length / streams;
-            if count == due { own.extend_from_slice(stream) } else { own.extend(codec(stream, due)?) }
+            let bytes = if count == due { stream.to_vec() } else { codec(stream, due)? };
+            if bytes.len() != due {
+                return Err(format!("a stream of {} bytes where {due} are due", bytes.len()));
+            }
+            own.extend(bytes);
         }
         out.extend(if flags & SHUFFLED != 0 { unshuffled(&own, size) } else { own });
     }

@@ -106,14 +106,12 @@ impl Meta {
                 "bytes" | "endian" => little_endian = of["endian"] != "big",
                 "transpose" => {
                     let order = sides_or_zero(&of["order"]);
-                    let rank = order.len();
-                    if order.iter().copied().eq(0..rank) {
-                        continue;
-                    }
-                    if !order.iter().copied().eq((0..rank).rev()) {
+                    let rank = array["shape"].as_array().map_or(0, Vec::len);
+                    if order.iter().copied().eq((0..rank).rev()) && rank > 1 {
+                        fastest_first = !fastest_first;
+                    } else if !order.iter().copied().eq(0..rank) {
                         return Err(damaged(format!("its chunks have the order {}", of["order"])));
                     }
-                    fastest_first = true;
                 }
                 name => codecs.insert(0, Codec::named(name)?),
             }
@@ -164,10 +162,7 @@ impl Meta {
     /// What the numbers stand for. A number that arrays are filled with stands for nothing, unless it is 0.
     pub(super) fn values(&self) -> Result<Option<Values>> {
         let filled = self.fill.filter(|fill| *fill != 0.0 && fill.is_finite());
-        match filled {
-            Some(fill) => self.attributes.clone().with_missing(fill).values(self.stored),
-            None => self.attributes.values(self.stored),
-        }
+        self.attributes.values_with(self.stored, filled)
     }
 
     /// The file of a chunk by its places.

@@ -80,7 +80,7 @@ fn the_block_of_reflectance_becomes_an_emissivity() {
     damage::check(parse, &file(&tile));
     // A factor, another block beside it.
     let mut more = tile.clone();
-    more[3].1 = parameters("WN", 0.5, 1.0);
+    more[3].1 = parameters("WN", 0.5, 0.5);
     more[4].1 = values([1.0, 0.5, 0.25]);
     more.push((kind(4, 1), parameters("WN", 1.0, 3.0)));
     more.push((kind(4, 0), values([3.0, 2.0, 1.0])));
@@ -115,6 +115,9 @@ fn what_is_no_reflectance_is_named() {
     // The largest value is not that of the file; more points than there is room for; an axis of time.
     for (parameters, part) in [
         (parameters("WN", 1.0, 0.6), "MXY of the file is 0.6"),
+        // Of a factor that makes another number of the largest value nobody knows whether it was applied.
+        (parameters("WN", 0.01, 0.5), "MXY of the file is 0.5"),
+        (parameters("WN", 0.0, 0.5), "CSF is 0"),
         (parameters("MIN", 1.0, 0.5), "`MIN`, no wavenumber"),
         (
             [parameter("NPT", 0, &4_i32.to_le_bytes()), number("FXV", 1.0), number("LXV", 2.0)].concat(),

@@ -1,5 +1,6 @@
 //! A column of a table of radiances.
 
+use crate::cube::TemperatureUnit;
 use hadar::radiance_unit::RadianceUnit;
 
 /// What the numbers of a column are.
@@ -9,8 +10,8 @@ pub(super) enum Unit {
     Silent,
     /// A unit that is stated.
     Stated(RadianceUnit),
-    /// Temperatures of a blackbody that sends as much, K.
-    Brightness,
+    /// Temperatures of a blackbody that sends as much.
+    Brightness(TemperatureUnit),
 }
 
 /// A column of wavenumbers, cm⁻¹, and values.

@@ -7,6 +7,7 @@
 //! Source: Berk et al., MODTRAN 5.3 User's Manual (2013), tape7; Clough et al., LBLRTM, output of PLTLBL, and its table of units.
 
 use super::column::{Column, Unit};
+use crate::cube::TemperatureUnit;
 use crate::spectra::bytes::FETCH_AGAIN;
 use hadar::error::{Error, Result, check};
 use hadar::grid::number;
@@ -104,7 +105,7 @@ fn modtran(lines: &[(usize, &str)], at: usize, wanted: &str) -> Result<Column> {
         return Err(Error::unknown_name("column", wanted, known).for_key("column"));
     }
     let unit = if wanted == BRIGHTNESS {
-        Unit::Brightness
+        Unit::Brightness(TemperatureUnit::KELVIN)
     } else if RADIANCES.contains(&wanted) {
         Unit::Stated(RadianceUnit::spelt(UNIT)?)
     } else {
@@ -114,16 +115,18 @@ fn modtran(lines: &[(usize, &str)], at: usize, wanted: &str) -> Result<Column> {
     let below = lines.get(at + 1..).unwrap_or_default();
     let mut below = below.iter().filter(|(_, line)| !line.is_empty());
     let (mut axis, mut values, mut on, mut ended) = (Vec::new(), Vec::new(), Vec::new(), false);
+    // Columns of the sun are empty in all rows of a run without it.
+    let of_the_sun = names.iter().filter(|name| OF_THE_SUN.contains(&name.as_str())).count();
+    let first = below.clone().next().map_or(0, |(_, row)| row.split_whitespace().count());
+    if first + of_the_sun == names.len() {
+        names.retain(|name| !OF_THE_SUN.contains(&name.as_str()));
+    }
     for (line, row) in below.by_ref() {
         let cells = row.split_whitespace().map(number).collect::<Result<Vec<f64>>>();
         let cells = cells.map_err(|error| error.on_line(*line))?;
         if cells.first() == Some(&END) {
             ended = true;
             break;
-        }
-        let of_the_sun = names.iter().filter(|name| OF_THE_SUN.contains(&name.as_str())).count();
-        if cells.len() + of_the_sun == names.len() {
-            names.retain(|name| !OF_THE_SUN.contains(&name.as_str()));
         }
         if cells.len() != names.len() {
             let found = format!("{} numbers where {} columns are named", cells.len(), names.len());
@@ -153,7 +156,7 @@ fn lblrtm(lines: &[(usize, &str)], at: usize, wanted: &str) -> Result<Column> {
     let name = header.split_once("WAVENUMBER").map_or("", |(_, rest)| rest.trim());
     let unit = match name {
         "RADIANCE" => Unit::Stated(RadianceUnit::spelt(UNIT)?),
-        "TEMPERATURE" => Unit::Brightness,
+        "TEMPERATURE" => Unit::Brightness(TemperatureUnit::KELVIN),
         other => {
             let found = format!("`{other}` of LBLRTM, which is no radiance");
             return Err(Error::malformed(found, "write its radiance out (TAPE27)").on_line(header_line));

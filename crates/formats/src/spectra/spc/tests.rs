@@ -20,7 +20,7 @@ fn of_builder(spectra: &[Vec<f64>]) -> Vec<u8> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(hadar_testing::seeded(46, 64))]
     #[test]
     fn a_file_of_another_program_is_read_as_it_was_meant(
         spectra in (2_usize..40).prop_flat_map(|points| prop::collection::vec(prop::collection::vec(0.0..1.0, points), 1..4))

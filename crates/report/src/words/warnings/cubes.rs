@@ -30,11 +30,11 @@ words! {
              longest wavelength",
     }
     WavelengthsUnused {
-        meaning: "The file of a cube lists wavelengths or wavenumbers without a unit, which are not used.",
+        meaning: "The file of a cube lists wavelengths or wavenumbers without a unit, or on an axis that is not read (not linear, in air), which are not used.",
         remedy: "Write the unit into the file, as `wavelength units = Micrometers` in an ENVI header; in \
-            NPZ and MATLAB call the list `wavelengths_um`.",
-        WavelengthsUnused => "the cube's file lists its wavelengths or wavenumbers without a unit, so that they were not used: its first band was taken \
-             as that of the longest wavelength; write the unit into the file",
+            NPZ and MATLAB call the list `wavelengths_um`. Of an axis that is not linear give the bands as rows.",
+        WavelengthsUnused => "the cube's file lists its wavelengths or wavenumbers without a unit, or on an axis that is not read, so that they were not used: its \
+             bands were taken in the order of [bands], of a grid in rising wavenumber",
     }
     CubeDark {
         meaning: "Pixels of a cube are 0 in all bands: nothing was measured there.",

@@ -349,7 +349,7 @@ fn npz(folder: &Folder, bytes: &[u8]) {
 fn cube(folder: &Folder, bytes: &[u8]) {
     arrays(folder, "a.bin", bytes);
     let path = folder.put("a.bin", bytes);
-    for name in ["fixed", "SCENE", "1", "temperature", "raw[1]"] {
+    for name in ["fixed", "SCENE", "1", "temperature", "signal[1]"] {
         if let Some(opened) = accepted(hadar_formats::cube::open_as(&path, Some(name), None)) {
             sound_cube(&opened.cube);
         }
