@@ -76,11 +76,13 @@ pub struct SizeAsked {
     pub solutions: bool,
     /// What the verdict hangs on.
     pub sensitivity: bool,
+    /// What errors of the emissivities do to a verdict that is met, which rests on them; known with the sensitivity.
+    pub emissivity_errors: bool,
 }
 
 impl Default for SizeAsked {
     fn default() -> Self {
-        Self { solutions: true, sensitivity: true }
+        Self { solutions: true, sensitivity: true, emissivity_errors: true }
     }
 }
 
@@ -224,13 +226,23 @@ impl Study {
             _ => None,
         };
         let mut scenario = identification.scenario;
-        if sensitivity.is_some() {
+        let spoiled = own.spoiled(camera.as_ref());
+        let met = pair.told_apart == Some(true) && spoiled.is_empty();
+        let errors = match (&sensitivity, &own.camera) {
+            (Some(found), _) => Some([found.emissivity.error, found.emissivity.share_met]),
+            // Of an object's pixels they are shared, which is another condition.
+            (None, Some(camera)) if asked.emissivity_errors && met && !own.scenario.is_of_object() => {
+                let found = own.emissivity_errors(camera, surface, index)?;
+                Some([found.error, found.share_met])
+            }
+            _ => None,
+        };
+        if errors.is_some() {
             scenario.sensitivity.get_or_insert_default();
         }
         let brightest = camera.as_ref().map_or(0.0, |camera| own.brightest_member(&camera.camera));
-        let errors = sensitivity.as_ref().map(|found| [found.emissivity.error, found.emissivity.share_met]);
         let reached = Reached { pair, errors, brightest };
-        let verdict = own.verdict(&reached, index, &requirement, own.spoiled(camera.as_ref()))?;
+        let verdict = own.verdict(&reached, index, &requirement, spoiled)?;
         Ok(Sizing {
             scenario,
             verdict,

@@ -185,8 +185,8 @@ impl Question {
                 let study = study(written, asking)?;
                 let asked = SizeAsked {
                     solutions: asking.wants("solve_for"),
-                    // A verdict rests on errors of the emissivities too.
-                    sensitivity: asking.wants("sensitivity") || asking.wants("verdict"),
+                    sensitivity: asking.wants("sensitivity"),
+                    emissivity_errors: asking.wants("verdict"),
                 };
                 let found = study.size_with(asked)?;
                 self.told(&found, &found.stats, asking)
