@@ -72,7 +72,7 @@ crate::base::named::named! {
 /// println!("{}: {}", gold.name(), gold.provenance().source);
 /// # Ok::<(), hadar::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     name: String,
     provenance: Provenance,

@@ -26,7 +26,7 @@ pub fn text(cell: &Cell) -> String {
         Cell::Boolean(value) => value.to_string(),
         Cell::Integer(whole) => whole.to_string(),
         Cell::Number(number) => table::number(*number),
-        Cell::Text(text) => text.clone(),
+        Cell::Text(text) => text.as_ref().to_owned(),
     }
 }
 
@@ -50,7 +50,7 @@ pub fn of_csv(text: &str) -> Result<Vec<Column>> {
                 ("true" | "false", ..) => Cell::Boolean(cell == "true"),
                 (_, Ok(whole), _) => Cell::Integer(whole),
                 (_, _, Ok(number)) if number.is_finite() => Cell::Number(number),
-                _ => Cell::Text(table::as_given(cell).to_owned()),
+                _ => Cell::Text(table::as_given(cell).into()),
             });
         }
     }

@@ -1,7 +1,8 @@
 //! A text parsed once: what all readings of it share that differ by what is set.
 //!
-//! Values are set in the parsed document as they are in one that was parsed a moment ago, and everything is read from it anew, so that no
-//! key has to be known here. What is no TOML is not kept: its message is that of the reading.
+//! Values are set in the parsed document as they are in one that was parsed a moment ago, so that no key has to be known here. Read again
+//! are the tables in which something is set; the others are kept as they were read ([`Kept`]). What is no TOML is not kept: its message is
+//! that of the reading.
 //!
 //! A parsed document borrows its text, which therefore stays until the program ends: it is parsed once a job.
 
@@ -10,9 +11,10 @@ use super::source::{LineStarts, Source};
 use hadar::error::{Error, Result};
 use hadar::instrument::figures::BLANK;
 use hadar::units::decimal_comma;
-use std::collections::BTreeMap;
+use std::any::{Any, TypeId};
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use toml::de::DeTable;
 
 /// A text that is TOML.
@@ -25,6 +27,33 @@ pub(super) struct Parsed {
     texts: Arc<BTreeMap<String, String>>,
     /// Of a scenario that a report wrote: where that has its files from.
     pub(super) report: Option<Arc<ReportInputs>>,
+    kept: Arc<Kept>,
+}
+
+/// What a table is read as, by its key and type.
+type Reading = (&'static str, TypeId);
+
+/// Tables of a text as they were read where nothing is set in them.
+#[derive(Debug, Default)]
+pub(super) struct Kept(Mutex<HashMap<Reading, Arc<dyn Any + Send + Sync>>>);
+
+impl Kept {
+    /// What stands at a key: kept, or read.
+    pub(super) fn or_read<T: Any + Clone + Send + Sync>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
+        let reading = (key, TypeId::of::<T>());
+        let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = kept().get(&reading).cloned();
+        if let Some(found) = before.as_deref().and_then(|found| found.downcast_ref::<T>()) {
+            return Ok(found.clone());
+        }
+        let found = read()?;
+        kept().insert(reading, Arc::new(found.clone()));
+        Ok(found)
+    }
 }
 
 impl Parsed {
@@ -41,6 +70,7 @@ impl Parsed {
             lines: source.lines,
             texts: source.texts,
             report: source.report,
+            kept: Arc::default(),
         })
     }
 
@@ -53,6 +83,8 @@ impl Parsed {
     pub(super) fn document(&self, source: &mut Source) -> DeTable<'_> {
         source.lines = Arc::clone(&self.lines);
         source.texts = Arc::clone(&self.texts);
+        // Files of a report are held against what it says of them each time.
+        source.kept = self.report.is_none().then(|| Arc::clone(&self.kept));
         self.document.clone()
     }
 }

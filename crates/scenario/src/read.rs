@@ -24,7 +24,7 @@ file!(Scenario, source, (Kind::Scenario, MINIMUM, &files::SCENARIO));
 impl Scenario {
     fn of_root(root: &Section<'_>) -> Result<Self> {
         let scenario = of_root(root, requirement)?;
-        Ok(Self { camera: root.read("camera", camera::read)?, ..scenario })
+        Ok(Self { camera: root.read_once("camera", camera::read)?, ..scenario })
     }
 }
 
@@ -34,7 +34,7 @@ pub(super) fn of_root(
     requirement: impl FnOnce(&Entry<'_>) -> Result<Requirement>,
 ) -> Result<Scenario> {
     let target = target(&root.table("target", MINIMUM)?)?;
-    let unknown = root.read("unknown", unknown)?.unwrap_or_default();
+    let unknown = root.read_once("unknown", unknown)?.unwrap_or_default();
     let environment = environment(root, unknown.lighting_total)?;
     Ok(Scenario {
         title: root.title("\"Person or robot?\"")?,
@@ -42,15 +42,15 @@ pub(super) fn of_root(
         target,
         envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
         environment,
-        background: root.read("background", background)?,
-        alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
-        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
-        bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
+        background: root.read_once("background", background)?,
+        alternatives: root.read_once("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read_once("atmosphere", AtmosphereSpec::read)?,
+        bands: root.read_once("bands", BandsSpec::read)?.unwrap_or_default(),
         unknown,
         camera: None,
         requirement: root.read("requirement", requirement)?.unwrap_or_default(),
-        sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
-        find: root.read("find", FindSpec::read)?,
+        sensitivity: root.read_once("sensitivity", SensitivitySpec::read)?,
+        find: root.read_once("find", FindSpec::read)?,
         categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
         source: Source::default(),
     })

@@ -139,6 +139,18 @@ impl<'a> Section<'a> {
         self.get(key).map(|entry| read(&entry)).transpose()
     }
 
+    /// The same for a table of the root, read once for all readings of a text that set nothing in it.
+    pub(super) fn read_once<T: Clone + Send + Sync + 'static>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce(&Entry<'a>) -> Result<T>,
+    ) -> Result<Option<T>> {
+        match self.source.kept.as_ref().filter(|_| self.name.is_empty() && !self.source.is_set_in(key)) {
+            Some(kept) => kept.or_read(key, || self.read(key, read)),
+            None => self.read(key, read),
+        }
+    }
+
     /// A table that must be there; `instead` is what to write.
     pub(super) fn table(&self, key: &str, instead: &str) -> Result<Entry<'a>> {
         let missing = || self.fail(key, Error::malformed("the table is missing", instead));

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use toml::de::{DeTable, DeValue};
 
+use super::parsed::Kept;
 use super::report_inputs::ReportInputs;
 use super::setting::Setting;
 pub(super) use super::setting::dotted;
@@ -46,6 +47,8 @@ pub struct Source {
     pub files_refused: bool,
     /// Its cameras by their keys as the file states them, where values stand in the place of figures that a noise is stated for.
     pub(super) filed: BTreeMap<String, Arc<CameraSpec>>,
+    /// Of a text that is read many times: its tables in which nothing is set.
+    pub(super) kept: Option<Arc<Kept>>,
 }
 
 impl Source {
@@ -96,6 +99,11 @@ impl Source {
     /// What is stated of the user's own camera of a name.
     pub(super) fn own_camera(&self, name: &str) -> Option<Arc<CameraSpec>> {
         self.cameras.iter().find(|camera| camera.name == name).map(|camera| Arc::new(camera.spec.clone()))
+    }
+
+    /// Whether anything is set at `key` or in what stands there.
+    pub(super) fn is_set_in(&self, key: &str) -> bool {
+        self.settings.iter().any(|setting| setting.covers(key) || setting.is_in(key))
     }
 
     /// What stands at `key` in the place of what was written.

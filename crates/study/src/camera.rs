@@ -47,7 +47,7 @@ pub(super) fn known(spec: &CameraSpec) -> Result<Option<Preset>> {
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
     let preset = known(spec).map_err(|error| error.at(place("preset")))?;
-    let stated = stated_at(spec, place)?;
+    let stated = stated_over(spec, preset.clone(), place)?;
     let camera = |preset: &Preset| {
         preset.camera().map_err(|missing| {
             missing.error(&preset.name).at(place(missing.0.first().copied().unwrap_or("preset")))
@@ -70,7 +70,10 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
 
 /// All that is stated of a camera, by what it lies over and by its own keys, which stand where `place` says.
 pub(super) fn stated_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
-    let preset = known(spec).map_err(|error| error.at(place("preset")))?;
+    stated_over(spec, known(spec).map_err(|error| error.at(place("preset")))?, place)
+}
+
+fn stated_over(spec: &CameraSpec, preset: Option<Preset>, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
     check_conditions(spec, preset.as_ref(), place)?;
     laid(spec, preset.unwrap_or_default())
 }

@@ -9,9 +9,10 @@
 //! of the same and smoother. A relative error η of every signal moves a distance d₀ per √photon by no more than 2η.
 
 use super::air::Air;
+use super::remembered::Remembered;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::Result;
-use hadar::instrument::Camera;
+use hadar::instrument::{Camera, EfficiencyCurve};
 use hadar::material::Material;
 use hadar::planck;
 use hadar::spectrum::{Band, Bands};
@@ -54,7 +55,42 @@ impl Integration {
     }
 }
 
+/// All that integrals over bands depend on, but what says where an error is.
+#[derive(Debug, PartialEq)]
+pub(super) struct Integrand {
+    temperatures_k: Vec<f64>,
+    /// Whether integrals are asked for, or refused.
+    asked: Option<bool>,
+    tolerance: f64,
+    bands: Bands,
+    surfaces: Vec<Material>,
+    environment: Vec<Option<Material>>,
+    behind: Option<(f64, Option<Material>)>,
+    air: Option<(Air, Option<f64>)>,
+    curves: Vec<EfficiencyCurve>,
+}
+
+/// Bands with nodes that integrate the spectra of a scenario where they must, how well, and what that took.
+pub(super) type Integrals = (Bands, Integration, Work);
+
 impl Spectra<'_> {
+    /// What their integrals over bands of a scenario depend on.
+    fn integrand(&self, scenario: &Scenario, asked: Option<bool>, bands: &Bands) -> Integrand {
+        let around = scenario.environment.iter().map(|object| object.temperature_k);
+        let owned = |material: &Cow<'_, Material>| material.as_ref().clone();
+        Integrand {
+            temperatures_k: std::iter::once(scenario.target.temperature_k).chain(around).collect(),
+            asked,
+            tolerance: scenario.bands.tolerance,
+            bands: bands.clone(),
+            surfaces: self.surfaces.iter().copied().cloned().collect(),
+            environment: self.environment.iter().map(|material| material.as_ref().map(owned)).collect(),
+            behind: self.behind.map(|(temperature_k, material)| (temperature_k, material.cloned())),
+            air: self.air.map(|air| (air.clone(), scenario.target.distance_m)),
+            curves: self.camera.map(|camera| camera.efficiency_curves.clone()).unwrap_or_default(),
+        }
+    }
+
     fn materials(&self) -> impl Iterator<Item = &Material> {
         let around = self.environment.iter().flatten().map(AsRef::as_ref);
         self.surfaces.iter().copied().chain(around).chain(self.behind.and_then(|(_, material)| material))
@@ -136,18 +172,32 @@ impl Spectra<'_> {
     }
 }
 
-/// The bands of a scenario with nodes that integrate its spectra where they must, how well, and what that took.
+/// The integrals of a scenario over its bands, which may be `remembered`.
 pub(super) fn integrated(
     scenario: &Scenario,
     source: &BandSource,
     bands: &Bands,
     spectra: &Spectra<'_>,
-) -> Result<(Bands, Integration, Work)> {
+    remembered: Option<&Remembered>,
+) -> Result<Integrals> {
+    let always = matches!(source, BandSource::Ranges(_) | BandSource::Filters(_));
+    let asked = scenario.bands.integrate.filter(|_| !always).or(always.then_some(true));
+    let compute = || computed(scenario, asked, bands, spectra);
+    match remembered {
+        Some(remembered) => remembered.integrals(spectra.integrand(scenario, asked, bands), compute),
+        None => compute(),
+    }
+}
+
+fn computed(
+    scenario: &Scenario,
+    asked: Option<bool>,
+    bands: &Bands,
+    spectra: &Spectra<'_>,
+) -> Result<Integrals> {
     let low = bands.bands().iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
     let high = bands.bands().iter().map(|band| band.high_cm1).fold(0.0, f64::max);
     let widest = bands.bands().iter().map(|band| band.high_cm1 - band.low_cm1).fold(0.0, f64::max);
-    let always = matches!(source, BandSource::Ranges(_) | BandSource::Filters(_));
-    let asked = scenario.bands.integrate.filter(|_| !always).or(always.then_some(true));
     let rows = match asked {
         Some(false) => Vec::new(),
         _ => spectra.rows(low - widest, high + widest),

@@ -1,16 +1,10 @@
 //! Distances of the target to an alternative per √photon, remembered where scenarios share them.
 
-use super::remembered::{PerPhoton, Remembered, Scene};
+use super::remembered::{PerPhoton, Scene};
 use super::{Study, Surface};
 use hadar::error::Result;
 
 impl Study {
-    /// The same, which shares with others what it computes of pairs.
-    #[must_use]
-    pub fn remembering(self, remembered: &Remembered) -> Self {
-        Self { remembered: Some(remembered.clone()), ..self }
-    }
-
     /// Distances of the target to an alternative among `photons` photons.
     pub(super) fn per_photon(&self, alternative: &Surface, photons: f64) -> Result<PerPhoton> {
         let compute = || {

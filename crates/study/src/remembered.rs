@@ -1,7 +1,8 @@
-//! Distances per √photon of a pair, computed once for all scenarios in which they are the same: whatever the exposure, the noise or,
-//! without air, the distance. They are found again by all that they depend on, bit by bit. Priors compete with the photons of the
-//! camera, so that nothing is remembered with them.
+//! What scenarios share that differ in something else, computed once: distances per √photon of a pair, whatever the exposure, the noise
+//! or, without air, the distance, and integrals over the bands. Each is found again by all that it depends on, bit by bit. Priors compete
+//! with the photons of the camera, so that no distances are remembered with them.
 
+use super::integration::{Integrals, Integrand};
 use hadar::error::Result;
 use hadar::fisher::Unknowns;
 use hadar::identifiability::local::LocalDistance;
@@ -9,14 +10,25 @@ use hadar::identifiability::nearest::{NearestDistance, StateRange};
 use hadar::scene::{State, Surroundings};
 use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Pairs that are kept at most; looking through more would take longer than computing one.
 const MOST: usize = 1000;
+/// Sets of integrals that are kept: comparing the spectra of more would take longer.
+const MOST_INTEGRALS: usize = 16;
 
-/// Distances of pairs that scenarios share.
+/// What scenarios share.
 #[derive(Debug, Clone, Default)]
-pub struct Remembered(Arc<Mutex<Vec<Arc<Known>>>>);
+pub struct Remembered(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    /// Distances of pairs.
+    pairs: Mutex<Vec<Arc<Known>>>,
+    /// Integrals over the bands, the last ones.
+    integrals: Mutex<VecDeque<Arc<(Integrand, Integrals)>>>,
+}
 
 /// A pair and what is known of it; whoever needs it first computes it, and others wait.
 #[derive(Debug)]
@@ -77,9 +89,28 @@ impl Remembered {
         Ok(new)
     }
 
+    /// The integrals of an integrand: remembered, or computed.
+    pub(super) fn integrals(
+        &self,
+        integrand: Integrand,
+        compute: impl FnOnce() -> Result<Integrals>,
+    ) -> Result<Integrals> {
+        let kept = || self.0.integrals.lock().unwrap_or_else(PoisonError::into_inner);
+        let last: Vec<_> = kept().iter().cloned().collect();
+        if let Some(found) = last.iter().find(|known| known.0 == integrand) {
+            return Ok(found.1.clone());
+        }
+        // Rows that are computed at a time may each compute it.
+        let found = compute()?;
+        let mut kept = kept();
+        kept.truncate(MOST_INTEGRALS - 1);
+        kept.push_front(Arc::new((integrand, found.clone())));
+        Ok(found)
+    }
+
     /// What is known of a scene, or a place for it; none where there are too many.
     fn of(&self, scene: Scene) -> Option<Arc<Known>> {
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut known = self.0.pairs.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known.iter().rev().find(|known| known.scene == scene) {
             return Some(Arc::clone(found));
         }

@@ -12,6 +12,7 @@ use super::bands::{self, check_detector};
 use super::camera::check_time;
 use super::classes::Members;
 use super::integration::{Spectra, integrated};
+use super::remembered::Remembered;
 use super::{Study, Surface, camera, camera_bands};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
@@ -60,14 +61,32 @@ impl Study {
         Self::with_members(scenario, library)?.of_worst_members(skipping)
     }
 
+    /// The same, which shares with other scenarios what it computes.
+    ///
+    /// # Errors
+    /// As [`Study::new`].
+    pub fn remembering(
+        scenario: &Scenario,
+        library: &Library,
+        skipping: Skipping,
+        remembered: &Remembered,
+    ) -> Result<Self> {
+        Self::with_members_in(scenario, library, None, Some(remembered))?.of_worst_members(skipping)
+    }
+
     /// The same with all members of classes side by side: those of the target's are [`Study::targets`], the first of which is the
     /// target, and those of the alternatives' are alternatives of their own.
     pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
-        Self::with_members_in(scenario, library, None)
+        Self::with_members_in(scenario, library, None, None)
     }
 
     /// The same where filters stand in a cone of light though no camera is there: `sine` is that of the angle of its rim.
-    pub(super) fn with_members_in(scenario: &Scenario, library: &Library, sine: Option<f64>) -> Result<Self> {
+    pub(super) fn with_members_in(
+        scenario: &Scenario,
+        library: &Library,
+        sine: Option<f64>,
+        remembered: Option<&Remembered>,
+    ) -> Result<Self> {
         check_temperatures(scenario)?;
         let mut scenario = scenario.clone();
         let mut finder = Finder::new(&scenario, library);
@@ -110,8 +129,8 @@ impl Study {
             air: atmosphere.as_ref(),
             camera: camera.as_ref(),
         };
-        let (bands, integration, integrals) =
-            integrated(&scenario, &asked, &bands, &spectra).map_err(|error| {
+        let (bands, integration, integrals) = integrated(&scenario, &asked, &bands, &spectra, remembered)
+            .map_err(|error| {
                 let mut groups = std::iter::once(&target).chain(&alternatives);
                 groups.find_map(|group| group.short_of(&bands, &scenario)).unwrap_or(error)
             })?;
@@ -166,7 +185,7 @@ impl Study {
             extrapolated,
             warnings,
             looked_up: library.work().and(&integrals),
-            remembered: None,
+            remembered: remembered.cloned(),
         };
         study.check_sight()?;
         (study.bands, study.air) = study.received(study.camera.as_ref(), study.scenario.target.distance_m)?;

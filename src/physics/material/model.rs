@@ -25,7 +25,7 @@ const MOST_PARTS: usize = 1000;
 pub(super) type Range = Option<(f64, f64)>;
 
 /// A surface. Built with the functions of `impl Model`, which check the numbers.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Model {
     Constant(f64),
     Polynomial(Polynomial),

@@ -35,6 +35,9 @@ impl Gathered {
                 *status = Some(Ok(()));
                 for (name, cell) in record {
                     let column = self.values.entry(name).or_insert_with(|| vec![Cell::Empty; rows]);
+                    // What many rows say, such as conditions, is kept once.
+                    let before = row.checked_sub(1).and_then(|before| column.get(before));
+                    let cell = before.filter(|before| **before == cell).cloned().unwrap_or(cell);
                     if let Some(slot) = column.get_mut(row) {
                         *slot = cell;
                     }
@@ -125,7 +128,9 @@ impl Gathered {
         columns.push(column("status", &|row| {
             Cell::Text(if failed(row).is_some() { "error" } else { "ok" }.into())
         }));
-        columns.push(column("message", &|row| failed(row).cloned().map_or(Cell::Empty, Cell::Text)));
+        columns.push(column("message", &|row| {
+            failed(row).map_or(Cell::Empty, |message| Cell::Text(message.as_str().into()))
+        }));
         for name in names {
             if columns.iter().all(|column| column.name != name) {
                 let values = self.values(name).unwrap_or_default();

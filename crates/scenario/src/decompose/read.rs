@@ -32,7 +32,7 @@ file!(DecomposeScenario, source, (Kind::Decompose, MINIMUM, &files::DECOMPOSE));
 
 impl DecomposeScenario {
     fn of_root(root: &Section<'_>) -> Result<Self> {
-        let camera = root.read("camera", camera::read)?;
+        let camera = root.read_once("camera", camera::read)?;
         let cube = root.table("cube", MINIMUM)?;
         let unknown = root.read("unknown", unknown)?.unwrap_or_default();
         let cube = heat_cube(&cube, camera.is_some())?;
@@ -40,7 +40,7 @@ impl DecomposeScenario {
         let scenario = Self {
             title: root.title("\"What is in this street?\"")?,
             cube,
-            bands: root.read("bands", BandsSpec::read)?,
+            bands: root.read_once("bands", BandsSpec::read)?,
             camera,
             atmosphere: root.read("atmosphere", air)?,
             environment: root

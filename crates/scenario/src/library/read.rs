@@ -38,7 +38,7 @@ impl LibraryScenario {
     }
 
     fn of_root(root: &Section<'_>) -> Result<Self> {
-        let camera = root.read("camera", camera::read)?;
+        let camera = root.read_once("camera", camera::read)?;
         let cube = root.table("cube", MINIMUM)?;
         let unknown = root.read("unknown", unknown)?.unwrap_or(PixelUnknown::default());
         if unknown.gain {
@@ -69,7 +69,7 @@ impl LibraryScenario {
         Ok(Self {
             title: root.title("\"What is in this street?\"")?,
             cube,
-            bands: root.read("bands", BandsSpec::read)?,
+            bands: root.read_once("bands", BandsSpec::read)?,
             camera,
             atmosphere,
             environment,

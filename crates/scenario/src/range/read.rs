@@ -37,7 +37,7 @@ impl RangeScenario {
                     .at(root.source().place("")));
             }
         };
-        let camera = root.read("camera", camera::read)?;
+        let camera = root.read_once("camera", camera::read)?;
         let rendered = matches!(subject, Subject::Scene(_));
         if rendered {
             root.table("camera", "write [camera] with preset = \"flir-a325sc\"")?;
@@ -46,7 +46,7 @@ impl RangeScenario {
         let stereo = stereo(&pair, camera.is_some(), rendered)?;
         Ok(Self {
             title: root.title("\"How far is the person?\"")?,
-            bands: root.read("bands", BandsSpec::read)?.or_else(|| rendered.then(BandsSpec::default)),
+            bands: root.read_once("bands", BandsSpec::read)?.or_else(|| rendered.then(BandsSpec::default)),
             requirement: root.read("requirement", requirement)?.unwrap_or_default(),
             subject,
             camera,

@@ -99,7 +99,7 @@ impl<'q> Supply<'q> {
         if let (BandSource::Filters(filters), None) = (&mut bare.bands.source, sine) {
             filters.place = None;
         }
-        Study::with_members_in(&bare, library, sine)?.with_means()
+        Study::with_members_in(&bare, library, sine, None)?.with_means()
     }
 
     /// The bands that are these filters.

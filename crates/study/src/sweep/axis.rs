@@ -236,7 +236,7 @@ pub(super) fn column<'v>(key: &str, values: impl Iterator<Item = &'v str> + Clon
     };
     let text = |text: &'v str| match text {
         "" => Cell::Empty,
-        text => Cell::Text(text.to_owned()),
+        text => Cell::Text(text.into()),
     };
     if given.clone().next().is_some() && given.clone().all(same) {
         return (unit.to_owned(), values.map(plain).collect());

@@ -1,6 +1,7 @@
 //! A value of a table.
 
 use serde_json::{Number, Value};
+use std::sync::Arc;
 
 /// A value of a table.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -15,7 +16,7 @@ pub enum Cell {
     /// A number.
     Number(f64),
     /// A text.
-    Text(String),
+    Text(Arc<str>),
 }
 
 impl Cell {
@@ -30,7 +31,7 @@ impl Cell {
                 (None, Some(number)) => Self::Number(number),
                 (None, None) => Self::Empty,
             }),
-            Value::String(text) => Some(Self::Text(text.clone())),
+            Value::String(text) => Some(Self::Text(text.as_str().into())),
             Value::Array(_) | Value::Object(_) => None,
         }
     }
@@ -43,7 +44,7 @@ impl Cell {
             Self::Boolean(value) => Value::Bool(*value),
             Self::Integer(whole) => Value::from(*whole),
             Self::Number(number) => Number::from_f64(*number).map_or(Value::Null, Value::Number),
-            Self::Text(text) => Value::String(text.clone()),
+            Self::Text(text) => Value::String(text.as_ref().to_owned()),
         }
     }
 

@@ -271,5 +271,5 @@ fn study(written: &Written, asking: &Asking<'_>) -> Result<Study> {
         scenario.requirement.by = by;
     }
     scenario.alternatives.skip_uncovered |= asking.skip_uncovered;
-    Ok(Study::new_skipping(&scenario, asking.library, asking.skipping)?.remembering(asking.remembered))
+    Study::remembering(&scenario, asking.library, asking.skipping, asking.remembered)
 }

@@ -75,7 +75,7 @@ fn codes(part: &str, map: &serde_json::Map<String, Value>, record: &mut Record) 
         if let Some(Value::Array(all)) = map.get(key) {
             let mut codes: Vec<&str> = all.iter().filter_map(|one| one.get("code")?.as_str()).collect();
             codes.dedup();
-            record.insert(format!("{part}{key}"), Cell::Text(codes.join(" ")));
+            record.insert(format!("{part}{key}"), Cell::Text(codes.join(" ").into()));
         }
     }
 }
