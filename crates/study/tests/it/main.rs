@@ -18,6 +18,7 @@ mod rule_air;
 mod scenario;
 mod scenario_messages;
 mod search_inputs;
+mod shared_rows;
 mod sight;
 mod sizing;
 mod solved;
