@@ -57,7 +57,11 @@ const fn columns(question: Question) -> &'static [(&'static str, &'static [&'sta
             ("demanded", &["/verdict/required_share"]),
             ("error [m]", &["/at/sigma_m"]),
         ],
-        Question::Size | Question::Simulate | Question::Decompose => &[
+        Question::Size
+        | Question::Simulate
+        | Question::Decompose
+        | Question::Library
+        | Question::CalibrateNoise => &[
             ("verdict", &["/verdict/met"]),
             ("if", &["/verdict/conditions"]),
             ("limited by", &["/limiting", "/not_told_from"]),

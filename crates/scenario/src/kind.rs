@@ -131,7 +131,8 @@ impl Kind {
             Self::Rule => Some("rule"),
             Self::Range => Some("range"),
             Self::Decompose => Some("decompose"),
-            Self::Library | Self::Calibrate | Self::Materials | Self::Cameras => None,
+            Self::Library => Some("library"),
+            Self::Calibrate | Self::Materials | Self::Cameras => None,
         }
     }
 

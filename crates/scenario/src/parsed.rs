@@ -8,6 +8,7 @@
 
 use super::report_inputs::ReportInputs;
 use super::source::{LineStarts, Source};
+use super::stated_camera::StatedCamera;
 use hadar::error::{Error, Result};
 use hadar::instrument::figures::BLANK;
 use hadar::units::decimal_comma;
@@ -28,6 +29,8 @@ pub(super) struct Parsed {
     /// Of a scenario that a report wrote: where that has its files from.
     pub(super) report: Option<Arc<ReportInputs>>,
     kept: Arc<Kept>,
+    /// What else its tables were read by.
+    by: (Option<PathBuf>, Arc<[StatedCamera]>, bool),
 }
 
 /// What a table is read as, by its key and type.
@@ -71,6 +74,7 @@ impl Parsed {
             texts: source.texts,
             report: source.report,
             kept: Arc::default(),
+            by: (source.inputs, source.cameras, source.files_refused),
         })
     }
 
@@ -83,8 +87,12 @@ impl Parsed {
     pub(super) fn document(&self, source: &mut Source) -> DeTable<'_> {
         source.lines = Arc::clone(&self.lines);
         source.texts = Arc::clone(&self.texts);
+        let (inputs, cameras, files_refused) = &self.by;
+        let is_same = source.inputs == *inputs
+            && Arc::ptr_eq(&source.cameras, cameras)
+            && source.files_refused == *files_refused;
         // Files of a report are held against what it says of them each time.
-        source.kept = self.report.is_none().then(|| Arc::clone(&self.kept));
+        source.kept = (is_same && self.report.is_none()).then(|| Arc::clone(&self.kept));
         self.document.clone()
     }
 }

@@ -62,7 +62,9 @@ pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceU
         )),
         // Digital numbers have another noise than the photons they stand for.
         (CubeUnit::Camera, None) if SampleUnit::spelt(of_file) == SampleUnit::Other => Err(Error::malformed(
-            format!("the samples are in `{of_file}` by their file, and photons that the camera counts by the scenario"),
+            format!(
+                "the samples are in `{of_file}` by their file, and photons that the camera counts by the scenario"
+            ),
             "give photoelectrons, or radiances with unit and noise; or write counts_per_photon_radiance if the samples are counts whose variance is their number",
         )),
         (_, None) => Ok(None),

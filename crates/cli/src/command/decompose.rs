@@ -47,7 +47,7 @@ impl From<FoundBad> for Bad {
 
 /// Methods, as a flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum By {
+pub(super) enum By {
     /// Maximum likelihood of material, temperature and lighting
     Ml,
     /// The paper's inverse functions: slopes along wavenumber take the lighting away (S46, S47)

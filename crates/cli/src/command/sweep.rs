@@ -4,6 +4,7 @@ mod there;
 mod work;
 
 use self::there::{Outcome, There};
+use super::decompose;
 use super::global::{self, Global};
 use super::provenance;
 use clap::Args;
@@ -38,7 +39,8 @@ pub(super) struct SweepArgs {
     /// of another sweep asks its rows again
     #[arg(long, value_name = "CSV")]
     cases: Option<PathBuf>,
-    /// What is asked of every row: size, identify, simulate, rule, range, decompose (default: what the file is for)
+    /// What is asked of every row: size, identify, simulate, rule, range, decompose, library, "calibrate noise" (default: what the file
+    /// is for)
     #[arg(long, value_name = "NAME")]
     command: Option<String>,
     /// Columns of the answers, by their names in the command's JSON (`verdict.margin`, `camera` for all within, `pairs[0].proof`
@@ -48,6 +50,9 @@ pub(super) struct SweepArgs {
     /// The distance that decides, instead of the scenario's
     #[arg(long)]
     by: Option<global::By>,
+    /// How pixels are taken apart where rows are heat cubes
+    #[arg(long, value_enum, default_value_t = decompose::By::Ml)]
+    method: decompose::By,
     /// Compute every n-th row alone, from the i-th on; the last shard that ends writes the table
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: String,
@@ -126,6 +131,7 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
         skip_uncovered: global.skip_uncovered,
         skipping: global.skipping(),
         seed: global.seed,
+        method: args.method.into(),
         columns: &columns,
         voice: words::voice,
     };
@@ -307,7 +313,7 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
         .and_then(std::result::Result::ok);
     parts.push(format!("{home:?} {:?} {:?} {}", asking.by, asking.skipping, asking.skip_uncovered));
     parts.push(format!("{:?}", ["solve_for", "sensitivity", "verdict"].map(|part| asking.wants(part))));
-    parts.push(format!("{} {:?}", asking.seed, asking.items().collect::<Vec<_>>()));
+    parts.push(format!("{} {} {:?}", asking.method.name(), asking.seed, asking.items().collect::<Vec<_>>()));
     for path in &global.library {
         parts.push(format!("{}", path.display()));
     }

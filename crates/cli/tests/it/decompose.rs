@@ -370,6 +370,15 @@ fn a_radiance_is_the_same_in_every_unit() {
         let refused = folder.refusal(&["decompose", "c.toml"]);
         assert!(refused.contains(what), "{unit}: {refused}");
     }
+    // What a camera counts are photons, whose variance is their number; that of digital numbers is another.
+    let by_camera =
+        SCENARIO.replace("counts.npy", "u.img").replace("counts_per_photon_radiance = 1e-13\n", "");
+    folder.file("f.toml", &format!("{by_camera}[camera]\nexposure = \"2 ms\"\npixel = \"24 um\"\nf_number = 1.4\nfocal_length = \"14 mm\"\nnoise_electrons = 3000\nnoise_exposure = \"2 ms\"\n"));
+    for (unit, is_taken) in [("DN", false), ("ADU", false), ("photoelectrons", true), ("none", true)] {
+        rename(unit);
+        let refused = folder.run(&["decompose", "f.toml"]).stderr.contains("photons that the camera counts");
+        assert_eq!(!refused, is_taken, "{unit}");
+    }
     for (unit, what) in [
         ("K", "the samples are at least "),
         ("m", "neither one power"),

@@ -598,6 +598,33 @@ fn every_cube_of_a_folder_is_a_row() {
     assert!(rows[0].contains("cubes/a.npy") && rows[3].contains("cubes/d.npy"), "{table}");
     let again = folder.json(&[&sweep[..], &["--force"]].concat());
     assert_eq!(again["computed"].as_u64(), Some(1), "only the one that failed: {again}");
+    // By another method, and of other questions about cubes.
+    let grey = [&sweep[..4], &["--columns", "undecided", "--method", "grey-body", "--out", "grey"]].concat();
+    assert_eq!(folder.json(&grey)["answered"].as_u64(), Some(3));
+    folder.file("noise.toml", "[cube]\ndata = \"counts.npy\"\n");
+    for (file, command, column) in
+        [("a.toml", "library", "decided"), ("noise.toml", "calibrate noise", "noise_electrons[1]")]
+    {
+        let scenario = crate::decompose::SCENARIO.split("[library]").next().unwrap();
+        folder.file(
+            "a.toml",
+            &format!("{scenario}[unknown]\ntemperature = [\"250 K\", \"340 K\"]\nlighting_total = 1.0\n[clusters]\ncount = 2\nmax_emissivity = 0.96\n"),
+        );
+        let ask = [
+            "sweep",
+            file,
+            "--command",
+            command,
+            "--vary",
+            "cube.data=cubes",
+            "--columns",
+            column,
+            "--out",
+            command,
+        ];
+        let found = folder.json(&ask);
+        assert_eq!((found["rows"].as_u64(), found["failed"].as_u64()), (Some(4), Some(1)), "{found}");
+    }
     std::fs::create_dir(folder.path().join("none")).unwrap();
     let refused = folder.refusal(&["sweep", "a.toml", "--vary", "cube.data=none", "--out", "rows2"]);
     assert!(refused.contains("the folder has no cube"), "{refused}");

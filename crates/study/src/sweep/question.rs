@@ -3,7 +3,9 @@
 use super::part::parts;
 use super::record::{Record, asked_of, has_all, is_within, record};
 use crate::air_ranging::{AirPlan, AirRangingStudy};
+use crate::calibrate::NoiseStudy;
 use crate::decompose::{DecomposeStudy, Keep};
+use crate::library::LibraryStudy;
 use crate::range::{RangePlan, RangeStudy};
 use crate::spoken::{Voice, with_voice};
 use crate::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
@@ -11,8 +13,9 @@ use hadar::demand::{Skipping, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar_estimate::decompose::Method;
+use hadar_scenario::calibrate::NoiseScenario;
 use hadar_scenario::{
-    DecomposeScenario, DistanceKind, RangingScenario, Rule, Scenario, Written, command_for,
+    DecomposeScenario, DistanceKind, LibraryScenario, RangingScenario, Rule, Scenario, Written, command_for,
 };
 use hadar_simulate::classifier;
 use hadar_simulate::experiment::Design;
@@ -37,6 +40,10 @@ hadar::named! {
         Range = "range",
         /// A heat cube taken apart.
         Decompose = "decompose",
+        /// Materials found in a heat cube.
+        Library = "library",
+        /// The noise of frames of a camera.
+        CalibrateNoise = "calibrate noise",
     }
     /// The command that answers it.
     name
@@ -55,6 +62,8 @@ pub struct Asking<'a> {
     pub skipping: Skipping,
     /// Seed of random numbers.
     pub seed: u64,
+    /// How cubes are taken apart.
+    pub method: Method,
     /// What rows share.
     pub remembered: &'a Remembered,
     /// The columns that are wanted; all but items of lists where there are none.
@@ -148,13 +157,16 @@ impl Question {
             Self::Rule => &["cameras[0].margin"],
             Self::Range => &["verdict.share", "at.sigma_m"],
             Self::Decompose => &["undecided"],
+            Self::Library => &["decided"],
+            Self::CalibrateNoise => &["noise_electrons[1]"],
         }
     }
 
     /// Lists whose first item belongs to a row, since they are what is asked for.
     const fn lists(self) -> &'static [&'static str] {
         match self {
-            Self::Size | Self::Identify | Self::Decompose => &[],
+            Self::Size | Self::Identify | Self::Decompose | Self::Library => &[],
+            Self::CalibrateNoise => &["noise_electrons[0]", "noise_electrons[1]", "noise_electrons[2]"],
             Self::Simulate => &["points[0]"],
             Self::Rule => &["cameras[0]"],
             Self::Range => &["objects[0]"],
@@ -171,6 +183,8 @@ impl Question {
             Self::Rule => Rule::from_written(written).map(drop),
             Self::Range => RangingScenario::from_written(written).map(drop),
             Self::Decompose => DecomposeScenario::from_written(written).map(drop),
+            Self::Library => LibraryScenario::from_written(written).map(drop),
+            Self::CalibrateNoise => NoiseScenario::from_written(written).map(drop),
         }
     }
 
@@ -242,7 +256,16 @@ impl Question {
             Self::Decompose => {
                 let scenario = DecomposeScenario::from_written(written)?;
                 let study = DecomposeStudy::new(&scenario, library)?;
-                let found = study.decompose(Method::Ml, asking.skipping, Keep::InMemory, &|_, _| ())?;
+                let found = study.decompose(asking.method, asking.skipping, Keep::InMemory, &|_, _| ())?;
+                self.told(&found, &found.stats, asking)
+            }
+            Self::Library => {
+                let study = LibraryStudy::new(&LibraryScenario::from_written(written)?, library)?;
+                let found = study.library(library, asking.seed, &|_, _| ())?;
+                self.told(&found, &found.stats, asking)
+            }
+            Self::CalibrateNoise => {
+                let found = NoiseStudy::new(&NoiseScenario::from_written(written)?)?.noise()?;
                 self.told(&found, &found.stats, asking)
             }
         }

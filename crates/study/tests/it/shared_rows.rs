@@ -59,6 +59,7 @@ fn answer(written: &Written, remembered: &Remembered, library: &Library) -> Resu
         skip_uncovered: false,
         skipping: Skipping::On,
         seed: 1,
+        method: hadar_estimate::decompose::Method::Ml,
         columns: &["verdict", "requirement", "camera", "warnings"].map(str::to_owned),
         voice: |_| String::new(),
     };

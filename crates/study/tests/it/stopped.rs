@@ -64,6 +64,7 @@ fn whoever_is_stopped_leaves_nothing_half_done() {
                 skip_uncovered: false,
                 skipping: Skipping::On,
                 seed: 1,
+                method: hadar_estimate::decompose::Method::Ml,
                 columns: &[],
                 voice: |_| String::new(),
             };
