@@ -1,6 +1,8 @@
 //! Sweeps: rows against the single commands, what is done again and what is not, shards, mistakes, tables that others read.
 
 use crate::support::folder::{Folder, SCENARIO};
+use hadar::cube::Shape;
+use hadar_formats::cube::write_npy;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -601,29 +603,32 @@ fn every_cube_of_a_folder_is_a_row() {
     // By another method, and of other questions about cubes.
     let grey = [&sweep[..4], &["--columns", "undecided", "--method", "grey-body", "--out", "grey"]].concat();
     assert_eq!(folder.json(&grey)["answered"].as_u64(), Some(3));
+    let scenario = crate::decompose::SCENARIO.split("[library]").next().unwrap();
+    let unknown = "[unknown]\ntemperature = [\"250 K\", \"340 K\"]\nlighting_total = 1.0\n";
+    folder.file("a.toml", &format!("{scenario}{unknown}[clusters]\ncount = 2\nmax_emissivity = 0.96\n"));
     folder.file("noise.toml", "[cube]\ndata = \"counts.npy\"\n");
-    for (file, command, column) in
-        [("a.toml", "library", "decided"), ("noise.toml", "calibrate noise", "noise_electrons[1]")]
-    {
-        let scenario = crate::decompose::SCENARIO.split("[library]").next().unwrap();
-        folder.file(
-            "a.toml",
-            &format!("{scenario}[unknown]\ntemperature = [\"250 K\", \"340 K\"]\nlighting_total = 1.0\n[clusters]\ncount = 2\nmax_emissivity = 0.96\n"),
-        );
-        let ask = [
-            "sweep",
-            file,
-            "--command",
-            command,
-            "--vary",
-            "cube.data=cubes",
-            "--columns",
-            column,
-            "--out",
-            command,
-        ];
+    // Two brightnesses, of which the variance is the mean.
+    let frame: Vec<f64> = (0..12 * 16 * 5_u64)
+        .map(|i| {
+            let draw =
+                i.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(31).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let mean = if i / 5 % 16 < 8 { 2e5_f64 } else { 4e5 };
+            mean + ((draw >> 11) as f64 / 2f64.powi(53) - 0.5) * (12.0 * mean).sqrt()
+        })
+        .collect();
+    std::fs::create_dir(folder.path().join("frames")).unwrap();
+    write_npy(&folder.path().join("frames/a.npy"), Shape::new(12, 16, 5).unwrap(), &frame).unwrap();
+    std::fs::write(folder.path().join("frames/b.npy"), &whole[..whole.len() / 2]).unwrap();
+    for (file, command, data, column, answered) in [
+        ("a.toml", "library", "cubes", "decided", 3),
+        ("noise.toml", "calibrate noise", "frames", "noise_electrons[1]", 1),
+    ] {
+        let vary = format!("cube.data={data}");
+        let ask =
+            ["sweep", file, "--command", command, "--vary", &vary, "--columns", column, "--out", command];
         let found = folder.json(&ask);
-        assert_eq!((found["rows"].as_u64(), found["failed"].as_u64()), (Some(4), Some(1)), "{found}");
+        let counts = (found["answered"].as_u64(), found["failed"].as_u64());
+        assert_eq!(counts, (Some(answered), Some(1)), "{found}");
     }
     std::fs::create_dir(folder.path().join("none")).unwrap();
     let refused = folder.refusal(&["sweep", "a.toml", "--vary", "cube.data=none", "--out", "rows2"]);
