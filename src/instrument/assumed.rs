@@ -6,7 +6,7 @@ pub const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
 /// A figure of a camera that nobody stated, and what stands for it.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Assumed {
-    /// Its key.
+    /// Key of the figure that nobody stated.
     pub figure: &'static str,
     /// What stands for it, with its unit.
     pub taken: String,

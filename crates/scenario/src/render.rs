@@ -43,11 +43,11 @@ const MINIMUM: &str =
 pub struct RenderScenario {
     /// What it is about, for headings.
     pub title: Option<String>,
-    /// What is there.
+    /// The scene that is to be rendered.
     pub scene: SceneSpec,
-    /// The spectral bands.
+    /// The spectral bands in which it is rendered.
     pub bands: BandsSpec,
-    /// The camera.
+    /// The camera that records the scene.
     pub camera: CameraSpec,
     /// The pair of cameras; one view if silent.
     pub stereo: Option<Stereo>,

@@ -246,7 +246,8 @@ impl Engine {
 }
 
 fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
-    let result = study.size_with(SizeAsked { solutions: true, sensitivity: ask.full, emissivity_errors: ask.full })?;
+    let result =
+        study.size_with(SizeAsked { solutions: true, sensitivity: ask.full, emissivity_errors: ask.full })?;
     let pairs = study.traded_off();
     let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
     let pair = pairs.iter().find(wanted).or(pairs.first());

@@ -97,7 +97,7 @@ pub struct Detection {
     pub interval: Interval,
     /// Decisions for each of the candidates, ties split.
     pub decisions: Vec<f64>,
-    /// Trials made.
+    /// Number of trials that were made.
     pub trials: u64,
     /// Trials in which a fit did not converge (its best state so far counts).
     pub unconverged: u64,

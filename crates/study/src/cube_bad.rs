@@ -85,9 +85,9 @@ pub(super) fn bands_found(found: &[BadBand]) -> impl Iterator<Item = Warning> + 
 pub struct BadPixels {
     /// `missing`, `dead`, `stuck`, `saturated`, `too-bright`, `named` or `outlier`.
     pub why: &'static str,
-    /// Its number in `bad_pixels.npy`.
+    /// Number of the reason in `bad_pixels.npy`.
     pub code: u8,
-    /// Pixels.
+    /// Number of pixels that are bad for this reason.
     pub pixels: usize,
 }
 

@@ -50,7 +50,7 @@ pub struct Sizing {
     pub trade_offs: Option<Vec<TradeOff>>,
     /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
     pub photon_radiance: f64,
-    /// All alternatives.
+    /// The target against each of its alternatives.
     pub pairs: Vec<PairResult>,
     /// The alternative that is hardest to tell apart.
     pub limiting: String,
@@ -65,7 +65,7 @@ pub struct Sizing {
     pub safety: Vec<SafetyOfTarget>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -90,9 +90,9 @@ impl Default for SizeAsked {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct RequirementResult {
-    /// Which distance decides.
+    /// Name of the distance that decides: nearest or local.
     pub by: &'static str,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of any camera.
     pub distance: f64,
     /// Detection probability demanded, Φ of it.
     pub detection_probability: f64,

@@ -16,11 +16,11 @@ pub enum Thing {
     Reproductions,
     /// Integrals of the spectra over a band.
     BandIntegrals,
-    /// Sections of an answer.
+    /// Sections of an answer that were asked for.
     Sections,
     /// Derivatives of all bands with respect to one parameter, formed for local distances.
     DerivativeColumns,
-    /// Local distances.
+    /// Local distances of pairs of materials.
     LocalDistances,
     /// Bounds of the nearest distances of a target to all alternatives at once.
     SharedBounds,
@@ -52,7 +52,7 @@ pub enum Thing {
     Spectra,
     /// Likelihood ratios drawn without spectra.
     Ratios,
-    /// Classifiers trained.
+    /// Classifiers that were trained on drawn spectra.
     TrainedClassifiers,
     /// Spectra read by a fit or by an imager.
     Readings,
@@ -60,7 +60,7 @@ pub enum Thing {
     MaterialFits,
     /// Reports of tables and figures.
     Reports,
-    /// Figures drawn for reports.
+    /// Figures that were drawn for reports.
     Figures,
 }
 
@@ -139,7 +139,7 @@ impl Thing {
 /// Why something was not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Reason {
-    /// Nobody asked for it.
+    /// Nobody asked for the result of it.
     NotAsked,
     /// Computed once for several that need the same.
     Shared,
@@ -163,7 +163,7 @@ pub enum Reason {
     Decided,
     /// The interval was narrow enough.
     NarrowEnough,
-    /// A bound excludes it.
+    /// A bound shows that it cannot change the answer.
     Bounded,
     /// No spectrum has rows nearer to each other than the band is wide.
     NoNearerRows,

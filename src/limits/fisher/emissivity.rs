@@ -38,7 +38,7 @@ mod tests;
 /// What is known of an emissivity beforehand but its values: how large it may be, how much it varies and how smoothly.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Smoothness {
-    /// Mean of all bands.
+    /// Mean of the emissivity over all bands, 0 to 1.
     pub mean: f64,
     /// Deviation that all bands have in common.
     pub magnitude: f64,

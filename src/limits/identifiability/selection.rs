@@ -55,9 +55,9 @@ pub struct FilterSelection {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Quality {
-    /// Distance with the selection.
+    /// Distance that is reached with the selected bands, as the selection measures it.
     pub distance: f64,
-    /// Distance with all bands.
+    /// Distance that is reached with all bands, as `distance`.
     pub distance_all_bands: f64,
     /// Share of the distance that is kept; 0 where there is none to keep. Filters with a noise of
     /// their own may keep more than 1, as they are read less often than bands.

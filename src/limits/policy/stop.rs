@@ -49,7 +49,7 @@ pub enum Start {
 pub struct Decision {
     /// Speed of the vehicle, m s⁻¹.
     pub speed_m_s: f64,
-    /// Closing speed, m s⁻¹.
+    /// Speed at which vehicle and target approach, m s⁻¹.
     pub closing_m_s: f64,
     /// Distance at which the decision must stand, m.
     pub distance_m: f64,

@@ -62,7 +62,7 @@ pub struct Asked {
 /// The noise of a cube.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Transfer {
-    /// Each band.
+    /// The noise of each band by itself.
     pub bands: Vec<OfBand>,
     /// One line for all bands.
     pub common: Line,
@@ -88,7 +88,7 @@ pub struct OfBand {
     pub mean: f64,
     /// Variance at that mean, as measured without any line.
     pub variance: f64,
-    /// Standard error of it.
+    /// Standard error of that variance, unit² of the cube.
     pub sigma_variance: f64,
     /// Variance of texture that was taken out, over the noise's.
     pub texture: f64,

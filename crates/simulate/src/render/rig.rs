@@ -14,13 +14,13 @@ use hadar::error::{Error, Result, check};
 pub struct Rig {
     /// Distance b between the cameras, m.
     pub baseline_m: f64,
-    /// Focal length f, m.
+    /// Focal length f of both cameras, m.
     pub focal_length_m: f64,
     /// Side of a square pixel, m.
     pub pixel_m: f64,
-    /// Pixels in y.
+    /// Number of pixels in the direction y.
     pub rows: usize,
-    /// Pixels in x.
+    /// Number of pixels in the direction x.
     pub columns: usize,
     /// Height above the ground, m.
     pub height_m: f64,

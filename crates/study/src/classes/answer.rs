@@ -6,7 +6,7 @@ use hadar::identifiability::multi::ClassDistances;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ClassSide {
-    /// Name.
+    /// Name of the class, or of the material.
     pub name: String,
     /// Spectra that it rests on.
     pub spectra: usize,
@@ -28,9 +28,9 @@ pub struct ClassSide {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct LeftOut {
-    /// Class of the member.
+    /// Name of the class to which the member belongs.
     pub class: String,
-    /// The member.
+    /// Name of the member that is left out.
     pub member: String,
     /// Distance of the worst pair that is left.
     pub distance: Option<f64>,
@@ -54,11 +54,11 @@ pub struct MixtureAnswer {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ClassAnswer {
-    /// The target's class.
+    /// The class to which the target belongs.
     pub target: ClassSide,
-    /// The alternative's.
+    /// The class of the alternative that it must be distinguished from.
     pub alternative: ClassSide,
-    /// Pairs of members.
+    /// Number of pairs of a target's member with an alternative's.
     pub pairs: usize,
     /// Pairs whose distance was searched; the others were proved to decide nothing.
     pub searched: usize,
@@ -68,7 +68,7 @@ pub struct ClassAnswer {
     pub required: Option<f64>,
     /// The pair of members that is hardest to tell apart.
     pub worst: [String; 2],
-    /// Its distance.
+    /// Distance of that pair, per √photon or of the camera as `statistical` says.
     pub distance: f64,
     /// No pair of members is surely nearer than this.
     pub distance_lower: f64,

@@ -21,7 +21,7 @@ pub(super) const AGAINST: f64 = 4.5;
 /// What was estimated for the whole cube.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SharedFound {
-    /// Each of the unknowns.
+    /// The estimate of each unknown that all pixels share.
     pub unknowns: Vec<SharedRow>,
     /// By how much all noise is larger than told; 1 where that is not asked.
     pub noise_factor: f64,

@@ -16,9 +16,9 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Passband {
-    /// Lower edge, cm⁻¹.
+    /// Wavenumber of the lower edge of the band, cm⁻¹.
     pub low_cm1: f64,
-    /// Upper edge, cm⁻¹.
+    /// Wavenumber of the upper edge of the band, cm⁻¹.
     pub high_cm1: f64,
     /// Centre of a single band, else the middle, cm⁻¹.
     pub center_cm1: f64,
@@ -54,7 +54,7 @@ pub struct Choice {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct BandsThatMatter {
-    /// Alternatives that are counted.
+    /// Names of the alternatives that are taken into account.
     pub alternatives: Vec<String>,
     /// Those left out since not even all bands tell them apart.
     pub left_out: Vec<String>,

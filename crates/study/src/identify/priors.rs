@@ -12,7 +12,7 @@ use hadar::identifiability::detection;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PriorAverage {
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
     /// Fewer photons than this are not enough for any test to be right as often as required; no number suffices where `None`.
     pub photons_required_lower: Option<f64>,

@@ -51,7 +51,7 @@ pub struct Identifiability {
     pub statistical_distance_minimum: Option<f64>,
     /// What is proved of the least, and that which was found.
     pub statistical_distance_minimum_bounds: Option<[f64; 2]>,
-    /// Φ of it.
+    /// Largest probability of a correct decision, Φ of that distance.
     pub detection_probability_minimum: Option<f64>,
     /// Identifiability log₂ 2P of the paper, bits.
     pub identifiability_bits: Option<f64>,
@@ -67,9 +67,9 @@ pub struct Identifiability {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Prediction {
-    /// The material.
+    /// Name of the material of this entry.
     pub material: String,
-    /// Its share by S32.
+    /// Probability that S32 assigns to the material, 0 to 1.
     pub probability: f64,
 }
 
@@ -77,11 +77,11 @@ pub struct Prediction {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct NearestState {
-    /// Its temperature, K.
+    /// Temperature of the alternative in that state, K.
     pub temperature_k: f64,
-    /// Its lighting factors.
+    /// Lighting factors of the alternative in that state, 0 to 1.
     pub lighting: Vec<f64>,
-    /// Its gain.
+    /// Common factor of its counts in that state, where the gain is unknown.
     pub gain: f64,
     /// Temperatures of the environment objects, K, where they are unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,9 +104,9 @@ impl NearestState {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PhotonsRequired {
-    /// By the nearest distance.
+    /// Photons required by the nearest distance, which is the limit.
     pub nearest: Option<f64>,
-    /// By the local distance.
+    /// Photons required by the local distance, which is no limit.
     pub local: Option<f64>,
     /// By the local distance with unknown gain (S29).
     pub local_unknown_gain: Option<f64>,
@@ -138,9 +138,9 @@ pub enum NearestProof {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PairResult {
-    /// The target's material.
+    /// Name of the target's material in the library.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
     /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what tells them apart.
     pub placeholders: bool,
@@ -150,7 +150,7 @@ pub struct PairResult {
     pub distance_local_unknown_gain: f64,
     /// The same with nothing unknown but the material.
     pub distance_no_nuisance: f64,
-    /// Nearest distance per √photon.
+    /// Nearest distance of the two materials, per √photon.
     pub distance_nearest: f64,
     /// What is proved of it: no state of the alternative is nearer.
     pub distance_nearest_lower: f64,
@@ -192,13 +192,13 @@ pub struct PairResult {
     pub decided_by: Option<DecisionLaw>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
     pub statistical_distance_shortcut: Option<f64>,
-    /// Φ(d).
+    /// Largest probability of a correct decision, Φ(d), 0.5 to 1.
     pub detection_probability: Option<f64>,
     /// What it is at least, as proved, and at most.
     pub detection_probability_bounds: Option<[f64; 2]>,
-    /// 1 − Φ(d).
+    /// Smallest probability of a wrong decision, 1 − Φ(d).
     pub miss_probability: Option<f64>,
-    /// log₂ 2P.
+    /// Information on the material, log₂ 2P with P = Φ(d), bits.
     pub information_bits: Option<f64>,
     /// Mutual information of the binary decision.
     pub mutual_information_bits: Option<f64>,
@@ -238,9 +238,9 @@ impl PairResult {
 /// Whether a category that matters for safety is excluded where the target is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SafetyOfTarget {
-    /// Its name.
+    /// Name of the category that matters for safety.
     pub category: String,
-    /// What is there.
+    /// Name of the material that is in the place of the target.
     pub target: String,
     /// Whether the target is of the category itself.
     pub is_target: bool,
@@ -256,7 +256,7 @@ pub struct SafetyOfTarget {
 /// A material of a category that matters for safety, against the target.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SafetyMaterial {
-    /// Its name.
+    /// Name of the material in the library.
     pub material: String,
     /// Whether it is among the alternatives: if not, nothing is known of it.
     pub compared: bool,

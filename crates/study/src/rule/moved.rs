@@ -27,7 +27,7 @@ pub struct FiguresMoved {
     pub law: Vec<BeforeLaw>,
     /// Every number moved, those first that change most.
     pub figures: Vec<Moved>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -37,7 +37,7 @@ pub struct FiguresMoved {
 pub struct Moved {
     /// The figure, with the place in its list.
     pub key: String,
-    /// Its value.
+    /// Value of the figure as the rule states it, with its unit.
     pub value: String,
     /// What stood in its place.
     pub moved_to: String,

@@ -41,7 +41,7 @@ pub struct WithoutPlaceholders {
     pub margin: f64,
     /// Statistical distance, least over the envelope.
     pub statistical_distance: f64,
-    /// Of the target.
+    /// The numbers of which more than one is known of the target.
     pub target: String,
     /// What it is the least against.
     pub alternative: String,
@@ -51,7 +51,7 @@ pub struct WithoutPlaceholders {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct RuleRequirement {
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of any camera.
     pub distance: f64,
     /// Detection probability demanded, Φ of it.
     pub detection_probability: f64,
@@ -110,9 +110,9 @@ pub struct EnvelopeResult {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CameraVerdict {
-    /// Its name.
+    /// Name of the camera, as the rule names it.
     pub name: String,
-    /// What comes of it.
+    /// Whether the camera meets the rule: yes, no or undecided.
     pub verdict: Verdict,
     /// How that is known: the weakest of what it rests on.
     pub grade: Grade,
@@ -128,9 +128,9 @@ pub struct CameraVerdict {
     pub uncertainty: Option<MarginUncertainty>,
     /// What meeting it rests on, hardest first; of a 'no' what was taken on the unfavourable side.
     pub conditions: Vec<Condition>,
-    /// Number of bands.
+    /// Number of spectral bands that the camera measures.
     pub bands: usize,
-    /// How they are read.
+    /// Whether its bands are measured at once or one after the other.
     pub readout: Readout,
     /// Time until all of them are exposed once, s.
     pub sweep_s: f64,
@@ -144,7 +144,7 @@ pub struct CameraVerdict {
     pub lower_bound: Option<f64>,
     /// How sure the limiting scene is.
     pub certificate: Certified,
-    /// The scene that limits.
+    /// The scene of the envelope in which the margin is least.
     pub limiting: LimitingScene,
     /// Where that is of a pair entered as one number each: what the camera does without such pairs, if there are others.
     pub without_placeholders: Option<WithoutPlaceholders>,
@@ -214,9 +214,9 @@ impl Certified {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct LimitingScene {
-    /// Material of the target.
+    /// Name of the material of the target.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative that is most similar there.
     pub alternative: String,
     /// Temperature of the target, K.
     pub temperature_k: f64,
@@ -268,15 +268,15 @@ pub struct NotIdentifiable {
     pub fraction: f64,
     /// Its statistical error, one standard deviation.
     pub standard_error: f64,
-    /// What 'no camera' means.
+    /// What is taken for 'no camera' here, in words.
     pub definition: IdealCamera,
     /// Share in which errors of the emissivities make up more than the distance, whatever the camera.
     pub fraction_within_emissivity_error: f64,
     /// Its statistical error, one standard deviation.
     pub standard_error_within_emissivity_error: f64,
-    /// What that means.
+    /// What the stated error of the emissivities means here, in words.
     pub emissivity_error: EmissivityError,
-    /// Scenes that were drawn.
+    /// Number of scenes that were drawn from the envelope.
     pub scenes: usize,
     /// Where those scenes are in which no camera could do it; `None` where there are none.
     pub neighbourhood: Option<Neighbourhood>,
@@ -378,7 +378,7 @@ pub struct ApproachResult {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CrossingResult {
-    /// How fast, m s⁻¹.
+    /// Speed of the target across the line of sight, m s⁻¹.
     pub speed_m_s: f64,
     /// How far beside the camera's axis it would be met, at most, m.
     pub offset_m: f64,

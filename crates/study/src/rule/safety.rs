@@ -13,9 +13,9 @@ use serde::Serialize;
 /// Whether a camera excludes a category that matters for safety, anywhere in the envelope of a clause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SafetyOfRule {
-    /// Its name.
+    /// Name of the category that matters for safety.
     pub category: String,
-    /// The camera.
+    /// Name of the camera, as the rule names it.
     pub camera: String,
     /// Whether it is excluded wherever it is not.
     pub excluded: bool,

@@ -59,7 +59,7 @@ pub struct StandInAnswer {
     pub clause: Option<String>,
     /// Statistical distance that the rule demands of cameras.
     pub distance: f64,
-    /// Φ of it.
+    /// Largest probability of a correct decision, Φ of that distance.
     pub detection_probability: f64,
     /// Temperatures that a person may have, K.
     pub person_k: [f64; 2],
@@ -96,7 +96,7 @@ pub struct ShapesDrawn {
     pub count: usize,
     /// Share of all such shapes that have at least the tolerance.
     pub share: f64,
-    /// How sure that is.
+    /// Level of confidence of that statement, 0 to 1.
     pub confidence: f64,
 }
 
@@ -104,13 +104,13 @@ pub struct ShapesDrawn {
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandIn {
-    /// The camera.
+    /// Name of the camera that looks at both.
     pub camera: String,
-    /// Material of the person.
+    /// Name of the material of the person.
     pub person: String,
-    /// Material of the stand-in.
+    /// Name of the material of the surrogate target.
     pub material: String,
-    /// Tolerance of its emissivity.
+    /// Tolerance of the emissivity of the surrogate target, 0 to 1.
     pub emissivity_tolerance: f64,
     /// Tolerance of its temperature at the edge, K; `None` where it is told from a person at its very temperature. No more than 40 K are
     /// looked at.
@@ -119,7 +119,7 @@ pub struct StandIn {
     pub temperature_tolerance_proved_k: Option<f64>,
     /// Statistical distance of the farthest at the edge.
     pub distance: f64,
-    /// Where that is.
+    /// The state at the edge of the tolerance in which the surrogate differs most from the person.
     pub farthest: StandInScene,
 }
 
@@ -127,9 +127,9 @@ pub struct StandIn {
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandInScene {
-    /// Difference of its emissivity.
+    /// Difference of the surrogate's emissivity from that of its material.
     pub emissivity_offset: f64,
-    /// Its temperature, K.
+    /// Temperature of the surrogate in that state, K.
     pub temperature_k: f64,
     /// Lighting factor of every object.
     pub lighting: Vec<f64>,
@@ -137,7 +137,7 @@ pub struct StandInScene {
     pub surroundings_k: Vec<f64>,
     /// Temperature of the person, K.
     pub person_temperature_k: f64,
-    /// Lighting of the person.
+    /// Lighting factors of the person in that state, 0 to 1.
     pub person_lighting: Vec<f64>,
 }
 

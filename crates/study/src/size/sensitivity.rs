@@ -20,7 +20,7 @@ use serde::ser::{SerializeMap, Serializer};
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Sensitivity {
-    /// ∂ln d/∂ln q.
+    /// Relative change of d for a relative change of each figure q, ∂ln d/∂ln q.
     pub elasticities: Elasticities,
     /// What errors of the emissivities do.
     pub emissivity: EmissivityErrors,

@@ -53,13 +53,13 @@ impl CapCode {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Cap {
-    /// Which.
+    /// Code of the limit that is broken.
     pub code: CapCode,
     /// The limit, in the unit of the quantity.
     pub limit: f64,
     /// Whether no value meets the task within the limit; else one on the other side of the limit meets it too.
     pub blocks: bool,
-    /// The reason in words.
+    /// Why the value breaks the limit, in words.
     pub reason: String,
 }
 

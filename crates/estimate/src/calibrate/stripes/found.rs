@@ -35,9 +35,9 @@ pub struct Stripe {
     pub line: usize,
     /// The band, counted from 0.
     pub band: usize,
-    /// Gain g.
+    /// Gain g of the line, 1 of a clean one.
     pub gain: f64,
-    /// Standard error of it.
+    /// Standard error of the gain g.
     pub sigma_gain: f64,
     /// Offset o, in the unit of the cube.
     pub offset: f64,
@@ -90,7 +90,7 @@ pub struct Kept {
     pub line: usize,
     /// The band, counted from 0.
     pub band: usize,
-    /// Why.
+    /// Why the line was left as it was.
     pub why: Why,
     /// How far it looks off; NaN where that is not known.
     pub off: f64,
@@ -126,11 +126,11 @@ impl Destriped {
 /// The stripes of a cube.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Destriped {
-    /// Along what they lie.
+    /// Direction of the stripes: rows or columns.
     pub axis: Axis,
-    /// Lines of the cube.
+    /// Number of lines of the cube along that direction.
     pub lines: usize,
-    /// Bands of the cube.
+    /// Number of spectral bands of the cube.
     pub bands: usize,
     /// The stripes, by line and band.
     pub stripes: Vec<Stripe>,

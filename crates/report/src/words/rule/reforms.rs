@@ -16,7 +16,7 @@ pub const BESIDE: &str = "This holds proposals beside the rule: it changes no ce
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ReformShown {
-    /// What it is called.
+    /// Name by which the reform is shown.
     pub name: String,
     /// What it changes, in a sentence.
     pub changes: String,
@@ -32,7 +32,7 @@ pub struct ReformShown {
 pub struct Change {
     /// By the rule as it is: `yes`, `yes, if`, `undecided` or `no`, with the least margin and its clause.
     pub before: String,
-    /// By the reform.
+    /// Verdict by the reform: `yes`, `yes, if`, `undecided` or `no`, with the least margin and its clause.
     pub after: String,
     /// Whether it is another verdict.
     pub changed: bool,

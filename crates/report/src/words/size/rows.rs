@@ -12,7 +12,7 @@ use hadar_study::{PairResult, Sizing, Study};
 /// A number that is shown.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Row {
-    /// What it is called.
+    /// Name of the number as it is shown.
     pub label: &'static str,
     /// The number with its unit, with no more digits than are trusted.
     pub value: String,
@@ -33,7 +33,7 @@ pub struct Solved {
     pub now: String,
     /// What is to be said of the value, behind a semicolon; may be empty.
     pub remark: String,
-    /// What stands against it.
+    /// Limits of the camera that the value would break, in words.
     pub caps: Vec<String>,
     /// Its key in the JSON.
     pub key: &'static str,

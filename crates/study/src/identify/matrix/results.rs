@@ -17,15 +17,15 @@ pub type Rows = Vec<Vec<Option<f64>>>;
 pub struct Matrix {
     /// Names of the materials, the order of rows and columns.
     pub materials: Vec<String>,
-    /// Which distance decides.
+    /// Name of the distance that decides: nearest or local.
     pub by: &'static str,
-    /// Nearest distance per √photon.
+    /// Nearest distance of every target (row) from every material (column), per √photon.
     pub distance_nearest: Rows,
     /// What is proved of it: no state of the alternative is nearer.
     pub distance_nearest_lower: Rows,
     /// Its estimated relative error by rounding.
     pub relative_error_nearest: Rows,
-    /// Local distance per √photon.
+    /// Local distance of every target (row) from every material (column), per √photon.
     pub distance_local: Rows,
     /// Estimated bound on its relative rounding error.
     pub relative_error: Rows,
@@ -39,7 +39,7 @@ pub struct Matrix {
     pub statistical_distance: Option<Rows>,
     /// What is proved of it, whatever rounding did to it.
     pub statistical_distance_lower: Option<Rows>,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required for a pair.
     pub required_distance: f64,
     /// Every material as a target.
     pub targets: Vec<TargetVerdict>,
@@ -58,7 +58,7 @@ pub struct Matrix {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct TargetVerdict {
-    /// The material.
+    /// Name of the material that is the target.
     pub material: String,
     /// The one hardest to tell it from.
     pub limiting: String,
@@ -96,7 +96,7 @@ impl Matrix {
 pub struct Apart {
     /// Pairs told apart, either of them the target.
     pub told_apart: Vec<[String; 2]>,
-    /// Pairs that are not.
+    /// Pairs of materials that the camera does not distinguish.
     pub not_told_apart: Vec<[String; 2]>,
     /// Disjoint groups of which no two members are told apart.
     pub clusters: Vec<Vec<String>>,
