@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 pub struct Lens {
     /// Name of the lens in the catalogue.
     pub name: String,
-    /// Names of cameras that it is sold for, where `*` stands for any letters.
+    /// Names of cameras that it is sold for, where `*` matches any letters.
     pub cameras: Vec<String>,
     /// f-number: focal length over the diameter of the aperture.
     pub f_number: f64,

@@ -41,7 +41,7 @@ pub struct Reference {
 /// A key of a file.
 #[derive(Debug, Clone, Serialize)]
 pub struct ExplainedKey {
-    /// Where it may stand, the shortest path first.
+    /// Where the key may be written, the shortest path first.
     pub paths: Vec<String>,
     /// What the key means, in a sentence.
     pub meaning: &'static str,
@@ -55,7 +55,7 @@ pub struct ExplainedKey {
     pub silent: Option<&'static str>,
     /// A line to write; none of a table.
     pub example: Option<String>,
-    /// Where it enters: an equation of the paper, or what is done with it.
+    /// Where the key is used: an equation of the paper, or what is done with it.
     pub enters: &'static str,
     /// Commands that read a file with this key.
     pub commands: Vec<&'static str>,

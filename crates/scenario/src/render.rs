@@ -49,7 +49,7 @@ pub struct RenderScenario {
     pub bands: BandsSpec,
     /// The camera that records the scene.
     pub camera: CameraSpec,
-    /// The pair of cameras; one view if silent.
+    /// The pair of cameras; one view where nothing is stated.
     pub stereo: Option<Stereo>,
     /// What its materials are parts of, for the decomposition.
     pub categories: Vec<CategorySpec>,

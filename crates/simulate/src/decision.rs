@@ -184,7 +184,7 @@ impl DecisionScene<'_> {
     /// As [`DecisionScene::detection`]; no classes.
     pub fn best_fits<'m>(&'m self, classes: &[(&'m [f64], &State)]) -> Result<BestFits<'m>> {
         let Some((_, known)) = classes.first() else {
-            return Err(Error::malformed("there are no materials to tell apart", "give two"));
+            return Err(Error::malformed("there are no materials to distinguish", "give two"));
         };
         let mut candidates = Vec::with_capacity(classes.len());
         for &(own, state) in classes {

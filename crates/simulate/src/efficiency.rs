@@ -77,7 +77,7 @@ impl Errors {
     }
 }
 
-/// One parameter beside its bound.
+/// One parameter compared with its bound.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ParameterEfficiency {
@@ -95,7 +95,7 @@ pub struct ParameterEfficiency {
     pub verdict: Verdict,
 }
 
-/// All parameters beside the bound of their covariance.
+/// All parameters compared with the bound of their covariance.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct JointEfficiency {

@@ -53,7 +53,7 @@ const MOVES: f64 = 0.3;
 pub struct BadFound {
     /// How many pixels are bad, by why.
     pub pixels: Vec<BadPixels>,
-    /// Bands that were found to be bad or that the file lacks, besides those named.
+    /// Bands that were found to be bad or that the file lacks, in addition to those named.
     pub bands: Vec<BadBand>,
     /// The code of every pixel, 0 for good ones; empty where all are.
     #[serde(skip)]

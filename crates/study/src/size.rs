@@ -43,7 +43,7 @@ pub struct Sizing {
     pub object: Option<ObjectAnswer>,
     /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera, or where it was not asked for.
     pub solve_for: Option<Solutions>,
-    /// What the verdict hangs on; `None` without a camera, or where it was not asked for.
+    /// What the verdict depends on; `None` without a camera, or where it was not asked for.
     pub sensitivity: Option<Sensitivity>,
     /// Two quantities at a time, where they were asked for ([`Study::trade_offs`]).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -52,7 +52,7 @@ pub struct Sizing {
     pub photon_radiance: f64,
     /// The target against each of its alternatives.
     pub pairs: Vec<PairResult>,
-    /// The alternative that is hardest to tell apart.
+    /// The alternative that is hardest to distinguish.
     pub limiting: String,
     /// What sizing practice says of the camera; `None` without a camera or without target.size.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -94,7 +94,7 @@ pub struct RequirementResult {
     pub by: &'static str,
     /// Statistical distance d that is required of any camera.
     pub distance: f64,
-    /// Detection probability demanded, Φ of it.
+    /// Probability of a correct decision demanded, Φ of it.
     pub detection_probability: f64,
     /// Photons at the detector by what is proved, shot noise only; `None` where none suffice, or where nothing is proved.
     pub photons: Option<f64>,

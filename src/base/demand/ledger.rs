@@ -30,13 +30,13 @@ pub enum Thing {
     FewBandEstimates,
     /// Descents from the target's own state to a nearer one.
     Descents,
-    /// Searches for the nearest state in a few of the bands.
+    /// Searches for the closest confuser in a few of the bands.
     FewBandSearches,
-    /// Searches for the nearest state in all bands.
+    /// Searches for the closest confuser in all bands.
     NearestSearches,
-    /// Nearest states followed from one that was found, as a quantity is solved for.
+    /// Closest confusers followed from one that was found, as a quantity is solved for.
     RefinedSearches,
-    /// Worst cases over an envelope of scenes, one for each pair of materials and camera.
+    /// Worst cases over an operating envelope of scenes, one for each pair of materials and camera.
     WorstCases,
     /// Boxes of scenes and states of which a bound is proved.
     Boxes,
@@ -46,7 +46,7 @@ pub enum Thing {
     Windows,
     /// Noisy views that are matched.
     MatchedViews,
-    /// Trials of a decision, each with counts of its own.
+    /// Trials of a decision, each with separate counts.
     Trials,
     /// Spectra drawn for classifiers or thermometers.
     Spectra,

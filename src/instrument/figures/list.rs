@@ -52,7 +52,7 @@ macro_rules! every_figure {
             description: String,
             /// Where the figures are from, and what is known to be wrong with them.
             provenance: Vec<String>,
-            /// Figures that no document states, and what stands for them.
+            /// Figures that no document states, and the values taken for them.
             assumed: Vec<Assumed>,
         }
         /// Exposure of one frame, s.
@@ -258,7 +258,7 @@ macro_rules! every_figure {
             "Counts at which a pixel is full; never where it is not stated.",
             "longest exposure; step of the quantisation").always_shown();
 
-        /// Whether the bunching of thermal photons adds its noise. A document that is silent means that it does not.
+        /// Whether the bunching of thermal photons adds its noise. A document that does not mention it means that it does not.
         #[serde(default = "not_asked_for")]
         photon_bunching: Option<bool>,
         /// Whether the bunching of thermal photons adds its noise.
@@ -275,9 +275,9 @@ macro_rules! every_figure {
             "Whether all bands are read in one exposure or one after the other; one after the other where nobody states it.",
             "exposures until all bands are known; light of filters (S8, S9)").elsewhere();
 
-        /// Bands that it has of its own; with one of them a spectrum takes filters.
+        /// Number of bands that the detector itself separates; with one of them a spectrum takes filters.
         spectral_bands: Option<u32>,
-        /// Bands that it has of its own, if known; with one of them a spectrum takes filters.
+        /// Number of bands that the detector itself separates, if known; with one of them a spectrum takes filters.
         => Option<u32>,
         row("spectral_bands", "bands of its own", Kind::Count(slot!(spectral_bands)), "1",
             "Bands that the camera has of its own: with 1 a spectrum takes filters, one after the other; as many as the scenario \

@@ -42,7 +42,7 @@ pub struct Smoothness {
     pub mean: f64,
     /// Deviation that all bands have in common.
     pub magnitude: f64,
-    /// Deviation of each band beside that.
+    /// Deviation of each band compared with that.
     pub shape: f64,
     /// Difference of wavenumbers at which the correlation of the shape has fallen to a quarter, cm⁻¹.
     pub correlation_cm1: f64,

@@ -103,7 +103,7 @@ pub struct AverageProbability {
 pub struct AveragePhotons {
     /// Fewer are not enough for any test.
     pub lower: f64,
-    /// So many are enough for a test; `None` where no such number is known.
+    /// This number of photons is enough for a test; none where no such number is known.
     pub upper: Option<f64>,
     /// Number of states of each class that represent its priors.
     pub states: usize,

@@ -123,7 +123,7 @@ pub fn library_from_cube(
     check::unit_interval("largest emissivity", asked.max_emissivity)?;
     check::positive("largest emissivity", asked.max_emissivity, "")?;
     if setting.gain {
-        let found = "an unknown gain, which no emissivity can be told from";
+        let found = "an unknown gain, which no emissivity can be distinguished from";
         return Err(Error::malformed(found, "give counts of a known scale"));
     }
     let (found, expected) = (cube.shape().bands(), setting.bands.len());

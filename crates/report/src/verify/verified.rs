@@ -78,21 +78,21 @@ pub struct Verified {
     pub command: String,
     /// What is not as it should be.
     pub differences: Vec<Difference>,
-    /// By which keys an envelope says that it is signed; whether it is, is not checked here.
+    /// Keys by which a DSSE `envelope` says that it is signed; whether it is, is not checked here.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub signed_by: Vec<String>,
     /// Files in the folder that are not the report's, of which nothing is said.
     pub strangers: Vec<String>,
 }
 
-/// What is wrong with an envelope.
+/// What is wrong with a DSSE envelope.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "fault", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum EnvelopeFault {
     /// It is none.
     NoEnvelope {
-        /// Why the file is no envelope.
+        /// Why the file is no DSSE envelope.
         why: String,
     },
     /// Its payload is of another type.

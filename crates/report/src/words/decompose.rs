@@ -28,8 +28,8 @@ pub fn text(result: &Decomposed) -> String {
     let is_rejected = result.model.verdict.takes_back();
     let safety =
         result.segmentation.as_ref().map_or_else(String::new, |found| segmented::safety(found, is_rejected));
-    let besides = surroundings_found(&result.surroundings_found) + &constants(result);
-    let mut out = format!("{}{besides}\n{safety}\n{}", sentence(result), read_as(&result.read));
+    let others = surroundings_found(&result.surroundings_found) + &constants(result);
+    let mut out = format!("{}{others}\n{safety}\n{}", sentence(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
     out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
     out.push_str(&result.none_of_these.as_ref().map_or_else(String::new, none_of_these));
@@ -66,7 +66,7 @@ fn distilled(result: &Decomposed) -> String {
             significant(of.noise, 2)
         );
     }
-    out.push_str("  Residues are taken for the sky's as far as they are no noise; light of objects that are no surroundings is in them.\n\n");
+    out.push_str("  Residues that are no noise are attributed to the sky; radiation of objects that are not listed as surroundings is contained in them.\n\n");
     out
 }
 
@@ -160,7 +160,7 @@ pub(crate) fn surroundings_found(all: &[LightFound]) -> String {
 fn none_of_these(found: &Besides) -> String {
     format!(
         "None of these materials (smooth emissivities, prior {})\n  {}\n  \
-         such a pixel is of no category, may be of any, and has a temperature of its own with its deviation\n\n",
+         such a pixel is of no category, may be of any, and has a temperature with its standard deviation\n\n",
         share(found.prior),
         besides(found),
     )
@@ -374,7 +374,7 @@ fn neighbours(result: &Decomposed) -> String {
     };
     match prior {
         SpatialPrior::Potts { weight, .. } => format!(
-            "  neighbours (Potts): each of four adds {} to the log-odds of its own material and temperature{}{}\n",
+            "  neighbours (Potts): each of four adds {} to the log-odds of the neighbour's material and temperature{}{}\n",
             significant(weight, 3),
             about.temperature_step_k.map_or_else(String::new, |step| {
                 format!("; temperatures of a material differ by {} from pixel to pixel", quantity(step, "K"))

@@ -61,7 +61,7 @@ const AIR_UNKNOWN_KEYS: &[Key] = &[
         Is("[\"temperature\", \"lighting\"]"),
         "[\"temperature\", \"lighting\"]",
         "What of the scene is not known beside the distance.",
-        "columns of the Fisher matrix that the distance is told apart from",
+        "columns of the Fisher matrix that the distance is distinguished from",
     ),
     Key::row(
         "priors",

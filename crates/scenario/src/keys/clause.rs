@@ -142,7 +142,7 @@ const OWN_KEYS: &[Key] = &[
     own!(
         "alternatives",
         Value::Table(&task::ALTERNATIVES),
-        "What it must be told apart from, in this clause."
+        "What it must be distinguished from, in this clause."
     ),
     own!("atmosphere", Value::Table(&task::ATMOSPHERE), "The air, in this clause."),
     own!("bands", Value::Table(&task::BANDS), "The bands, in this clause."),
@@ -162,7 +162,7 @@ const DEMANDS: &[Value] = &[
     Value::Table(&DEPTH),
 ];
 const REQUIREMENT_OF_ANY: &[Key] = &[Key {
-    silent: Means("that of the rule; of kinds that tell nothing apart it must be there"),
+    silent: Means("that of the rule; of kinds that distinguish nothing it must be there"),
     ..own!("requirement", Value::Either(DEMANDS), "What is demanded, in terms of the clause's kind.")
 }];
 const WHAT: &str = "One demand, with the tables in which its scenes differ from the rule's.";

@@ -19,7 +19,7 @@ const ABOUT_KEYS: &[Key] = &[
         "text",
         Value::Text,
         Means("none"),
-        "\"A camera must tell a person from a robot.\"",
+        "\"A camera must distinguish a person from a robot.\"",
         "Its wording.",
         "quoted in the certificate",
     ),

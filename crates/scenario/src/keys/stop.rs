@@ -94,7 +94,7 @@ const STAND_IN_KEYS: &[Key] = &[
     Key::row(
         "clause",
         Value::Text,
-        Means("the only one that tells people apart"),
+        Means("the only one that distinguishes people"),
         "\"crossing\"",
         "The clause whose limit is turned round.",
         "scenes in which no camera may tell the stand-in",

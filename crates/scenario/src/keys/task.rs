@@ -130,7 +130,7 @@ const ALTERNATIVES_KEYS: &[Key] = &[
         MATERIALS,
         Means("every other material of the library, skies apart"),
         "[\"aluminium\"]",
-        "What the target must be told apart from.",
+        "What the target must be distinguished from.",
         "emissivity of the other hypothesis (S18)",
     ),
     Key::row(
@@ -161,7 +161,7 @@ const ALTERNATIVES_KEYS: &[Key] = &[
 ];
 /// `[alternatives]`.
 pub(crate) static ALTERNATIVES: Table =
-    Table::of("What the target must be told apart from.", &[ALTERNATIVES_KEYS]);
+    Table::of("What the target must be distinguished from.", &[ALTERNATIVES_KEYS]);
 
 const CLASS_KEYS: &[Key] = &[
     Key::row(
@@ -277,7 +277,7 @@ const UNKNOWN_KEYS: &[Key] = &[
         Is("[\"temperature\", \"lighting\"]"),
         "[\"temperature\", \"lighting\"]",
         "What of the scene is not known and has to be read from the same photons.",
-        "columns of the Fisher matrix that the material is told apart from (S27, S29)",
+        "columns of the Fisher matrix that the material is distinguished from (S27, S29)",
     ),
     Key::row(
         "priors",

@@ -21,10 +21,10 @@ const NO_FIGURES_OF_CAMERA: &[&str] = &["name", "preset", "share"];
 /// The same of a clause.
 const NO_FIGURES_OF_CLAUSE: &[&str] = &["name", "kind", "text"];
 
-/// What stands behind some figures of a rule (`[[source]]`).
+/// The source of some figures of a rule (`[[source]]`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Citation {
-    /// Keys of the figures, or of tables with all their figures, e.g. `stop.latency` or `clause[1].envelope`.
+    /// Keys of the figures, or of tables with all their figures, e.g. `stop.latency` or `clause[1].operating envelope`.
     pub keys: Vec<String>,
     /// The document or choice on which the figures are based.
     pub ground: Ground,

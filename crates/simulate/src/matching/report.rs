@@ -39,9 +39,9 @@ pub struct CentreReport {
     pub inliers: Option<Errors>,
     /// Quartiles of the error of all found, pixels.
     pub quartiles: Option<[f64; 3]>,
-    /// All found beside the bound, if one was given.
+    /// All found compared with the bound, if one was given.
     pub efficiency: Option<ParameterEfficiency>,
-    /// Those without outliers beside it.
+    /// Those without outliers compared with it.
     pub efficiency_inliers: Option<ParameterEfficiency>,
 }
 

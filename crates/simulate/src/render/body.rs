@@ -56,12 +56,12 @@ pub enum Body {
     },
 }
 
-/// Something that stands in a scene.
+/// An object of a scene.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Object {
     /// The surface that the object shows.
     pub surface: Surface,
-    /// Where it stands: x and z on the ground, m; of a car and a block the middle of the near end.
+    /// Its place on the ground, x and z, m; of a car and a block the middle of the near end.
     pub at_m: [f64; 2],
     /// The geometric form of the object.
     pub body: Body,

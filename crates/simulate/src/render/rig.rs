@@ -8,7 +8,7 @@ use super::vector::{Vector, along, dot, subtract};
 use hadar::cube::Shape;
 use hadar::error::{Error, Result, check};
 
-/// A stereo camera above the ground; the left camera stands at x = −b/2, the right one at +b/2.
+/// A stereo camera above the ground; the left camera is at x = −b/2, the right one at +b/2.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {

@@ -33,7 +33,7 @@ pub struct StreetSpec {
     pub ground_bump: Option<Bump>,
     /// Whether the car is there.
     pub car: bool,
-    /// Middle of the car's rear bumper: x and z on the ground, m. The car stands along z.
+    /// Middle of the car's rear bumper: x and z on the ground, m. The car is parallel to z.
     pub car_at_m: [f64; 2],
     /// Length, width and height of the car, m.
     pub car_size_m: [f64; 3],
@@ -49,7 +49,7 @@ pub struct StreetSpec {
     pub tyre_emissivity: Emissivity,
     /// Whether the person is there.
     pub person: bool,
-    /// Where the person stands: x and z on the ground, m.
+    /// Place of the person on the ground, x and z, m.
     pub person_at_m: [f64; 2],
     /// Height of the person, m.
     pub person_height_m: f64,

@@ -39,7 +39,7 @@ pub struct AirRanging {
     pub bands: Vec<AirBand>,
     /// The few best bands, where they are asked for.
     pub best_bands: Option<AirBest>,
-    /// An estimator beside its bound.
+    /// An estimator compared with its bound.
     pub witness: Vec<AirWitness>,
     /// Spectra at each of its distances.
     pub trials: usize,
@@ -106,7 +106,7 @@ pub struct AirSight {
     pub blind_direction: Vec<BlindChange>,
     /// Unknowns that change nothing, or nothing that others do not.
     pub without_effect: Vec<String>,
-    /// What is unknown besides the distance.
+    /// What is unknown in addition to the distance.
     pub unknown: Vec<String>,
     /// Modes of the errors of the emissivity.
     pub emissivity_modes: usize,
@@ -179,7 +179,7 @@ pub struct AirBest {
     pub exact: bool,
 }
 
-/// Estimates at one distance beside their bound.
+/// Estimates at one distance compared with their bound.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AirWitness {
     /// True distance of the target, m.

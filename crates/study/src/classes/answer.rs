@@ -14,7 +14,7 @@ pub struct ClassSide {
     pub is_class: bool,
     /// Whether mixtures of its members belong to it.
     pub mixtures: bool,
-    /// Whether it stands as the mean of its spectra.
+    /// Whether the class is represented by the mean of its spectra.
     pub mean: bool,
     /// Its members, and their shares.
     pub members: Vec<String>,
@@ -46,7 +46,7 @@ pub struct MixtureAnswer {
     pub alternative: Vec<(String, f64)>,
     /// Distance of the two, all parts in one lighting.
     pub distance: f64,
-    /// No mixture is nearer, even if every part has a lighting of its own.
+    /// No mixture is nearer, even if every part has a different lighting.
     pub distance_lower: f64,
 }
 
@@ -66,7 +66,7 @@ pub struct ClassAnswer {
     pub statistical: bool,
     /// Statistical distance demanded; `None` without a camera.
     pub required: Option<f64>,
-    /// The pair of members that is hardest to tell apart.
+    /// The pair of members that is hardest to distinguish.
     pub worst: [String; 2],
     /// Distance of that pair, per √photon or of the camera as `statistical` says.
     pub distance: f64,
@@ -76,7 +76,7 @@ pub struct ClassAnswer {
     pub told_apart: Option<bool>,
     /// Share of the pairs that the camera tells, by the weights of the members.
     pub share_of_pairs_told: Option<f64>,
-    /// Mean detection probability over the pairs: it is between these.
+    /// Mean probability of a correct decision over the pairs: it is between these.
     pub mean_detection_probability: Option<[f64; 2]>,
     /// The worst pair without the one or the other of its members.
     pub leave_one_out: Vec<LeftOut>,

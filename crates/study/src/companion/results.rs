@@ -4,7 +4,7 @@ use super::measure::{Caveat, Measure, Unknown};
 use hadar::policy::practice::ObserverTask;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-/// What sizing practice says of a camera, beside what is proved.
+/// What sizing practice says of a camera, for comparison with what is proved.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Companion {

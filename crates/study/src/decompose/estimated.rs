@@ -45,7 +45,7 @@ pub struct SharedRow {
     pub estimate: f64,
     /// Deviation of that, together with all others.
     pub sigma: f64,
-    /// Others, by their places in this list, from which the pixels do not tell it apart.
+    /// Others, by their places in this list, from which the pixels do not distinguish it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub same_as: Vec<usize>,
 }

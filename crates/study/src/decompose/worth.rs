@@ -29,7 +29,7 @@ const NINETY_FIVE: f64 = 1.959_963_984_540_054;
 pub struct TruthFound {
     /// Share of pixels whose material is right.
     pub right_material: Option<f64>,
-    /// Mean of Φ(d), what no test exceeds between a pixel and the nearest state of the others; `None` without all of the truth.
+    /// Mean of Φ(d), what no test exceeds between a pixel and the closest confuser of the others; `None` without all of the truth.
     pub right_material_limit: Option<f64>,
     /// Standard error of that mean.
     pub right_material_limit_error: Option<f64>,

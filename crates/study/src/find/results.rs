@@ -74,7 +74,7 @@ pub struct Choice {
     pub lower: f64,
     /// That of a state that was found.
     pub upper: f64,
-    /// The alternative that is hardest to tell from the target.
+    /// The alternative that is hardest to distinguish from the target.
     pub limiting: String,
     /// What the main job says of it, with its conditions.
     pub verdict: Option<Verdict>,

@@ -34,7 +34,7 @@ pub struct Answers {
     /// Distances of all materials against all others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matrix: Option<Matrix>,
-    /// Which of them can be told apart.
+    /// Which of them can be distinguished.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apart: Option<Apart>,
     /// Scaling of the least distance with the size of the library and with the number of bands.

@@ -10,7 +10,7 @@ use hadar::scene::State;
 use hadar_scenario::{DistanceKind, Scenario};
 use std::collections::BTreeMap;
 
-/// What can be told apart from the target, alternative by alternative.
+/// What can be distinguished from the target, alternative by alternative.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct Identification {
@@ -20,7 +20,7 @@ pub struct Identification {
     pub photon_radiance: f64,
     /// The pairs, in the order of the alternatives.
     pub pairs: Vec<PairResult>,
-    /// The alternative that is hardest to tell apart.
+    /// The alternative that is hardest to distinguish.
     pub limiting: String,
     /// The target against the library as a whole (Algorithm 3).
     pub identifiability: Identifiability,
@@ -41,7 +41,7 @@ pub struct Identification {
     pub stats: Work,
 }
 
-/// A target against all its alternatives (Algorithm 3): the one hardest to tell apart decides.
+/// A target against all its alternatives (Algorithm 3): the one hardest to distinguish decides.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Identifiability {
@@ -55,9 +55,9 @@ pub struct Identifiability {
     pub detection_probability_minimum: Option<f64>,
     /// Identifiability log₂ 2P of the paper, bits.
     pub identifiability_bits: Option<f64>,
-    /// Whether the camera tells the target from every alternative as reliably as required.
+    /// Whether the camera distinguishes the target from every alternative with the required probability.
     pub identifiable: Option<bool>,
-    /// Alternatives that it tells the target from.
+    /// Alternatives that it distinguishes the target from.
     pub told_from: Option<usize>,
     /// The paper's prediction vector S32, target first: a heuristic, no bound and no test's probability.
     pub prediction_heuristic: Option<Vec<Prediction>>,
@@ -142,7 +142,7 @@ pub struct PairResult {
     pub target: String,
     /// Name of the alternative material in the library.
     pub alternative: String,
-    /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what tells them apart.
+    /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what distinguishes them.
     pub placeholders: bool,
     /// Local distance per √photon, nuisances of the scenario.
     pub distance_local: f64,
@@ -160,7 +160,7 @@ pub struct PairResult {
     pub relative_error_nearest: f64,
     /// The state it belongs to.
     pub nearest_state: NearestState,
-    /// What of that state stands at the edge of its range.
+    /// The parameters of that state that are at the edge of their range.
     pub nearest_at_edge: Vec<String>,
     /// Distance from that state back to the target's material, per √photon of the target.
     pub distance_return: f64,

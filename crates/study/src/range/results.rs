@@ -59,7 +59,7 @@ pub struct Ranging {
     pub read: Option<Found>,
     /// Rows, columns and bands of a view.
     pub shape: Shape,
-    /// Where the cameras stand and what a pixel of disparity means.
+    /// Positions of the cameras, and the depth that a pixel of disparity means.
     pub geometry: Geometry,
     /// Bounds, object by object; the first is all of them together.
     pub objects: Vec<ObjectBounds>,
@@ -80,7 +80,7 @@ pub struct Ranging {
     /// Windows that hold a missing sample, and have no bound; none where there are none.
     #[serde(skip_serializing_if = "is_none")]
     pub missing_windows: usize,
-    /// Row and column of the view, from 0, that the first value of the maps stands for: the centre of the first window.
+    /// Row and column of the view, from 0, to which the first value of the maps belongs: the centre of the first window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub maps_begin_at: Option<[usize; 2]>,
     /// What was computed and what was skipped.

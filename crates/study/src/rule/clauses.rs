@@ -78,7 +78,7 @@ pub struct CameraAnswer {
 pub struct ClauseAnswer {
     /// Its name; none of a rule without clauses.
     pub name: Option<String>,
-    /// The kind of the clause, such as `tell-apart`.
+    /// The kind of the clause as the rule names it, such as `tell-apart`.
     pub kind: &'static str,
     /// The text of the clause in the rule.
     pub text: Option<String>,
@@ -101,7 +101,7 @@ pub enum Found {
     Measured(MeasuredAnswer),
 }
 
-/// A clause that tells materials apart.
+/// A clause that requires materials to be distinguished.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct ApartAnswer {
@@ -111,7 +111,7 @@ pub struct ApartAnswer {
     pub envelope: EnvelopeResult,
     /// Every camera, in the order of the rule.
     pub cameras: Vec<CameraVerdict>,
-    /// The part of the envelope in which no camera could do it; `None` where only the verdict was asked for.
+    /// The part of the operating envelope in which no camera could do it; `None` where only the verdict was asked for.
     pub not_identifiable: Option<NotIdentifiable>,
     /// What sizing practice says of every camera at its worst distance, where the rule says how large the target is.
     pub companions: Vec<Companion>,

@@ -40,7 +40,7 @@ pub struct GridCell {
     pub light: Option<String>,
     /// Speed of the vehicle, m s⁻¹.
     pub speed_m_s: f64,
-    /// Distance at which the decision must stand, m.
+    /// Distance at which the decision is due, m.
     pub decision_distance_m: f64,
     /// Every camera, in the order of the rule.
     pub cameras: Vec<CameraInCell>,

@@ -19,7 +19,7 @@ const KELVIN: f64 = 3.0;
 /// Kelvins below which they are a difference.
 const LEAST_KELVIN: f64 = 100.0;
 
-/// What hangs on the figures of a rule.
+/// Sensitivity of the verdicts to the figures of a rule.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct FiguresMoved {

@@ -35,7 +35,7 @@ pub struct Reformed {
     pub status: Option<String>,
     /// The day from which it would hold.
     pub from: Option<String>,
-    /// What stands in the place of the law's own values.
+    /// Values that replace those of the law.
     pub set: Vec<Setting>,
     /// What says so.
     #[serde(flatten)]

@@ -51,7 +51,7 @@ const SEED: u64 = 1;
 /// Share of the demand up to which a tolerance is proved.
 const PROVED: f64 = 0.99;
 
-/// Within which tolerances stand-ins pass for people.
+/// Tolerances within which surrogate targets pass for people.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandInAnswer {
@@ -63,7 +63,7 @@ pub struct StandInAnswer {
     pub detection_probability: f64,
     /// Temperatures that a person may have, K.
     pub person_k: [f64; 2],
-    /// Temperature of the stand-in, K.
+    /// Temperature of the surrogate target, K.
     pub temperature_k: f64,
     /// Every camera, person, material and tolerance of the emissivity.
     pub rows: Vec<StandIn>,
@@ -100,7 +100,7 @@ pub struct ShapesDrawn {
     pub confidence: f64,
 }
 
-/// One stand-in before one camera.
+/// One surrogate target seen by one camera.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandIn {
@@ -112,7 +112,7 @@ pub struct StandIn {
     pub material: String,
     /// Tolerance of the emissivity of the surrogate target, 0 to 1.
     pub emissivity_tolerance: f64,
-    /// Tolerance of its temperature at the edge, K; `None` where it is told from a person at its very temperature. No more than 40 K are
+    /// Tolerance of its temperature at the edge, K; `None` where it is distinguished from a person at its very temperature. No more than 40 K are
     /// looked at.
     pub temperature_tolerance_k: Option<f64>,
     /// The same, proved for all that is within; `None` where nothing is.
@@ -123,7 +123,7 @@ pub struct StandIn {
     pub farthest: StandInScene,
 }
 
-/// A stand-in and the person that is most like it.
+/// A surrogate target and the person that is most similar to it.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandInScene {
@@ -255,7 +255,7 @@ impl RuleStudy {
         match (all.as_slice(), named) {
             ([], _) => {
                 let instead = "write [[clause]] with kind = \"tell-apart\"".into();
-                wrong("", "no clause of the rule tells people apart".into(), instead)
+                wrong("", "no clause of the rule distinguishes people".into(), instead)
             }
             (_, Some(named)) => match all.iter().find(|(_, name)| name.as_deref() == Some(named)) {
                 Some(found) => Ok(found.clone()),
@@ -263,13 +263,13 @@ impl RuleStudy {
                     wrong("stand_in.clause", "the rule has no [[clause]]".into(), "leave it out".into())
                 }
                 None => {
-                    let found = format!("no clause `{named}` tells people apart");
+                    let found = format!("no clause `{named}` distinguishes people");
                     wrong("stand_in.clause", found, format!("write one of {}", names.join(", ")))
                 }
             },
             ([one], None) => Ok(one.clone()),
             (_, None) => {
-                let found = format!("{} clauses tell people apart: {}", all.len(), names.join(", "));
+                let found = format!("{} clauses distinguish people: {}", all.len(), names.join(", "));
                 let instead = format!("write clause = {} in [stand_in], or another of them", names[0]);
                 wrong("stand_in", found, instead)
             }

@@ -77,7 +77,7 @@ pub struct Drawn {
     pub deviation: f64,
     /// The interval that holds as much as ±k deviations of a Gaussian.
     pub interval: [f64; 2],
-    /// Its lower end by so many draws: 95 of 100 such sets have it above.
+    /// Lower end of the margin by this number of draws: 95 of 100 such sets have it above.
     pub surely_above: f64,
 }
 

@@ -16,7 +16,7 @@ use hadar_simulate::average::{AverageDecisions, AverageScene};
 /// Deviations of a share beyond which it contradicts the bracket, one in 2 000 times by chance.
 const CONTRADICTS: f64 = 3.5;
 
-/// The Bayes test with so many photons.
+/// The Bayes test with a given number of photons.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct AveragePoint {
@@ -29,7 +29,7 @@ pub struct AveragePoint {
     /// What the drawn decisions came to.
     #[serde(flatten)]
     pub decisions: AverageDecisions,
-    /// Whether the share lies between the two, within 3.5 of its own deviations.
+    /// Whether the share lies between the two, within 3.5 of its standard deviations.
     pub bracket_holds: bool,
 }
 

@@ -110,7 +110,7 @@ pub struct ThermometryRow {
     pub manual: ImagerErrors,
 }
 
-/// Maximum-likelihood estimates of the temperature beside their bound.
+/// Maximum-likelihood estimates of the temperature compared with their bound.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Reader {
@@ -122,7 +122,7 @@ pub struct Reader {
     pub sight: Sight,
     /// Bias and errors of the estimates of the temperature, K.
     pub errors: Errors,
-    /// Variance beside the bound's, and the verdict; `None` without a bound.
+    /// Variance compared with the bound's, and the verdict; `None` without a bound.
     pub efficiency: Option<ParameterEfficiency>,
     /// The same over all unknown parameters together; `None` if one of them is not seen.
     pub joint: Option<JointEfficiency>,

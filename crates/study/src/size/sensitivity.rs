@@ -16,7 +16,7 @@ use hadar::instrument::Camera;
 use hadar::policy::elasticity::{Elasticity, Lever, elasticity};
 use serde::ser::{SerializeMap, Serializer};
 
-/// What the verdict on a camera hangs on, against the limiting alternative.
+/// Sensitivity of the verdict on a camera, against the limiting alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Sensitivity {

@@ -3,7 +3,7 @@
 use super::quantity::Quantity;
 
 /// Why no value suffices where the distance is 0.
-pub(super) const NEVER: &str = "nothing tells the two apart";
+pub(super) const NEVER: &str = "nothing distinguishes the two";
 
 crate::base::named::named! {
     /// Which limit it is; in the order of the codes' letters, in which several are listed.
@@ -77,7 +77,7 @@ pub struct Solution {
     /// Of a speed, the exposure that it holds at, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure_s: Option<f64>,
-    /// Why no value suffices, or what sets it beside the statistical distance.
+    /// Why no value suffices, or what limits it apart from the statistical distance.
     pub reason: Option<String>,
     /// Limits that shot noise does not know and the value breaks.
     pub caps: Vec<Cap>,

@@ -96,7 +96,7 @@ pub struct Kept {
     pub off: f64,
 }
 
-/// How lines of a band scatter about what those beside them lead to expect, over the level of the band.
+/// How lines of a band scatter about what their neighbours lead to expect, over the level of the band.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Apart {
@@ -142,7 +142,7 @@ pub struct Destriped {
     pub detectable: Vec<f64>,
     /// The same as a gain at the level of each band.
     pub detectable_gain: Vec<f64>,
-    /// How the lines of each band differ from those beside them; none of too few lines.
+    /// How the lines of each band differ from those compared with them; none of too few lines.
     pub apart: Vec<Option<Apart>>,
     /// Median of the lines of each band.
     pub levels: Vec<f64>,

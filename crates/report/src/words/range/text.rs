@@ -173,7 +173,7 @@ fn changes(result: &Ranging) -> String {
     let _ = writeln!(
         out,
         "  each holds for all windows together, the others as they are; now the window at row {}, column {}, {} away decides; \
-         another exposure needs noise_exposure beside it, else its noise is taken to be stated there\n",
+         another exposure needs noise_exposure as well, else its noise is taken to be stated there\n",
         solve.pixel[0],
         solve.pixel[1],
         length(solve.depth_m)

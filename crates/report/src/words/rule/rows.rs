@@ -62,7 +62,7 @@ pub struct ClauseShown {
     pub sentence: String,
     /// What it demands, in a sentence that can be quoted.
     pub demanded: String,
-    /// Where and when the decision must stand.
+    /// Where and when the decision is due.
     pub stop: Option<String>,
     /// What else is to be said of it, a sentence each.
     pub remarks: Vec<String>,

@@ -67,10 +67,10 @@ words! {
         ),
     }
     FewBands {
-        meaning: "There are too few bands to tell emission from scattered light.",
+        meaning: "There are too few bands to distinguish emission from scattered light.",
         remedy: "Give three bands or more.",
-        FewBands { bands: 2 } => "two bands cannot tell temperature, strength of the emission and scattered light apart",
-        FewBands { .. } => "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated",
+        FewBands { bands: 2 } => "two bands cannot distinguish temperature, strength of the emission and scattered light",
+        FewBands { .. } => "one band cannot distinguish emission from scattered light: nothing is left where the temperature is estimated",
     }
     PatternOfEachPixel {
         meaning: "Row and column noise of the camera is taken as another one in every pixel: what a whole column of a \

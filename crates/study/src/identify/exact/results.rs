@@ -4,7 +4,7 @@ use crate::Warning;
 use hadar::identifiability::lattice::LatticeDetection;
 use hadar_simulate::sequential::{Interval, Plan};
 
-/// The simulated decision of one pair beside its limits.
+/// The simulated decision of one pair compared with its limits.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ExactPair {
@@ -12,7 +12,7 @@ pub struct ExactPair {
     pub alternative: String,
     /// Expected photons of the target in all bands.
     pub photons: f64,
-    /// Statistical distance to the nearest state.
+    /// Statistical distance to the closest confuser.
     pub statistical_distance_nearest: f64,
     /// Statistical distance d by the local distance.
     pub statistical_distance_local: f64,

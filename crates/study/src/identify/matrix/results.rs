@@ -60,7 +60,7 @@ pub struct Matrix {
 pub struct TargetVerdict {
     /// Name of the material that is the target.
     pub material: String,
-    /// The one hardest to tell it from.
+    /// The one hardest to distinguish it from.
     pub limiting: String,
     /// Its distance per √photon, by the distance that decides.
     pub distance_minimum: f64,
@@ -68,7 +68,7 @@ pub struct TargetVerdict {
     pub statistical_distance_minimum: Option<f64>,
     /// What is proved of it.
     pub statistical_distance_minimum_lower: Option<f64>,
-    /// Whether the camera tells the material from every other one.
+    /// Whether the camera distinguishes the material from every other one.
     pub identifiable: Option<bool>,
 }
 
@@ -90,17 +90,17 @@ impl Matrix {
     }
 }
 
-/// Pairs that can be told apart, those that cannot, and the groups that these make.
+/// Pairs that can be distinguished, those that cannot, and the groups that these make.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Apart {
-    /// Pairs told apart, either of them the target.
+    /// Pairs distinguished, either of them the target.
     pub told_apart: Vec<[String; 2]>,
     /// Pairs of materials that the camera does not distinguish.
     pub not_told_apart: Vec<[String; 2]>,
-    /// Disjoint groups of which no two members are told apart.
+    /// Disjoint groups of which no two members are distinguished.
     pub clusters: Vec<Vec<String>>,
-    /// Groups that hang together by pairs that are not told apart, if only by a chain of them.
+    /// Groups that hang together by pairs that are not distinguished, if only by a chain of them.
     pub chains: Vec<Vec<String>>,
 }
 
@@ -110,7 +110,7 @@ pub struct Apart {
 pub struct Check {
     /// The scenario with its defaults filled in.
     pub scenario: Scenario,
-    /// Whether the camera tells the target from every alternative.
+    /// Whether the camera distinguishes the target from every alternative.
     pub identifiable: bool,
     /// The first alternative found that it does not; there may be more.
     pub not_told_from: Option<String>,
