@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 pub use toml::value::Date;
 use toml::value::Datetime;
 
-use super::keys::{Key, More, Table, Value};
+use super::keys::{self, Key, More, Table, Value};
 use super::source::{Source, dotted};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Place, Result};
@@ -510,8 +510,26 @@ fn no_row() -> Error {
     Error::malformed("the program reads this otherwise than its table of keys says", "report this as a bug")
 }
 
+/// Other tables that are named for a key which stands in a wrong one.
+const MOST_TABLES: usize = 3;
+
 fn unknown_key(key: &str, known: &[&str]) -> Error {
     let shown: String = key.escape_debug().collect();
+    let elsewhere: Vec<String> = keys::all()
+        .into_iter()
+        .filter(|place| place.key.name == key)
+        .filter_map(|place| {
+            place.paths.first().filter(|path| path.contains('.')).map(|path| format!("`{path}`"))
+        })
+        .collect();
+    if !elsewhere.is_empty() {
+        let more = if elsewhere.len() > MOST_TABLES { ", …" } else { "" };
+        let named: Vec<String> = elsewhere.into_iter().take(MOST_TABLES).collect();
+        return Error::malformed(
+            format!("there is no key `{shown}`"),
+            format!("it is a key of another table: write {}{more}", listing(&named, " or ")),
+        );
+    }
     match Error::unknown_name("key", &shown, known.iter().copied()) {
         Error::UnknownName { nearest, .. } if nearest.is_empty() => {
             let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();

@@ -92,23 +92,25 @@ fn sentence(result: &Decomposed) -> String {
     if !result.method.has_likelihood() {
         let named = result.found.iter().map(|row| row.pixels).sum();
         return match result.method.names_materials() {
-            true => format!(
-                "{} pixels have a material named; how sure that is the method does not say.",
-                of(named, seen)
-            ),
-            false => format!("{} pixels as one blackbody each: no material is told.", whole(seen as u64)),
+            true => {
+                format!("{} pixels have a material named; the method gives no confidence.", of(named, seen))
+            }
+            false => {
+                format!("{} pixels as one blackbody each: no material is determined.", whole(seen as u64))
+            }
         };
     }
     let taken_back = match result.model.verdict {
         ModelVerdict::Rejected => Some(("The cube does not follow its model", "if it held")),
-        ModelVerdict::SharedNotTold => {
-            Some(("What the whole cube shares is not told well enough", "with it as estimated"))
-        }
+        ModelVerdict::SharedNotTold => Some((
+            "The unknowns that all pixels share are not determined well enough",
+            "with it as estimated",
+        )),
         _ => None,
     };
     if let Some((why, condition)) = taken_back {
         return format!(
-            "{why}: {} pixels ({}) would have one material of {} left {condition}; none is decided.",
+            "{why}: {} pixels ({}) would have one remaining material of {} {condition}; none is decided.",
             of(result.decided_if_model_holds, seen),
             share(result.decided_if_model_holds as f64 / seen.max(1) as f64),
             result.materials.len()
@@ -117,7 +119,7 @@ fn sentence(result: &Decomposed) -> String {
     let mut out = match result.decided {
         0 => format!("No pixel of {} is decided", whole(seen as u64)),
         decided => format!(
-            "{} pixels ({}) have one material of {} left",
+            "{} pixels ({}) have one remaining material of {}",
             of(decided, seen),
             share(decided as f64 / seen.max(1) as f64),
             result.materials.len()
@@ -256,12 +258,12 @@ pub(crate) fn flag_said(bit: u8, result: &Decomposed) -> &'static str {
         },
         flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
         flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
-        flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
+        flag::NO_INFORMATION => "in equilibrium with their surroundings: the material cannot be determined",
         flag::LIGHTING_UNKNOWN => {
-            "the lighting is hardly told: little is scattered, or surroundings look alike"
+            "the lighting is hardly determined: little is reflected, or the surroundings are alike"
         }
-        flag::UNDECIDED => "several materials are left by 95 %",
-        flag::SKIPPED => "left out: a sample is missing, or the pixel is bad",
+        flag::UNDECIDED => "several materials remain at 95 %",
+        flag::SKIPPED => "omitted: a sample is missing, or the pixel is bad",
         flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
         _ => "",
     }
@@ -271,7 +273,7 @@ fn flags(result: &Decomposed) -> String {
     if result.flags.is_empty() {
         return String::new();
     }
-    let mut out = String::from("Said of pixels\n");
+    let mut out = String::from("Flags of pixels\n");
     for row in &result.flags {
         let meaning = flag_said(row.bit, result);
         let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
@@ -336,10 +338,10 @@ pub(crate) fn how(result: &Decomposed) -> &'static str {
             "Maximum posterior of every pixel with its neighbours (Potts prior)"
         }
         (Some(SpatialPrior::TexSgd { .. }), _) => "Least cost of every pixel with its neighbours (TeX-SGD)",
-        (None, Method::Ml) => "Maximum likelihood of every pixel, for itself",
-        (None, Method::AnalyticInverse) => "Inverse functions along wavenumber, every pixel for itself",
-        (None, Method::Te) => "Maximum likelihood without scattered light, every pixel for itself",
-        (None, Method::GreyBody) => "Brightness temperature of every pixel, for itself",
+        (None, Method::Ml) => "Maximum likelihood of every pixel independently",
+        (None, Method::AnalyticInverse) => "Inverse functions along wavenumber, every pixel independently",
+        (None, Method::Te) => "Maximum likelihood without scattered light, every pixel independently",
+        (None, Method::GreyBody) => "Brightness temperature of every pixel independently",
     }
 }
 

@@ -153,7 +153,7 @@ const OWN_KEYS: &[Key] = &[
 const REQUIREMENT_OF_TASK: &[Key] = &[own!(
     "requirement",
     Value::Table(&task::REQUIREMENT),
-    "How reliable the decision must be, in this clause."
+    "Required probability of a correct decision, in this clause."
 )];
 const DEMANDS: &[Value] = &[
     Value::Table(&task::REQUIREMENT),
