@@ -515,13 +515,16 @@ const MOST_TABLES: usize = 3;
 
 fn unknown_key(key: &str, known: &[&str]) -> Error {
     let shown: String = key.escape_debug().collect();
-    let elsewhere: Vec<String> = keys::all()
+    let all: Vec<String> = keys::all()
         .into_iter()
         .filter(|place| place.key.name == key)
-        .filter_map(|place| {
-            place.paths.first().filter(|path| path.contains('.')).map(|path| format!("`{path}`"))
-        })
+        .filter_map(|place| place.paths.first().filter(|path| path.contains('.')).cloned())
         .collect();
+    // Above all tables those of this file are meant.
+    let is_below = |path: &&String| known.iter().any(|table| path.split('.').next() == Some(table));
+    let below: Vec<&String> = all.iter().filter(is_below).collect();
+    let elsewhere = if below.is_empty() { all.iter().collect() } else { below };
+    let elsewhere: Vec<String> = elsewhere.into_iter().map(|path| format!("`{path}`")).collect();
     if !elsewhere.is_empty() {
         let more = if elsewhere.len() > MOST_TABLES { ", …" } else { "" };
         let named: Vec<String> = elsewhere.into_iter().take(MOST_TABLES).collect();

@@ -62,7 +62,7 @@ pub(super) struct IdentifyArgs {
     /// Answer only whether the camera distinguishes the target from every alternative; exit with code 3 unless it does under no condition but those of --accept
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact", "average"])]
     check: bool,
-    /// With --check: codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    /// With --check: codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, requires = "check")]
     accept: Vec<String>,
 }

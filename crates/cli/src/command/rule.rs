@@ -53,7 +53,7 @@ pub(super) struct RuleArgs {
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
     #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "figures", "grid", "on"])]
     verify: Option<PathBuf>,
-    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
     accept: Vec<String>,
     /// Cameras to be judged in the place of the rule's own, by name: the program's, or those of --cameras; may be given several times

@@ -124,7 +124,7 @@ fn every_word_is_explained() {
         ("nearest-at-edge", "requirement"),
         ("rule", "hadar rule: Which cameras meet a rule"),
         ("calibrate noise", "hadar calibrate noise"),
-        ("distance_nearest", "Nearest distance per"),
+        ("distance_nearest", "Nearest distance of the two materials, per"),
         ("temperature resolution", "NETD\n  means      Noise-equivalent temperature difference"),
         ("V", "thermal lighting factor, V_k\n"),
         ("s29", "S29\n"),

@@ -45,6 +45,9 @@ const MEANT: [(&str, &str); 2] = [
     ("operating envelope", "envelope"),
 ];
 
+/// Keys and tables as they are written in a file.
+const KEYS: [&str; 2] = ["[envelope]", "envelope.distance"];
+
 /// Words of a clause, without code.
 fn words(clause: &str) -> Vec<String> {
     let is_part = |letter: char| letter.is_alphanumeric() || "-_".contains(letter);
@@ -98,7 +101,8 @@ fn has(clause: &[String], phrase: &str) -> bool {
 /// What is home-made in a text.
 fn home_made(text: &str) -> Vec<&'static str> {
     let mut found = Vec::new();
-    for clause in without_code(text).split(['.', ';', ':']) {
+    let text = KEYS.iter().fold(without_code(text), |text, key| text.replace(key, ""));
+    for clause in text.split(['.', ';', ':']) {
         let clause = words(clause);
         let mut plain = clause.join(" ");
         for (meant, word) in MEANT {

@@ -295,8 +295,7 @@ fn against(truth: &TruthFound, result: &Decomposed) -> String {
         let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
             let error = truth.right_material_limit_error.unwrap_or(0.0);
             format!(
-                "; {} +- {} by the nearest distances (the most of any test between a pixel{} and the nearest state of another \
-                 material, mean over {} pixels)",
+                "; {} +- {} by the nearest distances (upper limit of any test between a pixel{} and the closest confuser of another material, mean over {} pixels)",
                 percent(limit),
                 significant(100.0 * error, 1),
                 if neighbours { ", without its neighbours," } else { "" },

@@ -5,7 +5,7 @@ use super::market::of_market;
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
 use crate::text::columns::aligned;
-use crate::text::footing::{gaussian, of_scene, warnings};
+use crate::text::footing::{ASK_MORE, gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use crate::words::Say;
 use crate::words::probability::{demanded, reliability};

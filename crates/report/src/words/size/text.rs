@@ -122,7 +122,7 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
     let state = &pair.nearest_state;
     let _ = writeln!(
         out,
-        "  * decides. Closest confuser with shot noise alone: {} by shot noise: {}{}.\n",
+        "  * decides. Closest confuser with shot noise alone: {} at {}{}.\n",
         pair.alternative,
         study.units().temperature(state.temperature_k),
         numbers(", lighting ", &state.lighting, 3)

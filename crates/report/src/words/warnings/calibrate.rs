@@ -226,8 +226,7 @@ words! {
         meaning: "A single frame has texture in what neighbours differ by, and other bands had to distinguish it from noise.",
         remedy: "Give two or more frames of the same scene, or one of an even surface.",
         TextureInNoise { share } => format!(
-            "texture was taken out of the noise of single bands, up to {} of it: as far as it is not alike in neighbouring bands, \
-             the noise is too large",
+            "texture was taken out of the noise of single bands, up to {} of it: where it is not alike in neighbouring bands, the noise is too large",
             significant(*share, 2)
         ),
     }

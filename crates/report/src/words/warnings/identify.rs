@@ -74,8 +74,7 @@ words! {
         ),
     }
     NearestSearch {
-        meaning: "The nearest state was searched and could not be proved to be the nearest: its distance \
-            may be too large.",
+        meaning: "The closest confuser was searched and not proved to be the closest: its distance may be too large.",
         remedy: "Rely on what is proved (distance_nearest_lower), or make an unknown known.",
         NearestSearch { distance, lower, priors } => {
             let why = if *priors { ", which leaves priors out," } else { "" };
@@ -113,7 +112,7 @@ words! {
     }
     EnvelopeNotSearched {
         meaning: "The scenario has an operating envelope, and this answer is for its one scene.",
-        remedy: "Ask `hadar rule` for the worst scene of the envelope.",
+        remedy: "Ask `hadar rule` for the worst scene of the operating envelope.",
         EnvelopeNotSearched => "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
     }
     MatrixPriors {

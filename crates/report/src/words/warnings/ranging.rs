@@ -13,8 +13,7 @@ words! {
         ),
     }
     NoiseOfDemanded {
-        meaning: "Measured counts have noise of their own, which looks like texture and makes bounds too \
-            good.",
+        meaning: "Measured counts contain noise, which looks like texture and makes bounds too optimistic.",
         remedy: "Give expected counts, or averages of many frames.",
         NoiseOfDemanded { floor_per_px2, demanded_per_px2 } => format!(
             "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} demanded: give \
