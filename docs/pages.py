@@ -2,7 +2,7 @@
 
 * `$...$` and `$$...$$` become MathML, which browsers show without fonts, scripts or network; `\\tag{S27}` is the number in the paper.
 * Pictures of the repository, `../../reports/...`, are put into the page.
-* `<!-- made: ledger -->`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain --all` says,
+* `<!-- made: ledger -->`, `symbols`, `terms`, `equations`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain --all` says,
   `accuracy` by the table of reports/accuracy.
 * A link to a file that is not there fails the build.
 
@@ -153,18 +153,42 @@ def keys():
             code(name),
             cell(key["meaning"]) + (f" Also {', '.join(map(code, others))}." if others else ""),
             cell(key["value"]),
-            "must be there" if key["required"] else cell(key["default"] or key["silent"] or ""),
+            "none: it must be stated" if key["required"] else cell(key["default"] or key["silent"] or ""),
             code(key["example"]),
             cell(key["enters"]),
             cell(", ".join(key["commands"])),
         )
         groups.setdefault(place, []).append(row)
-    head = ["key", "means", "what may be written", "where nothing is written", "example", "enters", "read by"]
+    head = ["key", "means", "what may be written", "default", "example", "used in", "read by"]
     parts = []
     for place, rows in groups.items():
         title = f"`[{place}]`" if place else "Above all tables"
         parts += [f"## {title}", meanings.get(place, ""), table(head, rows)]
     return "\n\n".join(parts)
+
+
+def of_terms(chosen, head, row):
+    return table(head, [row(term) for term in explained()["terms"] if chosen(term)])
+
+
+def more(term):
+    return f"[{Path(term['see']).stem}]({term['see']})"
+
+
+def symbols():
+    head = ["symbol", "term", "key of a file or of JSON", "means", "unit", "more"]
+    row = lambda term: (mathml(term["symbol"], False), cell(term["name"]), ", ".join(map(code, term["keys"])) or "-", cell(term["meaning"]), cell(term["unit"]), more(term))
+    return of_terms(lambda term: term["symbol"], head, row)
+
+
+def terms():
+    head = ["term", "means", "unit", "key", "also called", "more"]
+    row = lambda term: (cell(term["name"]), cell(term["meaning"]), cell(term["unit"]), ", ".join(map(code, term["keys"])) or "-", cell(", ".join(term["also"])), more(term))
+    return of_terms(lambda term: not term["symbol"] and not term["is_equation"], head, row)
+
+
+def numbered():
+    return of_terms(lambda term: term["is_equation"], ["equation", "states", "more"], lambda term: (term["name"], cell(term["meaning"]), more(term)))
 
 
 def warnings():
@@ -189,7 +213,7 @@ def accuracy():
     return re.search(r"(^\|.*\n)+", text, re.M)[0]
 
 
-TABLES = {"accuracy": accuracy, "ledger": ledger, "keys": keys, "warnings": warnings, "results": results}
+TABLES = {"accuracy": accuracy, "ledger": ledger, "symbols": symbols, "terms": terms, "equations": numbered, "keys": keys, "warnings": warnings, "results": results}
 
 
 def page(text, folder):

@@ -43,7 +43,7 @@ fn main() -> hadar::Result<()> {
     println!("most alike with {} at {celsius:.1} °C, V = {:.3}", other.name(), nearest.state.lighting[0]);
     match photons_required(1.0, nearest.distance) {
         Some(photons) => println!("{photons:.3e} photons for {:.1} % right", 100.0 * probability(1.0)),
-        None => println!("no number of photons tells them apart"),
+        None => println!("no number of photons distinguishes them"),
     }
     Ok(())
 }

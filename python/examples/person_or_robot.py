@@ -1,5 +1,5 @@
 # %% [markdown]
-# # Can this camera tell a person from a robot?
+# # Can this camera distinguish a person from a robot?
 #
 # Run it as a script (`python person_or_robot.py [FOLDER]`) or cell by cell. It needs matplotlib and pandas, and takes some seconds.
 
@@ -79,7 +79,7 @@ axes[0, 0].plot(nu, robot / 1e18, label=f"aluminium, {nearest.temperature - 273.
 axes[0, 0].set(xlabel="wavenumber (cm⁻¹)", ylabel="10¹⁸ photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹", title="Most alike")
 axes[0, 0].legend()
 axes[0, 1].plot(nu, 100 * (robot / person - 1))
-axes[0, 1].set(xlabel="wavenumber (cm⁻¹)", ylabel="difference (%)", title="What is left to tell them apart")
+axes[0, 1].set(xlabel="wavenumber (cm⁻¹)", ylabel="difference (%)", title="What is left to distinguish them")
 image = axes[1, 0].imshow(maps.temperature_k - 273.15, cmap="inferno")
 axes[1, 0].set_title("Temperature found (°C)")
 figure.colorbar(image, ax=axes[1, 0])

@@ -90,7 +90,7 @@ def identify(
 ) -> Identification:
     """Distances from the target to every alternative, and what else is asked for.
 
-    ``matrix``: all materials against all; ``apart``: only which of them are told apart; ``prove``: to this share of a
+    ``matrix``: all materials against all; ``apart``: only which of them are distinguished; ``prove``: to this share of a
     distance; ``scaling``: over the size of the library and the number of bands; ``bands``, ``filters``: the best so many;
     ``exact``: simulated decisions, with ``statistics`` (``"poisson"``, ``"gaussian"``, ``"negative-binomial"``), ``photons``,
     ``half_width`` of the 95 % interval and most ``trials``; ``average`` over the priors.

@@ -156,14 +156,17 @@ impl Error {
     ) -> Self {
         // Comparing takes the product of the lengths, and nothing is like a name that long.
         let comparable = name.len() <= LONGEST_NAME;
-        let lower = if comparable { name.to_lowercase() } else { String::new() };
+        // Case does not count, and a blank is as good as a hyphen or an underscore: `FLIR Boson`.
+        let folded = |name: &str| name.to_lowercase().replace([' ', '_'], "-");
+        let lower = if comparable { folded(name) } else { String::new() };
         let mut ranked: Vec<(f64, &str)> = known
             .into_iter()
             .filter(|name| comparable && name.len() <= LONGEST_NAME && !name.contains(char::is_control))
             .map(|candidate| {
                 // A part of a name, in whatever case, is meant for it; of several the most alike comes first.
-                let part = lower.len() > 2 && candidate.to_lowercase().contains(&lower);
-                (f64::from(u8::from(part)) + strsim::jaro_winkler(name, candidate), candidate)
+                let other = folded(candidate);
+                let part = lower.len() > 2 && other.contains(&lower);
+                (f64::from(u8::from(part)) + strsim::jaro_winkler(&lower, &other), candidate)
             })
             .filter(|(score, _)| *score > 0.6)
             .collect();

@@ -3,12 +3,12 @@
 /// The range in which the paper counts photons, cm⁻¹.
 pub const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
 
-/// A figure of a camera that nobody stated, and what stands for it.
+/// A figure of a camera that nobody stated, and the value taken for it.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Assumed {
-    /// Its key.
+    /// Key of the figure that nobody stated.
     pub figure: &'static str,
-    /// What stands for it, with its unit.
+    /// The value that was taken for it, with its unit.
     pub taken: String,
     /// Whether the camera may be worse than with that.
     pub favourable: bool,

@@ -39,13 +39,13 @@ use crate::spectrum::Bands;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct NoiseLine {
-    /// What it is.
+    /// Name of the noise source of this line.
     pub label: &'static str,
     /// Variance, counts², mean over the bands.
     pub var_counts: f64,
     /// How it grows with the integration time t.
     pub scaling: &'static str,
-    /// What it follows from.
+    /// The figure of the camera from which it follows.
     pub source: &'static str,
 }
 

@@ -13,15 +13,15 @@ use std::sync::OnceLock;
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lens {
-    /// Its name.
+    /// Name of the lens in the catalogue.
     pub name: String,
-    /// Names of cameras that it is sold for, where `*` stands for any letters.
+    /// Names of cameras that it is sold for, where `*` matches any letters.
     pub cameras: Vec<String>,
-    /// Focal length over aperture.
+    /// f-number: focal length over the diameter of the aperture.
     pub f_number: f64,
-    /// Focal length, m.
+    /// Focal length of the lens, m.
     pub focal_length_m: f64,
-    /// What it costs.
+    /// Price of the lens, in the currency of the list.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub price: Option<Price>,
     /// The document that was read.
@@ -32,7 +32,7 @@ pub struct Lens {
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FilterShape {
-    /// Its name.
+    /// Name of the filter in the catalogue.
     pub name: String,
     /// Middle of its edges at half of the peak, µm.
     pub center_um: f64,
@@ -42,7 +42,7 @@ pub struct FilterShape {
     pub slope: f64,
     /// The most that it transmits.
     pub peak: f64,
-    /// What it costs.
+    /// Price of the filter, in the currency of the list.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub price: Option<Price>,
     /// What it is taken from.

@@ -31,7 +31,7 @@ pub struct Comparison {
     pub a: InScene,
     /// What B does in it.
     pub b: InScene,
-    /// Photons in one acquisition.
+    /// Ratio of the photons in one acquisition, B over A.
     pub photons: f64,
     /// Photons in the same time.
     pub photons_in_same_time: f64,
@@ -49,11 +49,11 @@ pub struct Comparison {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct InScene {
-    /// Number of bands.
+    /// Number of spectral bands that the camera reads.
     pub bands: usize,
     /// Time until all bands are read, s.
     pub acquisition_s: f64,
-    /// Photons in all bands.
+    /// Expected photons in all bands of one acquisition.
     pub photons: f64,
     /// Deviation of a band by all but the photons of the target, root mean square over the bands, counts.
     pub noise_counts: f64,

@@ -17,7 +17,7 @@ pub struct EfficiencyCurve {
     name: String,
     /// Wavenumbers of the rows, cm⁻¹.
     wavenumbers_cm1: Vec<f64>,
-    /// Efficiencies there.
+    /// Efficiencies at those wavenumbers, 0 to 1.
     efficiencies: Vec<f64>,
 }
 

@@ -35,7 +35,7 @@ const BAND_CM1: f64 = 1.0;
 pub struct Equivalents {
     /// Exposure for which all of this holds, s.
     pub exposure_s: f64,
-    /// Noise bandwidth, Hz.
+    /// Bandwidth for which the noise is stated, Hz.
     pub bandwidth_hz: f64,
     /// Middle of the spectral range, cm⁻¹.
     pub mid_cm1: f64,

@@ -47,7 +47,7 @@ crate::base::named::named! {
 #[derive(Debug, Clone, PartialEq, Default, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Preset {
-    /// Name, as in `camera.preset`.
+    /// Name of the camera, as in `camera.preset`.
     pub name: String,
     /// What it is, in one line.
     pub description: String,

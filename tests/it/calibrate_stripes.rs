@@ -176,7 +176,7 @@ fn stripes_that_fill_the_cube_are_refused_and_thin_objects_left() {
     let mut samples = scene(1, 0.003);
     striped(&mut samples, 1.0, 1);
     let error = find_stripes(&MemoryCube::new(shape(), samples).unwrap(), &SOUGHT).unwrap_err().to_string();
-    assert!(error.contains("too many to tell them from the scene"), "{error}");
+    assert!(error.contains("too many to distinguish them from the scene"), "{error}");
     // A wire over the whole width: 3 % warmer in all bands.
     let mut samples = scene(1, 0.003);
     samples[20 * COLUMNS * BANDS..21 * COLUMNS * BANDS].iter_mut().for_each(|sample| *sample *= 1.03);
@@ -216,7 +216,7 @@ fn gains_of_all_lines_are_refused() {
             let cube = MemoryCube::new(Shape::new(rows, columns, bands).unwrap(), samples).unwrap();
             let refused = find_stripes(&cube, &SOUGHT).unwrap_err().to_string();
             assert!(
-                refused.contains("too many to tell them from the scene"),
+                refused.contains("too many to distinguish them from the scene"),
                 "{rows} {deviation}: {refused}"
             );
         }
@@ -335,7 +335,7 @@ fn what_may_be_the_scene_is_left_and_named() {
     for bands in [2..=2, 0..=7] {
         let mut cube = slope(4);
         (0..60).step_by(2).for_each(|row| change(&mut cube, row, bands.clone(), 50, |x| 1.02 * x));
-        assert!(seen(&cube, &SOUGHT).unwrap_err().contains("too many to tell them from the scene"));
+        assert!(seen(&cube, &SOUGHT).unwrap_err().contains("too many to distinguish them from the scene"));
     }
     // Nothing of the scene is in a dead row, be it without noise or with it.
     for noise in [0.0, 1.0] {

@@ -49,7 +49,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// The physical limits of seeing by heat: can this thermal camera tell one material from another?
+/// The physical limits of seeing by heat: can this thermal camera distinguish one material from another?
 #[derive(Debug, Parser)]
 #[command(name = "hadar", version, about)]
 struct Cli {
@@ -61,10 +61,10 @@ struct Cli {
 enum Command {
     /// The main job: verdict on a camera, requirement, margins, what would have to change
     Size(size::SizeArgs),
-    /// What can be told apart: the target from every alternative, all materials from each other, and by which bands
+    /// What can be distinguished: the target from every alternative, all materials from each other, and by which bands
     ///
     /// Without a flag: the distance from the target to every alternative, the photons it takes, and with a camera which
-    /// of them it tells the target from. Flags add what else is to be computed, and can be combined.
+    /// of them it distinguishes the target from. Flags add what else is to be computed, and can be combined.
     Identify(identify::IdentifyArgs),
     /// Which camera to take: cameras, lenses, filters and frames that meet a scenario, the cheapest first
     Find(find::FindArgs),

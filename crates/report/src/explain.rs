@@ -1,8 +1,10 @@
-//! What a word means: a key of a file, the code of a warning, a key of an answer.
+//! What a word means: a term of the field, a key of a file, the code of a warning, a key of an answer.
 //!
 //! Keys of files are those of the readers' own table ([`keys`]), codes those of the table of warnings, with their [words](crate::words::warnings). Keys of answers are
 //! told by the documentation of the fields that they are made of: `results.tsv` is collected from the sources by a test, which
-//! fails where it is not what the sources say; `named.tsv` has those that are no fields.
+//! fails where it is not what the sources say; `named.tsv` has those that are no fields. Terms of the field are rows of `terms.tsv`.
+
+mod terms;
 
 use crate::words::conditions::EXPLAINED;
 use crate::words::rule::REASONS;
@@ -12,15 +14,19 @@ use hadar_scenario::keys::{self, Place, Silent};
 use hadar_study::warning::Code;
 use serde::Serialize;
 
+pub use terms::{Term, term, terms, terms_like};
+
 const RESULTS: &str = include_str!("explain/results.tsv");
 const NAMED: &str = include_str!("explain/named.tsv");
 
 /// All that is explained.
 #[derive(Debug, Clone, Serialize)]
 pub struct Reference {
+    /// Terms and symbols of the field, and the equations of the paper's supplement.
+    pub terms: Vec<Term>,
     /// Keys of files, by their tables.
     pub keys: Vec<ExplainedKey>,
-    /// Codes of warnings.
+    /// Codes of warnings, each with its meaning.
     pub warnings: Vec<ExplainedCode>,
     /// Codes of conditions of a verdict; those of figures of a camera are their keys.
     pub conditions: Vec<ExplainedCode>,
@@ -28,16 +34,16 @@ pub struct Reference {
     pub shortfalls: Vec<ExplainedCode>,
     /// Codes of reasons for which a rule is not passed.
     pub reasons: Vec<ExplainedCode>,
-    /// Keys of answers.
+    /// Keys of answers in JSON, each with its meaning.
     pub results: Vec<ResultKey>,
 }
 
 /// A key of a file.
 #[derive(Debug, Clone, Serialize)]
 pub struct ExplainedKey {
-    /// Where it may stand, the shortest path first.
+    /// Where the key may be written, the shortest path first.
     pub paths: Vec<String>,
-    /// What it means.
+    /// What the key means, in a sentence.
     pub meaning: &'static str,
     /// What may be written: kind, units, range.
     pub value: String,
@@ -49,9 +55,9 @@ pub struct ExplainedKey {
     pub silent: Option<&'static str>,
     /// A line to write; none of a table.
     pub example: Option<String>,
-    /// Where it enters: an equation of the paper, or what is done with it.
+    /// Where the key is used: an equation of the paper, or what is done with it.
     pub enters: &'static str,
-    /// Commands that read it.
+    /// Commands that read a file with this key.
     pub commands: Vec<&'static str>,
     /// Of a table, its keys.
     pub inside: Vec<&'static str>,
@@ -60,9 +66,9 @@ pub struct ExplainedKey {
 /// The code of a warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct ExplainedCode {
-    /// The code.
+    /// The code as it is printed, without brackets.
     pub code: &'static str,
-    /// What it means.
+    /// What the code means, in a sentence.
     pub meaning: &'static str,
     /// What to do about it.
     pub remedy: &'static str,
@@ -71,7 +77,7 @@ pub struct ExplainedCode {
 /// A key of an answer in JSON.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct ResultKey {
-    /// The key.
+    /// Name of the key, without its path.
     pub key: &'static str,
     /// What it is a part of.
     pub of: &'static str,
@@ -125,6 +131,7 @@ impl From<Code> for ExplainedCode {
 #[must_use]
 pub fn all() -> Reference {
     Reference {
+        terms: terms().collect(),
         keys: keys::all().iter().map(ExplainedKey::from).collect(),
         warnings: Code::ALL.iter().copied().map(ExplainedCode::from).collect(),
         conditions: conditions().collect(),
@@ -201,7 +208,8 @@ pub fn words() -> Vec<String> {
     });
     let codes = Code::ALL.iter().map(|code| code.name().to_owned());
     let codes = codes.chain(conditions().chain(shortfalls()).chain(reasons()).map(|one| one.code.to_owned()));
-    let mut words: Vec<String> = keys.chain(codes).chain(results().map(|one| one.key.to_owned())).collect();
+    let mut words: Vec<String> =
+        keys.chain(codes).chain(results().map(|one| one.key.to_owned())).chain(terms::names()).collect();
     words.sort_unstable();
     words.dedup();
     words

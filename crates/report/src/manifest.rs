@@ -62,7 +62,7 @@ pub struct Provenance {
     pub commit: String,
     /// The command without what changes no answer, such as the folder it is written to; paths in it as those of `inputs`.
     pub command: Vec<String>,
-    /// Seed of random numbers.
+    /// Seed of all random numbers of the report.
     pub seed: u64,
     /// All that was read, in the order of reading; then what is built in.
     pub inputs: Vec<Input>,
@@ -80,18 +80,18 @@ pub struct Input {
 /// A file of the folder, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Written {
-    /// Its name.
+    /// Name of the file within the folder.
     pub name: String,
-    /// SHA-256 of it.
+    /// SHA-256 of the content of the file, in hexadecimal digits.
     pub sha256: String,
 }
 
 /// The content of `hadar.json`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// Version of the program.
+    /// Version of the program that wrote the report.
     pub hadar: String,
-    /// See [`SCHEMA`].
+    /// Version of the form of `hadar.json`, a whole number.
     pub schema: u32,
     /// Who made it of what.
     #[serde(flatten)]

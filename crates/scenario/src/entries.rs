@@ -21,7 +21,7 @@ pub(super) enum Part {
     Documents(Vec<(Entries, Document)>),
 }
 
-/// Keys in the order in which they are written; a silent one is not there.
+/// Keys in the order in which they are written; one that is not stated is absent.
 #[derive(Default, PartialEq)]
 pub(super) struct Entries {
     entries: Vec<Entry>,

@@ -43,13 +43,13 @@ const MINIMUM: &str =
 pub struct RenderScenario {
     /// What it is about, for headings.
     pub title: Option<String>,
-    /// What is there.
+    /// The scene that is to be rendered.
     pub scene: SceneSpec,
-    /// The spectral bands.
+    /// The spectral bands in which it is rendered.
     pub bands: BandsSpec,
-    /// The camera.
+    /// The camera that records the scene.
     pub camera: CameraSpec,
-    /// The pair of cameras; one view if silent.
+    /// The pair of cameras; one view where nothing is stated.
     pub stereo: Option<Stereo>,
     /// What its materials are parts of, for the decomposition.
     pub categories: Vec<CategorySpec>,

@@ -97,7 +97,7 @@ pub struct Rule {
     pub about: About,
     /// Deviations to both sides of a margin that must be above or below 1; see `[uncertainty]`.
     pub coverage_factor: f64,
-    /// Task, surroundings, bands, unknowns, requirement and envelope that clauses share; without a camera.
+    /// Task, surroundings, bands, unknowns, requirement and operating envelope that clauses share; without a camera.
     pub scenario: Scenario,
     /// What it demands, at least one thing.
     pub clauses: Vec<Clause>,
@@ -311,7 +311,7 @@ fn about(entry: &Entry<'_>) -> Result<About> {
     }
     Ok(About {
         name: section.text("name", "\"Robots that see people at night\"")?,
-        text: section.text("text", "\"A camera must tell a person from a robot.\"")?,
+        text: section.text("text", "\"A camera must distinguish a person from a robot.\"")?,
         authority: section.text("authority", "\"City of Lafayette\"")?,
         version: section.text("version", "\"1\"")?,
         status: section.text("status", "\"in force\"")?,

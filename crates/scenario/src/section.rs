@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 pub use toml::value::Date;
 use toml::value::Datetime;
 
-use super::keys::{Key, More, Table, Value};
+use super::keys::{self, Key, More, Table, Value};
 use super::source::{Source, dotted};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Place, Result};
@@ -522,8 +522,29 @@ fn no_row() -> Error {
     Error::malformed("the program reads this otherwise than its table of keys says", "report this as a bug")
 }
 
+/// Other tables that are named for a key which stands in a wrong one.
+const MOST_TABLES: usize = 3;
+
 fn unknown_key(key: &str, known: &[&str]) -> Error {
     let shown: String = key.escape_debug().collect();
+    let all: Vec<String> = keys::all()
+        .into_iter()
+        .filter(|place| place.key.name == key)
+        .filter_map(|place| place.paths.first().filter(|path| path.contains('.')).cloned())
+        .collect();
+    // Above all tables those of this file are meant.
+    let is_below = |path: &&String| known.iter().any(|table| path.split('.').next() == Some(table));
+    let below: Vec<&String> = all.iter().filter(is_below).collect();
+    let elsewhere = if below.is_empty() { all.iter().collect() } else { below };
+    let elsewhere: Vec<String> = elsewhere.into_iter().map(|path| format!("`{path}`")).collect();
+    if !elsewhere.is_empty() {
+        let more = if elsewhere.len() > MOST_TABLES { ", …" } else { "" };
+        let named: Vec<String> = elsewhere.into_iter().take(MOST_TABLES).collect();
+        return Error::malformed(
+            format!("there is no key `{shown}`"),
+            format!("it is a key of another table: write {}{more}", listing(&named, " or ")),
+        );
+    }
     match Error::unknown_name("key", &shown, known.iter().copied()) {
         Error::UnknownName { nearest, .. } if nearest.is_empty() => {
             let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();

@@ -15,9 +15,9 @@ const LONGEST_KEY: usize = 200;
 /// A value in the place of that of a file.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Setting {
-    /// Where it stands.
+    /// Path of the key whose value is replaced.
     pub key: String,
-    /// What stands there.
+    /// The value that replaces it, as it is written in a file.
     pub value: String,
     /// What set it, for messages, e.g. `--vary`.
     #[serde(skip)]

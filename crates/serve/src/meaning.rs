@@ -1,4 +1,4 @@
-//! What a word means, as a page of its own: keys of the scenario, warnings, keys of the answer.
+//! What a word means, as a page of its own: terms of the field, keys of the scenario, warnings, keys of the answer.
 
 use hadar_report::explain::{self, ExplainedCode, ExplainedKey};
 use std::fmt::Write as _;
@@ -13,17 +13,25 @@ pub(crate) fn page(word: &str) -> Option<String> {
     let row = |body: &mut String, name: &str, text: &str| {
         let _ = writeln!(body, "<dt>{name}</dt><dd>{}</dd>", escaped(text));
     };
+    for term in explain::term(word) {
+        let _ = writeln!(body, "<h2>{}</h2>\n<p>{}</p>\n<dl>", escaped(term.name), escaped(term.meaning));
+        [("symbol", term.typed_symbol()), ("unit", term.unit.to_owned()), ("also", term.also.join(", "))]
+            .iter()
+            .filter(|(_, text)| !text.is_empty() && text != "-")
+            .for_each(|(name, text)| row(&mut body, name, text));
+        body.push_str("</dl>\n");
+    }
     for key in explain::key(word).iter().map(ExplainedKey::from) {
         let _ = writeln!(body, "<h2>{}</h2>\n<p>{}</p>\n<dl>", key.paths.join(", "), escaped(key.meaning));
         row(&mut body, "written", &key.value);
         match (key.required, key.default, key.silent) {
-            (true, ..) => row(&mut body, "silent", "refused: it must be there"),
-            (_, Some(text), _) | (_, None, Some(text)) => row(&mut body, "silent", text),
+            (true, ..) => row(&mut body, "default", "none: it must be stated"),
+            (_, Some(text), _) | (_, None, Some(text)) => row(&mut body, "default", text),
             _ => {}
         }
         if let Some(example) = &key.example {
             row(&mut body, "example", example);
-            row(&mut body, "enters", key.enters);
+            row(&mut body, "used in", key.enters);
         }
         body.push_str("</dl>\n");
     }
@@ -69,6 +77,7 @@ mod tests {
         assert!(page("camera.exposure").unwrap().contains("<h1>camera.exposure</h1>"));
         assert!(page("diffraction").unwrap().contains("Warning [diffraction]"));
         assert!(page("camera.gamma_per_band").unwrap().contains("gamma_per_band"));
+        assert!(page("NETD").unwrap().contains("<h2>NETD</h2>"));
         for word in ["", "<script>", "nothing-of-the-kind", "../page.css", &"a".repeat(200)] {
             assert!(page(word).is_none(), "{word}");
         }

@@ -65,13 +65,13 @@ pub struct AverageDecisions {
     pub interval: Interval,
     /// Share of right decisions with the target true, and with the alternative true.
     pub probability_by_class: [f64; 2],
-    /// Decisions.
+    /// Number of decisions that were simulated.
     pub trials: u64,
     /// States of each class that the likelihoods are averaged over.
     pub states: usize,
     /// Share of the decisions that would be others with every second state alone.
     pub changed_by_half_the_states: f64,
-    /// Generator of the draws.
+    /// Name of the generator of random numbers.
     pub generator: &'static str,
 }
 

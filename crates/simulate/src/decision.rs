@@ -97,7 +97,7 @@ pub struct Detection {
     pub interval: Interval,
     /// Decisions for each of the candidates, ties split.
     pub decisions: Vec<f64>,
-    /// Trials made.
+    /// Number of trials that were made.
     pub trials: u64,
     /// Trials in which a fit did not converge (its best state so far counts).
     pub unconverged: u64,
@@ -184,7 +184,7 @@ impl DecisionScene<'_> {
     /// As [`DecisionScene::detection`]; no classes.
     pub fn best_fits<'m>(&'m self, classes: &[(&'m [f64], &State)]) -> Result<BestFits<'m>> {
         let Some((_, known)) = classes.first() else {
-            return Err(Error::malformed("there are no materials to tell apart", "give two"));
+            return Err(Error::malformed("there are no materials to distinguish", "give two"));
         };
         let mut candidates = Vec::with_capacity(classes.len());
         for &(own, state) in classes {

@@ -34,17 +34,17 @@ use hadar::statistics::{chi_square_quantile, student_quantile};
 /// Errors of repeated estimates of one quantity, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Errors {
-    /// Estimates.
+    /// Number of estimates that were made.
     pub estimates: usize,
     /// Their mean less the truth.
     pub bias: f64,
-    /// Interval of it.
+    /// Confidence interval of the bias, in the unit of the quantity.
     pub bias_interval: Interval,
-    /// Root of their variance.
+    /// Standard deviation of the estimates, in the unit of the quantity.
     pub deviation: f64,
     /// Root of their mean squared error.
     pub rmse: f64,
-    /// Interval of it.
+    /// Confidence interval of the root mean square error, in the unit of the quantity.
     pub rmse_interval: Interval,
 }
 
@@ -77,31 +77,31 @@ impl Errors {
     }
 }
 
-/// One parameter beside its bound.
+/// One parameter compared with its bound.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ParameterEfficiency {
-    /// Bias and errors.
+    /// Bias and errors of the estimates of this parameter.
     pub errors: Errors,
-    /// Deviation of the bound.
+    /// Standard deviation by the bound, in the unit of the parameter.
     pub sigma_bound: f64,
     /// Variance over that of the bound.
     pub ratio: f64,
-    /// Interval of it.
+    /// Confidence interval of the ratio of the variance to the bound.
     pub ratio_interval: Interval,
     /// Degrees of freedom of the interval: n − 1 for normal estimates.
     pub freedom: f64,
-    /// What follows.
+    /// Whether the estimator reaches its bound, as the interval shows.
     pub verdict: Verdict,
 }
 
-/// All parameters beside the bound of their covariance.
+/// All parameters compared with the bound of their covariance.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct JointEfficiency {
-    /// tr(C⁻¹Ĉ)/p.
+    /// Mean ratio of covariance to bound over p parameters, tr(C⁻¹Ĉ)/p.
     pub ratio: f64,
-    /// Interval of it.
+    /// Confidence interval of the mean ratio.
     pub ratio_interval: Interval,
     /// Degrees of freedom of the interval: p(n − 1) for normal estimates.
     pub freedom: f64,
@@ -127,9 +127,9 @@ pub struct JointEfficiency {
 /// ```
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Efficiency {
-    /// One by one.
+    /// Each parameter compared with its own bound.
     pub parameters: Vec<ParameterEfficiency>,
-    /// All together.
+    /// All parameters together, compared with the bound of their covariance.
     pub joint: JointEfficiency,
     /// What the verdicts rest on.
     pub criteria: Criteria,

@@ -48,17 +48,17 @@ pub struct Design {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Performance {
-    /// Which.
+    /// Name of the classifier that was tested.
     pub method: Method,
     /// Whether it was trained before, and taken from a file.
     pub saved: bool,
     /// Balanced accuracy: share of right decisions, averaged over the classes.
     pub accuracy: f64,
-    /// Its confidence interval.
+    /// Confidence interval of the balanced accuracy, 0 to 1.
     pub interval: Interval,
     /// Share of right decisions of each class, and of wrong ones for each.
     pub confusion: Confusion,
-    /// How training went.
+    /// How the training of the classifier ended, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub training: Option<String>,
 }

@@ -23,9 +23,9 @@ const FIRST: u64 = 1024;
 /// A confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Interval {
-    /// Its lower end.
+    /// Lower end of the confidence interval.
     pub low: f64,
-    /// Its upper end.
+    /// Upper end of the confidence interval.
     pub high: f64,
 }
 

@@ -47,7 +47,8 @@ pub(super) fn known(spec: &CameraSpec) -> Result<Option<Preset>> {
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
     let preset = known(spec).map_err(|error| error.at(place("preset")))?;
-    let stated = stated_over(spec, preset.clone(), place)?;
+    let stated = stated_over(spec, preset.clone(), place);
+    let stated = stated.map_err(|error| with_missing(error, spec, preset.as_ref()))?;
     let camera = |preset: &Preset| {
         preset.camera().map_err(|missing| {
             missing.error(&preset.name).at(place(missing.0.first().copied().unwrap_or("preset")))
@@ -66,6 +67,30 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         _ => "the camera".into(),
     };
     checked_at(camera_made, place)
+}
+
+/// A mistake in a camera of which figures are missing, too, with all of them: nobody is asked twice.
+fn with_missing(error: Error, spec: &CameraSpec, preset: Option<&Preset>) -> Error {
+    let missing =
+        laid(spec, preset.cloned().unwrap_or_default()).ok().and_then(|stated| stated.camera().err());
+    let Some(missing) = missing else { return error };
+    match error {
+        Error::At { place, source } => Error::At { place, source: Box::new(with_lines(*source, &missing)) },
+        error => with_lines(error, &missing),
+    }
+}
+
+fn with_lines(error: Error, missing: &presets::Missing) -> Error {
+    match error {
+        Error::Malformed { found, instead } => {
+            let instead = format!(
+                "{instead}; {} are missing as well: write what the camera has in place of the dots:",
+                missing.0.join(", ")
+            );
+            Error::Incomplete { found, instead, lines: missing.lines() }
+        }
+        error => error,
+    }
 }
 
 /// All that is stated of a camera, by what it lies over and by its own keys, which stand where `place` says.

@@ -53,7 +53,7 @@ const MOVES: f64 = 0.3;
 pub struct BadFound {
     /// How many pixels are bad, by why.
     pub pixels: Vec<BadPixels>,
-    /// Bands that were found to be bad or that the file lacks, besides those named.
+    /// Bands that were found to be bad or that the file lacks, in addition to those named.
     pub bands: Vec<BadBand>,
     /// The code of every pixel, 0 for good ones; empty where all are.
     #[serde(skip)]
@@ -85,9 +85,9 @@ pub(super) fn bands_found(found: &[BadBand]) -> impl Iterator<Item = Warning> + 
 pub struct BadPixels {
     /// `missing`, `dead`, `stuck`, `saturated`, `too-bright`, `named` or `outlier`.
     pub why: &'static str,
-    /// Its number in `bad_pixels.npy`.
+    /// Number of the reason in `bad_pixels.npy`.
     pub code: u8,
-    /// Pixels.
+    /// Number of pixels that are bad for this reason.
     pub pixels: usize,
 }
 

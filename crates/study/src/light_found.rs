@@ -66,7 +66,7 @@ const ROUNDS: usize = 4;
 pub struct LightFound {
     /// Which of the surroundings, from 0.
     pub light: usize,
-    /// `sky` or `ground`.
+    /// The kind of surroundings: `sky` or `ground`.
     pub like: &'static str,
     /// Pixels whose median it is.
     pub pixels: usize,

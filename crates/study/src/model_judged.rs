@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct ModelJudged {
     /// Whether the cube follows it: `not-rejected`, `rejected`, `not-judged`, or `shared-not-told`.
     pub verdict: ModelVerdict,
-    /// Pixels with a p-value.
+    /// Number of pixels that have a p-value.
     pub pixels: usize,
     /// Mean of their p-values from 1e-4 on: a half for a right model; not with stated errors of the library.
     pub p_value_mean: Option<f64>,
@@ -53,7 +53,7 @@ impl ModelVerdict {
 pub struct BandResidual {
     /// Its place, from 0, in rising wavenumber.
     pub band: usize,
-    /// Mean wavenumber, cm⁻¹.
+    /// Mean wavenumber of the band, cm⁻¹.
     pub wavenumber_cm1: f64,
     /// Mean residual of a pixel, in deviations of its noise.
     pub residual: f64,
@@ -75,7 +75,7 @@ pub struct CauseRow {
     pub band: Option<usize>,
     /// By how much, were it that alone.
     pub estimate: f64,
-    /// Its deviation.
+    /// Standard deviation of the estimated change, in its unit.
     pub sigma: f64,
     /// `cm^-1`, `K`, `m`, or nothing for a share.
     pub unit: &'static str,

@@ -55,9 +55,9 @@ pub struct RenderPlan {
 /// A scene rendered.
 #[derive(Debug, Serialize)]
 pub struct Rendered {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: RenderScenario,
-    /// Rows, columns and bands.
+    /// Numbers of rows, columns and bands of the cube.
     pub shape: Shape,
     /// Names of the materials, in the order of their indices.
     pub materials: Vec<String>,
@@ -65,7 +65,7 @@ pub struct Rendered {
     pub surroundings: Vec<String>,
     /// The most that surfaces beyond these light a pixel with.
     pub lighting_left_out: f64,
-    /// What is seen.
+    /// What the camera sees of each surface.
     pub surfaces: Vec<SurfaceRow>,
     /// Pixels of one surface and one material.
     pub pure: usize,
@@ -103,7 +103,7 @@ pub struct Rendered {
 /// What is seen of a surface.
 #[derive(Debug, Clone, Serialize)]
 pub struct SurfaceRow {
-    /// Its name.
+    /// Name of the surface in the scene.
     pub name: String,
     /// Its materials; none of the sky.
     pub materials: Vec<String>,

@@ -73,11 +73,11 @@ pub struct SimulationPlan {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct SimulatedClass {
-    /// Material.
+    /// Name of the material of the class.
     pub material: String,
-    /// Its temperature, K.
+    /// Temperature of the class, K.
     pub temperature_k: f64,
-    /// Its lighting factors.
+    /// Lighting factors of the class, 0 to 1.
     pub lighting: Vec<f64>,
     /// Its photons in all bands, on average.
     pub photons: f64,
@@ -109,7 +109,7 @@ pub struct SimulatedPoint {
     /// Where likelihoods take counts for normal: how far the distribution function of a band is from that, at most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normal_error: Option<f64>,
-    /// What each classifier achieved.
+    /// What each classifier achieved on the test spectra.
     pub performances: Vec<SimulatedPerformance>,
     /// The spectra on which they were judged, where they were asked for.
     #[serde(skip)]
@@ -136,23 +136,23 @@ pub struct TestSpectra {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Simulation {
-    /// Law of the photons.
+    /// Law by which the photons are distributed.
     pub photon_law: PhotonLaw,
     /// Whether electronic noise was added.
     pub camera_noise: bool,
     /// The law that the likelihood ratio takes the counts to follow.
     pub judged_as: &'static str,
-    /// Generator of the draws.
+    /// Name of the generator of random numbers.
     pub generator: &'static str,
-    /// Its seed.
+    /// Seed from which the spectra were drawn.
     pub seed: u64,
     /// Spectra of each class; half of them are for the test.
     pub spectra_per_class: usize,
     /// Whether the likelihood ratio itself was drawn instead of spectra.
     pub skipped_spectra: bool,
-    /// Level of the intervals.
+    /// Confidence level of all intervals, 0 to 1.
     pub level: f64,
-    /// Experiments.
+    /// The experiments, one for each number of photons.
     pub points: Vec<SimulatedPoint>,
     /// Comparisons with the limit, and whether all kept it.
     pub comparisons: usize,
@@ -164,7 +164,7 @@ pub struct Simulation {
     pub safety: Vec<SafetyOfTarget>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 

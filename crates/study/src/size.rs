@@ -43,16 +43,16 @@ pub struct Sizing {
     pub object: Option<ObjectAnswer>,
     /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera, or where it was not asked for.
     pub solve_for: Option<Solutions>,
-    /// What the verdict hangs on; `None` without a camera, or where it was not asked for.
+    /// What the verdict depends on; `None` without a camera, or where it was not asked for.
     pub sensitivity: Option<Sensitivity>,
     /// Two quantities at a time, where they were asked for ([`Study::trade_offs`]).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trade_offs: Option<Vec<TradeOff>>,
     /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
     pub photon_radiance: f64,
-    /// All alternatives.
+    /// The target against each of its alternatives.
     pub pairs: Vec<PairResult>,
-    /// The alternative that is hardest to tell apart.
+    /// The alternative that is hardest to distinguish.
     pub limiting: String,
     /// What sizing practice says of the camera; `None` without a camera or without target.size.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,7 +65,7 @@ pub struct Sizing {
     pub safety: Vec<SafetyOfTarget>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -90,11 +90,11 @@ impl Default for SizeAsked {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct RequirementResult {
-    /// Which distance decides.
+    /// Name of the distance that decides: nearest or local.
     pub by: &'static str,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of any camera.
     pub distance: f64,
-    /// Detection probability demanded, Φ of it.
+    /// Probability of a correct decision demanded, Φ of it.
     pub detection_probability: f64,
     /// Photons at the detector by what is proved, shot noise only; `None` where none suffice, or where nothing is proved.
     pub photons: Option<f64>,

@@ -16,11 +16,11 @@ pub enum Thing {
     Reproductions,
     /// Integrals of the spectra over a band.
     BandIntegrals,
-    /// Sections of an answer.
+    /// Sections of an answer that were asked for.
     Sections,
     /// Derivatives of all bands with respect to one parameter, formed for local distances.
     DerivativeColumns,
-    /// Local distances.
+    /// Local distances of pairs of materials.
     LocalDistances,
     /// Bounds of the nearest distances of a target to all alternatives at once.
     SharedBounds,
@@ -30,13 +30,13 @@ pub enum Thing {
     FewBandEstimates,
     /// Descents from the target's own state to a nearer one.
     Descents,
-    /// Searches for the nearest state in a few of the bands.
+    /// Searches for the closest confuser in a few of the bands.
     FewBandSearches,
-    /// Searches for the nearest state in all bands.
+    /// Searches for the closest confuser in all bands.
     NearestSearches,
-    /// Nearest states followed from one that was found, as a quantity is solved for.
+    /// Closest confusers followed from one that was found, as a quantity is solved for.
     RefinedSearches,
-    /// Worst cases over an envelope of scenes, one for each pair of materials and camera.
+    /// Worst cases over an operating envelope of scenes, one for each pair of materials and camera.
     WorstCases,
     /// Boxes of scenes and states of which a bound is proved.
     Boxes,
@@ -46,13 +46,13 @@ pub enum Thing {
     Windows,
     /// Noisy views that are matched.
     MatchedViews,
-    /// Trials of a decision, each with counts of its own.
+    /// Trials of a decision, each with separate counts.
     Trials,
     /// Spectra drawn for classifiers or thermometers.
     Spectra,
     /// Likelihood ratios drawn without spectra.
     Ratios,
-    /// Classifiers trained.
+    /// Classifiers that were trained on drawn spectra.
     TrainedClassifiers,
     /// Spectra read by a fit or by an imager.
     Readings,
@@ -60,7 +60,7 @@ pub enum Thing {
     MaterialFits,
     /// Reports of tables and figures.
     Reports,
-    /// Figures drawn for reports.
+    /// Figures that were drawn for reports.
     Figures,
 }
 
@@ -139,7 +139,7 @@ impl Thing {
 /// Why something was not computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Reason {
-    /// Nobody asked for it.
+    /// Nobody asked for the result of it.
     NotAsked,
     /// Computed once for several that need the same.
     Shared,
@@ -163,7 +163,7 @@ pub enum Reason {
     Decided,
     /// The interval was narrow enough.
     NarrowEnough,
-    /// A bound excludes it.
+    /// A bound shows that it cannot change the answer.
     Bounded,
     /// No spectrum has rows nearer to each other than the band is wide.
     NoNearerRows,

@@ -46,13 +46,13 @@ macro_rules! every_figure {
             filed: Option<Arc<CameraSpec>>,
         }
         @Camera {
-            /// Name, as in `camera.preset`.
+            /// Name of the camera, as in `camera.preset`.
             name: String,
             /// What it is, in one line.
             description: String,
             /// Where the figures are from, and what is known to be wrong with them.
             provenance: Vec<String>,
-            /// Figures that no document states, and what stands for them.
+            /// Figures that no document states, and the values taken for them.
             assumed: Vec<Assumed>,
         }
         /// Exposure of one frame, s.
@@ -67,7 +67,7 @@ macro_rules! every_figure {
             "counts = etendue x exposure x efficiencies x S (S7)").always_shown();
 
         @CameraSpec {
-            /// Frames per second, Hz.
+            /// Number of frames in a second, Hz.
             frame_rate_hz: Option<f64>,
         }
         /// Side of a square pixel, m.
@@ -78,17 +78,17 @@ macro_rules! every_figure {
             "Side of a square pixel.",
             "etendue A_p/((1 + gamma)F^2) of a pixel (S7, SII E)").always_shown();
 
-        /// f-number.
+        /// f-number of the lens: focal length over the diameter of the aperture.
         f_number: Option<f64>,
-        /// f-number F.
+        /// f-number F of the lens: focal length over the diameter of the aperture.
         => f64,
         row("f_number", "f-number", Kind::Number(F_NUMBER, slot!(f_number)), "1.3",
             "f-number of the lens.",
             "etendue A_p/((1 + gamma)F^2) of a pixel (S7, SII E)").always_shown();
 
-        /// Focal length, m.
+        /// Focal length of the lens, m.
         focal_length_m: Option<f64>,
-        /// Focal length, m.
+        /// Focal length of the lens, m.
         => f64,
         row("focal_length", "focal length", Kind::Quantity(Dimension::Length, ABOVE_ZERO, slot!(focal_length_m)),
             "\"18 mm\"",
@@ -242,7 +242,7 @@ macro_rules! every_figure {
             "Standard deviation that every reading adds whatever its exposure, in counts; 0 where it is not stated.",
             "read noise in the noise budget (S14 to S16)");
 
-        /// Bits of the converter.
+        /// Number of bits of the analogue-to-digital converter.
         quantisation_bits: Option<u32>,
         /// Bits of the converter that divides the full well into steps, if known.
         => Option<u32>,
@@ -258,7 +258,7 @@ macro_rules! every_figure {
             "Counts at which a pixel is full; never where it is not stated.",
             "longest exposure; step of the quantisation").always_shown();
 
-        /// Whether the bunching of thermal photons adds its noise. A document that is silent means that it does not.
+        /// Whether the bunching of thermal photons adds its noise. A document that does not mention it means that it does not.
         #[serde(default = "not_asked_for")]
         photon_bunching: Option<bool>,
         /// Whether the bunching of thermal photons adds its noise.
@@ -275,18 +275,18 @@ macro_rules! every_figure {
             "Whether all bands are read in one exposure or one after the other; one after the other where nobody states it.",
             "exposures until all bands are known; light of filters (S8, S9)").elsewhere();
 
-        /// Bands that it has of its own; with one of them a spectrum takes filters.
+        /// Number of bands that the detector itself separates; with one of them a spectrum takes filters.
         spectral_bands: Option<u32>,
-        /// Bands that it has of its own, if known; with one of them a spectrum takes filters.
+        /// Number of bands that the detector itself separates, if known; with one of them a spectrum takes filters.
         => Option<u32>,
         row("spectral_bands", "bands of its own", Kind::Count(slot!(spectral_bands)), "1",
             "Bands that the camera has of its own: with 1 a spectrum takes filters, one after the other; as many as the scenario \
              asks for where it is not stated.",
             "whether filters must make the other bands").elsewhere();
 
-        /// Frames that are averaged.
+        /// Number of frames that are averaged.
         frames: Option<u32>,
-        /// Frames that are averaged.
+        /// Number of frames that are averaged.
         => u32,
         row("frames", "averaged frames", Kind::Count(slot!(frames)), "16",
             "Number of frames that are averaged; 1 where it is not stated.",

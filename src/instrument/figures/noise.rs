@@ -24,7 +24,7 @@ pub struct NoiseFigures {
     pub detectivity_cm_hz05_w: Option<f64>,
     /// Noise-equivalent power of 1 Hz, W Hz^-½.
     pub nep_w_hz05: Option<f64>,
-    /// Noise-equivalent spectral radiance, µflick.
+    /// Noise-equivalent spectral radiance of a band, µflick.
     pub nesr_microflick: Option<f64>,
     /// Where it is stated, µm. Documents only.
     pub nesr_wavelength_um: Option<f64>,
@@ -44,11 +44,11 @@ pub enum StatedNoise {
     None,
     /// Noise-equivalent temperature difference of a frame.
     Netd {
-        /// K.
+        /// Noise-equivalent temperature difference of one frame, K.
         netd_k: f64,
         /// Temperature of the blackbody, K.
         temperature_k: Option<f64>,
-        /// f-number.
+        /// f-number of the lens for which it is stated.
         f_number: Option<f64>,
         /// Optics efficiency with which its photons are counted.
         optics_efficiency: Option<f64>,
@@ -57,34 +57,34 @@ pub enum StatedNoise {
     },
     /// Specific detectivity.
     Detectivity {
-        /// cm √Hz W⁻¹.
+        /// Specific detectivity D* of the detector, cm √Hz W⁻¹.
         detectivity_cm_hz05_w: f64,
-        /// Noise bandwidth, Hz.
+        /// Bandwidth for which the noise is stated, Hz.
         bandwidth_hz: Option<f64>,
     },
     /// Noise-equivalent power of 1 Hz.
     Nep {
-        /// W Hz^-½.
+        /// Noise-equivalent power of the detector, W Hz^-½.
         nep_w_hz05: f64,
-        /// Noise bandwidth, Hz.
+        /// Bandwidth for which the noise is stated, Hz.
         bandwidth_hz: Option<f64>,
     },
     /// Noise-equivalent spectral radiance.
     Nesr {
-        /// µflick.
+        /// Noise-equivalent spectral radiance of a band, µflick.
         microflick: f64,
         /// Where it is stated, µm.
         wavelength_um: Option<f64>,
-        /// f-number.
+        /// f-number of the lens for which it is stated.
         f_number: Option<f64>,
-        /// Optics efficiency.
+        /// Optics efficiency for which it is stated, 0 to 1.
         optics_efficiency: Option<f64>,
         /// Side of the pixel, m.
         pixel_m: Option<f64>,
     },
     /// Deviation of a band reading.
     Counts {
-        /// Counts.
+        /// Standard deviation of a reading of one band, counts.
         sigma_counts: f64,
     },
 }

@@ -25,14 +25,14 @@ pub enum NoiseSpec {
     },
     /// Specific detectivity D*.
     Detectivity {
-        /// D*, cm √Hz W⁻¹.
+        /// Specific detectivity D* of the detector, cm √Hz W⁻¹.
         detectivity_cm_hz05_w: f64,
         /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
         bandwidth_hz: Option<f64>,
     },
     /// Noise-equivalent power of a bandwidth of 1 Hz.
     Nep {
-        /// NEP, W Hz^-½.
+        /// Noise-equivalent power NEP of the detector, W Hz^-½.
         nep_w_hz05: f64,
         /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
         bandwidth_hz: Option<f64>,
@@ -50,12 +50,12 @@ pub enum NoiseSpec {
     },
     /// Standard deviation of a band reading.
     Counts {
-        /// σ, counts.
+        /// Standard deviation σ of a reading of one band, counts.
         sigma_counts: f64,
     },
     /// Standard deviation of a band reading over wavenumber.
     Table {
-        /// Ascending wavenumbers, cm⁻¹.
+        /// Ascending wavenumbers at which the noise is stated, cm⁻¹.
         wavenumbers_cm1: Vec<f64>,
         /// σ there, counts; straight lines between, the last one beyond.
         sigma_counts: Vec<f64>,
@@ -67,7 +67,7 @@ pub enum NoiseSpec {
 pub struct NetdConditions {
     /// Temperature of the blackbody, K.
     pub temperature_k: f64,
-    /// f-number of the optics.
+    /// f-number of the optics for which it is stated.
     pub f_number: f64,
     /// Share of the photons that they pass.
     pub optics_efficiency: f64,

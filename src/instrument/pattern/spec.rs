@@ -76,7 +76,7 @@ pub struct Pattern {
     /// What is stated of it.
     #[serde(flatten)]
     pub(super) stated: PatternFigures,
-    /// For what.
+    /// Conditions for which the figures of the pattern are stated.
     pub(super) at: NetdConditions,
 }
 

@@ -35,7 +35,7 @@ pub const SHARE: f64 = 0.1;
 pub struct CurveSmoothness {
     /// Relative deviation of the scale of the whole curve.
     pub scale: f64,
-    /// Deviation of each value beside that, in units of the peak.
+    /// Deviation of each value compared with that, in units of the peak.
     pub shape: f64,
     /// Difference of wavenumbers at which the correlation of the shape has fallen to a quarter, cm⁻¹.
     pub correlation_cm1: f64,

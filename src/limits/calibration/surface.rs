@@ -27,11 +27,11 @@ use crate::planck;
 /// Emissivity and surroundings in a channel, with their errors.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Surface {
-    /// Of the emissivity.
+    /// Errors of the emissivity in two parts, 0 to 1.
     pub emissivity: Parts,
     /// Of the radiance of the surroundings.
     pub surroundings: Parts,
-    /// Covariance of the two.
+    /// Covariance of the errors of emissivity and surroundings.
     pub covariance: f64,
 }
 

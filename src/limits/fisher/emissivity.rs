@@ -38,11 +38,11 @@ mod tests;
 /// What is known of an emissivity beforehand but its values: how large it may be, how much it varies and how smoothly.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Smoothness {
-    /// Mean of all bands.
+    /// Mean of the emissivity over all bands, 0 to 1.
     pub mean: f64,
     /// Deviation that all bands have in common.
     pub magnitude: f64,
-    /// Deviation of each band beside that.
+    /// Deviation of each band compared with that.
     pub shape: f64,
     /// Difference of wavenumbers at which the correlation of the shape has fallen to a quarter, cm⁻¹.
     pub correlation_cm1: f64,

@@ -93,7 +93,7 @@ pub struct AverageProbability {
     pub lower: Option<f64>,
     /// No test is right more often.
     pub upper: f64,
-    /// States of each class.
+    /// Number of states of each class that represent its priors.
     pub states: usize,
 }
 
@@ -103,9 +103,9 @@ pub struct AverageProbability {
 pub struct AveragePhotons {
     /// Fewer are not enough for any test.
     pub lower: f64,
-    /// So many are enough for a test; `None` where no such number is known.
+    /// This number of photons is enough for a test; none where no such number is known.
     pub upper: Option<f64>,
-    /// States of each class.
+    /// Number of states of each class that represent its priors.
     pub states: usize,
 }
 

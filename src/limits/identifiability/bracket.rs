@@ -42,7 +42,7 @@ use std::f64::consts::LN_2;
 pub struct KnownStatesBracket {
     /// −ln ρ of the Bhattacharyya coefficient ρ.
     pub bhattacharyya: f64,
-    /// C(s*), the largest C(s).
+    /// Chernoff information C(s*), the largest value of C(s).
     pub chernoff: f64,
     /// Where C is largest, in [0, 1].
     pub chernoff_s: f64,
@@ -52,7 +52,7 @@ pub struct KnownStatesBracket {
     pub upper: f64,
     /// Natural logarithms of the two, where they would underflow.
     pub ln_lower: f64,
-    /// See `ln_lower`.
+    /// Natural logarithm of the upper bound, where that would underflow.
     pub ln_upper: f64,
 }
 

@@ -66,9 +66,9 @@ pub struct DecisionBounds {
     pub upper: f64,
     /// 1 − `upper`, to its own digits.
     pub error_lower: f64,
-    /// 1 − `lower`.
+    /// Upper bound of the probability of error, 1 − `lower`.
     pub error_upper: f64,
-    /// What they rest on.
+    /// The law of the counts on which the bounds rest.
     pub law: DecisionLaw,
 }
 

@@ -93,7 +93,7 @@ pub fn distance_for_rates(detection: f64, false_alarm: f64) -> Result<f64> {
     Ok(0.5 * (distance_for_probability(detection)? + distance_for_miss(false_alarm)?))
 }
 
-/// Rigorous bounds on the error of the best test between the two nearest states, at statistical distance d.
+/// Rigorous bounds on the error of the best test between the target and its closest confuser, at statistical distance d.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ErrorBracket {

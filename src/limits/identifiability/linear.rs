@@ -28,7 +28,7 @@ use crate::scene::Columns;
 pub struct LinearDetection {
     /// d = ½‖P⊥A‖, in units of the noise; 0 where the surfaces coincide.
     pub distance: f64,
-    /// Detection probability Φ(d).
+    /// Probability of a correct decision Φ(d), 0.5 to 1.
     pub probability: f64,
     /// Miss probability 1 − Φ(d), to full relative precision.
     pub miss_probability: f64,

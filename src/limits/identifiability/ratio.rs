@@ -76,7 +76,7 @@ pub enum State {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct TestError {
-    /// ½(α + β).
+    /// Probability of error, the mean ½(α + β) of both kinds.
     pub error: f64,
     /// Its natural logarithm, where it would underflow.
     pub ln_error: f64,
@@ -88,7 +88,7 @@ pub struct TestError {
     pub numerical: f64,
     /// Estimated numerical error of `first` and of `second`, relative to `error`.
     pub numerical_class: f64,
-    /// How they were found.
+    /// The method by which they were computed.
     pub route: Route,
 }
 

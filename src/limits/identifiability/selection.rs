@@ -55,12 +55,11 @@ pub struct FilterSelection {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Quality {
-    /// Distance with the selection.
+    /// Distance that is reached with the selected bands, as the selection measures it.
     pub distance: f64,
-    /// Distance with all bands.
+    /// Distance that is reached with all bands, as `distance`.
     pub distance_all_bands: f64,
-    /// Share of the distance that is kept; 0 where there is none to keep. Filters with a noise of
-    /// their own may keep more than 1, as they are read less often than bands.
+    /// Share of the distance that is kept; 0 where there is none to keep. Filters with a separate noise may keep more than 1, as they are read less often than bands.
     pub kept: f64,
     /// No selection of as many has a greater distance.
     pub bound: f64,
@@ -68,7 +67,7 @@ pub struct Quality {
     pub exact: bool,
     /// Index of the pair that fares worst with the selection.
     pub limiting_pair: Option<usize>,
-    /// Pairs that not even all bands tell apart: left out of everything here.
+    /// Pairs that not even all bands distinguish: left out of everything here.
     pub left_out: Vec<usize>,
     /// Fewest bands or filters that tell anything: one more than there are nuisances without priors.
     pub fewest: usize,

@@ -80,7 +80,7 @@ impl Lever {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Elasticity {
-    /// The elasticity.
+    /// Relative change of d over the relative change of the quantity.
     pub value: f64,
     /// Estimate of its numerical error.
     pub error: f64,

@@ -49,13 +49,13 @@ pub enum Start {
 pub struct Decision {
     /// Speed of the vehicle, m s⁻¹.
     pub speed_m_s: f64,
-    /// Closing speed, m s⁻¹.
+    /// Speed at which vehicle and target approach, m s⁻¹.
     pub closing_m_s: f64,
-    /// Distance at which the decision must stand, m.
+    /// Distance at which the decision is due, m.
     pub distance_m: f64,
     /// Distance at which the target comes into view, m; `None` if nothing is said of it.
     pub start_m: Option<f64>,
-    /// Time from then until the decision must stand, s.
+    /// Time from then until the decision is due, s.
     pub time_s: Option<f64>,
 }
 

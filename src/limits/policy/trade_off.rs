@@ -58,7 +58,7 @@ pub struct Point {
     pub within_limits: Option<(f64, f64)>,
     /// Codes of the limits that the pair (x, y) breaks.
     pub capped: Vec<CapCode>,
-    /// Why no value suffices.
+    /// Why no value meets the requirement, in words.
     pub reason: Option<String>,
 }
 
@@ -66,7 +66,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct LimitLine {
-    /// Code of the limit.
+    /// Code of the limit that the line shows.
     pub code: CapCode,
     /// Whether it limits the first quantity, whatever the second, and so is upright.
     pub upright: bool,
@@ -87,7 +87,7 @@ pub struct TradeOff {
     pub required: f64,
     /// Statistical distance of the camera as it is.
     pub as_now: f64,
-    /// The curve, x ascending.
+    /// Points of the curve, by ascending value of x.
     pub points: Vec<Point>,
     /// Limits that shot noise does not know.
     pub limits: Vec<LimitLine>,

@@ -194,11 +194,11 @@ impl Image {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct DepthBound {
-    /// δz, m.
+    /// Least error δz of the depth, m.
     pub sigma_z_m: f64,
-    /// δz/z.
+    /// Least error of the depth over the depth, δz/z.
     pub relative: f64,
-    /// δd, pixels.
+    /// Least error δd of the disparity, pixels.
     pub sigma_disparity_px: f64,
     /// Its part from the texture (σ_c), pixels; for a measured image all of it.
     pub sigma_content_px: f64,

@@ -37,9 +37,9 @@ pub struct DepthMetrics {
     pub rmse_log: f64,
     /// δ₁, δ₂, δ₃: shares of pixels whose depths are within a factor of 1.25, 1.25², 1.25³ of each other.
     pub delta: [f64; 3],
-    /// Pixels in use.
+    /// Number of pixels that are compared.
     pub used: usize,
-    /// Pixels that are not.
+    /// Numbers of pixels that are left out, by reason.
     pub excluded: Excluded,
 }
 

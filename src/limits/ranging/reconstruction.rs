@@ -49,7 +49,7 @@ pub struct PixelPrecision {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PixelInformation {
-    /// The heat cube itself.
+    /// Information of the heat cube as it is measured, pixel⁻².
     pub heat_cube: f64,
     /// Lighting factors reconstructed from it.
     pub reconstructed: f64,

@@ -38,13 +38,13 @@ impl fmt::Display for Basis {
 /// What a material is and how it is known. All fields are one line of text; empty where nothing is known.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Provenance {
-    /// What the surface is.
+    /// What the surface of the material is, in words.
     pub description: String,
     /// Group in lists, e.g. `metal`.
     pub category: String,
-    /// Kind of knowledge.
+    /// Kind of knowledge, such as measured optical constants, a published model or a constant.
     pub basis: Basis,
-    /// Publication or file.
+    /// Publication or file from which the values are.
     pub source: String,
     /// Terms under which the numbers may be passed on.
     pub licence: String,

@@ -11,7 +11,7 @@ pub const WARNING: &str = "# warning: ";
 /// What a list or an import says about a material.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
-    /// Name.
+    /// Name under which the material is looked up.
     pub name: String,
     /// What it is and how it is known.
     pub provenance: Provenance,

@@ -14,9 +14,9 @@ const OPAQUE: f64 = 1e-30;
 pub struct Band {
     /// Centre (of a filter: its transmission-weighted mean), cm⁻¹.
     pub center_cm1: f64,
-    /// Lower edge, cm⁻¹.
+    /// Wavenumber of the lower edge of the band, cm⁻¹.
     pub low_cm1: f64,
-    /// Upper edge, cm⁻¹.
+    /// Wavenumber of the upper edge of the band, cm⁻¹.
     pub high_cm1: f64,
     /// Name of the filter, if it has one.
     pub name: Option<String>,

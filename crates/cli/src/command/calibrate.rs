@@ -20,7 +20,7 @@ pub(super) struct CalibrateArgs {
 enum Kind {
     /// A spectrometer by blackbodies: response and offset of every channel with their errors, and the radiance of a cube
     ///
-    /// Errors are told apart: noise of each sample, and what is common to all pixels, by the blackbodies' noise and temperatures.
+    /// Errors are distinguished: noise of each sample, and what is common to all pixels, by the blackbodies' noise and temperatures.
     Blackbody(blackbody::BlackbodyArgs),
     /// A camera behind a filter wheel by blackbodies: its response, how much of it is determined, and radiances behind the filters
     ///

@@ -56,7 +56,7 @@ pub(super) fn verify(
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
     let path = found_again(path, certificate, listed.first(), global);
     if path == Path::new(STDIN) {
-        let instead = "put its rule_as_read.toml beside it again";
+        let instead = "put its rule_as_read.toml into the same folder again";
         let found = Error::malformed("its rule was read from standard input, and is no file", instead);
         return Err(found.in_file(certificate));
     }
@@ -115,7 +115,7 @@ pub(super) fn verify(
     let report = report_of(certificate, home.map(Path::to_owned), global, read_again)?;
     let text = match &report {
         None => format!(
-            "Verified: {found}. It is no part of a report: other files beside it were not looked at.\n"
+            "Verified: {found}. It is no part of a report: other files of its folder were not read.\n"
         ),
         Some(report) => {
             let verified = if report.verified { "Verified:" } else { "Not verified, though" };

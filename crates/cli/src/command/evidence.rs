@@ -27,16 +27,17 @@ pub(crate) const HANDED_OVER_BY: &str = "HADAR_HANDED_OVER_BY";
 pub enum Question {
     /// The paper's figures and tables made again, with a ledger of what agrees
     Reproduce(ReproduceArgs),
-    /// Run time against error: every method of a computation over its effort, beside extended precision
+    /// Run time against error: every method of a computation over its effort, compared with extended precision
     Accuracy(AccuracyArgs),
 }
 
 /// Arguments of `hadar reproduce`.
 #[derive(Debug, Args)]
 pub struct ReproduceArgs {
-    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs19, figs20, edfig1, edfig5, edfig6, edfig9, tabs2, tabs5, policy, or all
-    /// of these; further studies, no part of `all`: air-ranging, decompose-limits, exact-probability, priors, library-figures (with --library FILE),
-    /// emissivity-from-data (with --library FOLDER), person-or-robot (with --library twice)
+    /// Figures and tables: fig3b, figs7, fig3c, edfig1, edfig5, edfig6, edfig7, edfig8, edfig9, edfig9a, fig4, figs12, figs17, figs19,
+    /// figs20, figs29, tabs5, tabs2, policy, or all of these; further studies, not in `all`: exact-probability, priors, decompose-limits,
+    /// air-ranging, ftir-calibration, stripes, library-figures (with --library FILE), emissivity-from-data (with --library FOLDER),
+    /// person-or-robot (with --library twice)
     #[arg(value_name = "ID", default_value = "all")]
     pub items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores

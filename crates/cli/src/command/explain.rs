@@ -1,10 +1,10 @@
-//! `hadar explain`: what a key of a file, a warning, a key of an answer or a command means; `hadar schema`: the keys for editors.
+//! `hadar explain`: what a term of the field, a key of a file, a warning, a key of an answer or a command means; `hadar schema`: the keys for editors.
 
 use super::global::{Global, put};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use hadar::error::{Error, Result};
-use hadar_report::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
+use hadar_report::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey, Term};
 use hadar_report::json;
 use hadar_scenario::keys::{self, FILES, FileKind, Place, Silent};
 use hadar_study::warning::Code;
@@ -19,16 +19,16 @@ const MOST_RESULTS: usize = 12;
 
 #[derive(Debug, Args)]
 pub(super) struct ExplainArgs {
-    /// A key of a file (`target.temperature`, `noise_bandwidth`), a table (`envelope`), the code of a warning, a key of the JSON, a command; silent: what there is
+    /// A term or symbol of the field (`NETD`, `gamma`, `S27`), a key of a file (`target.temperature`), a table (`envelope`), the code of a warning, a key of the JSON, a command; without it: an overview
     word: Option<String>,
-    /// All keys of files, warnings and keys of the JSON: a long text
+    /// All terms, keys of files, codes and keys of the JSON: a long text
     #[arg(long, conflicts_with = "word")]
     all: bool,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArgs {
-    /// A command whose files it is for, or a kind of file; silent: all of them
+    /// A command whose files it is for, or a kind of file; default: all of them
     #[arg(value_parser = kinds())]
     command: Option<String>,
 }
@@ -36,8 +36,10 @@ pub(super) struct SchemaArgs {
 /// What a word means.
 #[derive(Debug, Serialize)]
 struct Explained {
-    /// The word.
+    /// The word that was looked up.
     word: String,
+    /// Terms of the field of this name or symbol.
+    terms: Vec<Term>,
     /// Keys of files that are called so.
     keys: Vec<ExplainedKey>,
     /// The warning of this code.
@@ -57,9 +59,9 @@ struct Explained {
 /// A command.
 #[derive(Debug, Serialize)]
 struct ExplainedCommand {
-    /// Its name.
+    /// Name of the command, without `hadar`.
     name: String,
-    /// What it answers.
+    /// The question that the command answers.
     about: String,
     /// Tables of the files that it reads.
     tables: Vec<&'static str>,
@@ -77,8 +79,9 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         return Ok(ExitCode::SUCCESS);
     };
     let places = explain::key(word);
-    let explained = Explained {
+    let mut explained = Explained {
         word: word.to_owned(),
+        terms: explain::term(word),
         keys: places.iter().map(ExplainedKey::from).collect(),
         warning: explain::code(word).map(ExplainedCode::from),
         condition: explain::called(word, explain::conditions()),
@@ -94,8 +97,12 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         && explained.shortfall.is_none()
         && explained.reason.is_none()
         && explained.command.is_none()
+        && explained.terms.is_empty()
     {
-        return Err(unknown(word, cli));
+        explained.terms = explain::terms_like(word);
+        if explained.terms.is_empty() {
+            return Err(unknown(word, cli));
+        }
     }
     global.print(&explained, &text(&explained, &places))?;
     Ok(ExitCode::SUCCESS)
@@ -106,11 +113,11 @@ fn unknown(word: &str, cli: &clap::Command) -> Error {
     let is_new = |name: &&str| words.iter().all(|word| word != name);
     let commands = cli.get_subcommands().map(clap::Command::get_name).filter(is_new);
     let all = commands.chain(words.iter().map(String::as_str));
-    let error = Error::unknown_name("key, warning or command", word, all);
+    let error = Error::unknown_name("term, key, warning or command", word, all);
     match &error {
         Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
             error.to_string(),
-            "`hadar explain` says what there is, `hadar explain --all` all of it",
+            "`hadar explain` gives an overview, `hadar explain --all` prints everything",
         ),
         _ => error,
     }
@@ -151,6 +158,7 @@ fn command(word: &str, cli: &clap::Command) -> Option<ExplainedCommand> {
 
 fn text(explained: &Explained, places: &[Place]) -> String {
     let mut text = String::new();
+    explained.terms.iter().for_each(|term| of_term(term, &mut text));
     if let Some(ExplainedCommand { name, about, tables }) = &explained.command {
         let _ = writeln!(text, "hadar {name}: {about}");
         if !tables.is_empty() {
@@ -201,7 +209,9 @@ fn text(explained: &Explained, places: &[Place]) -> String {
 
 /// All of it, one after the other.
 fn reference_text(reference: &Reference) -> String {
-    let mut text = String::from("KEYS OF FILES\n\n");
+    let mut text = String::from("TERMS\n\n");
+    reference.terms.iter().for_each(|term| of_term(term, &mut text));
+    text.push_str("KEYS OF FILES\n\n");
     keys::all().iter().for_each(|place| in_full(place, &mut text));
     text.push_str("WARNINGS\n\n");
     reference.warnings.iter().for_each(|one| of_code("warning", *one, &mut text));
@@ -214,6 +224,22 @@ fn reference_text(reference: &Reference) -> String {
     text.push_str("KEYS OF THE JSON\n\n");
     reference.results.iter().for_each(|one| of_result(*one, &mut text));
     text
+}
+
+fn of_term(term: &Term, text: &mut String) {
+    let symbol = term.typed_symbol();
+    let head = if symbol.is_empty() || symbol == term.name { String::new() } else { format!(", {symbol}") };
+    let _ = writeln!(text, "{}{head}\n  means      {}", term.name, term.meaning);
+    if term.unit != "-" {
+        let _ = writeln!(text, "  unit       {}", term.unit);
+    }
+    if !term.keys.is_empty() {
+        let _ = writeln!(text, "  keys       {}", term.keys.join(", "));
+    }
+    if !term.also.is_empty() && !term.is_equation {
+        let _ = writeln!(text, "  also       {}", term.also.join(", "));
+    }
+    let _ = writeln!(text, "  more       the guide, docs/src/{}\n", term.see);
 }
 
 fn of_code(what: &str, ExplainedCode { code, meaning, remedy }: ExplainedCode, text: &mut String) {
@@ -241,16 +267,16 @@ fn in_full(place: &Place, text: &mut String) {
     let _ = writeln!(text, "{path}\n  means      {}", told.meaning);
     let _ = writeln!(text, "  written    {}", told.value);
     let silent = match key.silent {
-        Silent::Refused => "refused: it must be there".to_owned(),
+        Silent::Refused => "none: it must be stated".to_owned(),
         Silent::Is(value) => format!("{} = {value}", key.name),
         Silent::Means(words) => words.to_owned(),
     };
-    let _ = writeln!(text, "  silent     {silent}");
+    let _ = writeln!(text, "  default    {silent}");
     if let Some(example) = &told.example {
         let _ = writeln!(text, "  example    {example}");
     }
     if !key.is_table() {
-        let _ = writeln!(text, "  enters     {}", told.enters);
+        let _ = writeln!(text, "  used in    {}", told.enters);
     }
     let _ = writeln!(text, "  read by    hadar {}", told.commands.join(", "));
     if !also.is_empty() {
@@ -271,7 +297,9 @@ fn in_full(place: &Place, text: &mut String) {
 struct Sections {
     /// Kinds of files, with their tables.
     files: Vec<SectionsOfFile>,
-    /// Codes of warnings.
+    /// How many terms and symbols of the field are known.
+    terms: usize,
+    /// Codes of all warnings that exist.
     warnings: Vec<&'static str>,
     /// How many keys of answers are known.
     result_keys: usize,
@@ -280,9 +308,9 @@ struct Sections {
 /// A kind of file.
 #[derive(Debug, Serialize)]
 struct SectionsOfFile {
-    /// What it is.
+    /// What this kind of file describes.
     meaning: &'static str,
-    /// Commands that read it.
+    /// Commands that read such a file.
     commands: &'static [&'static str],
     /// Its tables and the keys above them.
     tables: Vec<&'static str>,
@@ -296,11 +324,12 @@ fn sections() -> (Sections, String) {
     };
     let sections = Sections {
         files: FILES.iter().map(of_file).collect(),
+        terms: explain::terms().count(),
         warnings: Code::ALL.iter().map(|code| code.name()).collect(),
         result_keys: explain::results().count(),
     };
     let mut text =
-        String::from("hadar explain WORD tells what a word means. Files, and the tables in them:\n\n");
+        String::from("hadar explain WORD says what a word means. Files, and the tables in them:\n\n");
     for file in &sections.files {
         let _ = writeln!(
             text,
@@ -312,7 +341,8 @@ fn sections() -> (Sections, String) {
     }
     let _ = write!(
         text,
-        "\n{} codes of warnings, such as {}; {} keys of the JSON; every command.\n`hadar explain TABLE` lists its keys, `hadar init` writes a file to begin with.",
+        "\n{} terms of the field, such as NETD, d or S27; {} codes of warnings, such as {}; {} keys of the JSON; every command.\n`hadar explain TABLE` lists its keys, `hadar init` writes a file to begin with.",
+        sections.terms,
         sections.warnings.len(),
         sections.warnings.first().copied().unwrap_or_default(),
         sections.result_keys

@@ -18,7 +18,7 @@ pub(super) struct FindArgs {
     /// Exit with code 3 unless a camera meets under no condition but those of --accept
     #[arg(long)]
     check: bool,
-    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition)]
     accept: Vec<String>,
 }

@@ -105,6 +105,9 @@ pub(super) fn given(command: &Command, root: &ArgMatches) -> Result<Global, Erro
 /// What to say of a flag that the command does not have, where another has it; another mistake is as it was said.
 pub(super) fn explained(command: &Command, error: Error, words: &[String]) -> Error {
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return error };
+    if let Some(joined) = in_two_words(command, words, flag) {
+        return joined;
+    }
     let flag = flag.split('=').next().unwrap_or(flag);
     if error.kind() != ErrorKind::UnknownArgument || takers(command, "", flag).is_empty() {
         return error;
@@ -118,10 +121,24 @@ pub(super) fn explained(command: &Command, error: Error, words: &[String]) -> Er
     refused(command, flag, &path)
 }
 
+/// What to say of a key and its values in two words: `--vary camera.exposure "1 ms..10 ms:3"`.
+fn in_two_words(command: &Command, words: &[String], second: &str) -> Option<Error> {
+    let [flag, key, values] = words.windows(3).find_map(|three| match three {
+        [flag, key, values]
+            if ["--vary", "--set"].contains(&flag.as_str()) && !key.contains('=') && values == second =>
+        {
+            Some([flag, key, values])
+        }
+        _ => None,
+    })?;
+    let said = format!("{flag}: `{key}` has no value; join key and value by `=`: {flag} {key}=\"{values}\"");
+    Some(Error::raw(ErrorKind::UnknownArgument, format!("{said}\n")).with_cmd(command))
+}
+
 fn refused(command: &Command, flag: &str, path: &str) -> Error {
     let takers = takers(command, "", flag);
     let said = match path {
-        "" => format!("`{flag}` stands behind the command that takes it: {}", takers.join(", ")),
+        "" => format!("write `{flag}` after the command that takes it: {}", takers.join(", ")),
         _ if takers.iter().any(|taker| taker == path) => {
             format!("write `{flag}` behind `hadar {path}`, not before")
         }

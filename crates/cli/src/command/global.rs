@@ -37,7 +37,7 @@ pub struct Global {
     /// Write a report into this folder: one page, the answer, scenario, tables and plots
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Write the tables of a report as Parquet too, beside the CSV
+    /// Write the tables of a report as Parquet too, in addition to CSV
     #[arg(long, value_name = "FORMAT", requires = "out")]
     pub(super) format: Option<Format>,
     /// Take an --out folder although it holds files that hadar did not write, or that were changed: those in the way are
@@ -486,7 +486,7 @@ pub(super) enum Format {
 /// The distance that decides, as a flag.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 pub(super) enum By {
-    /// To the nearest state of the alternative: the limit
+    /// To the closest confuser, the most similar state of the alternative: the limit
     Nearest,
     /// The paper's local distance, calibrated camera (S27)
     Local,

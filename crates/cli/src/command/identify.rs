@@ -23,10 +23,10 @@ pub(super) struct IdentifyArgs {
     /// The distance that decides, instead of the scenario's
     #[arg(long)]
     by: Option<By>,
-    /// All materials against all: distances, which the camera tells apart, clusters it cannot
+    /// All materials against all: distances, the pairs that the camera distinguishes, clusters of those that it cannot
     #[arg(long, help_heading = ALL)]
     matrix: bool,
-    /// Only which materials the camera tells apart, each pair by the first proof
+    /// Only which pairs of materials the camera distinguishes, each by the first proof
     #[arg(long, conflicts_with = "matrix", help_heading = ALL)]
     apart: bool,
     /// Prove nearest distances to this share of themselves (default: 1e-6, with several unknown temperatures 1e-3)
@@ -35,7 +35,7 @@ pub(super) struct IdentifyArgs {
     /// How the least distance changes with the size of the library and the number of bands
     #[arg(long, help_heading = BANDS)]
     scaling: bool,
-    /// Which bands matter, and the best K single bands for telling the target from all alternatives
+    /// Which bands matter, and the best K single bands for distinguishing the target from all alternatives
     #[arg(long, value_name = "K", help_heading = BANDS)]
     bands: Option<usize>,
     /// Which bands matter, and the best K contiguous filters, or fewer that do as well
@@ -56,13 +56,13 @@ pub(super) struct IdentifyArgs {
     /// Most trials of a state in the simulation
     #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact", help_heading = EXACT)]
     trials: u64,
-    /// Photons at which the hardest pair is told apart on average over the priors of the scenario
+    /// Photons at which the hardest pair is distinguished on average over the priors of the scenario
     #[arg(long)]
     average: bool,
-    /// Answer only whether the camera tells the target from every alternative; exit with code 3 unless it does under no condition but those of --accept
+    /// Answer only whether the camera distinguishes the target from every alternative; exit with code 3 unless it does under no condition but those of --accept
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact", "average"])]
     check: bool,
-    /// With --check: codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    /// With --check: codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, requires = "check")]
     accept: Vec<String>,
 }

@@ -17,7 +17,7 @@ pub(super) struct InitArgs {
     /// What the file is for
     #[arg(value_enum, default_value_t = For::Size)]
     command: For,
-    /// Name of the file; silent: that of the command
+    /// Name of the file; default: that of the command
     file: Option<PathBuf>,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct InitArgs {
 enum For {
     /// A camera for a requirement
     Size,
-    /// What the target can be told from
+    /// What the target can be distinguished from
     Identify,
     /// Which camera, lens and filters to take
     Find,

@@ -38,13 +38,13 @@ pub(super) struct RuleArgs {
     /// Say where every figure of the rule is from, [[source]]
     #[arg(long, conflicts_with = "check")]
     sources: bool,
-    /// Say how exact a heated stand-in must be so that no camera tells it from a person as reliably as the rule demands, [stand_in]
+    /// Compute the tolerances of a heated surrogate target within which no camera distinguishes it from a person with the probability that the rule requires, [stand_in]
     #[arg(long, conflicts_with_all = ["check", "test", "sources"])]
     stand_in: bool,
-    /// Hold the cameras against every reform of the rule, [[reform]], beside the rule as it is
+    /// Judge the cameras by every reform of the rule, [[reform]], and compare with the rule as it is
     #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "on", "accept"])]
     reforms: bool,
-    /// Move every number of the rule by a tenth, alone, and say what hangs on it
+    /// Change every number of the rule by a tenth, one at a time, and report which verdicts change
     #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "reforms", "on", "accept"])]
     figures: bool,
     /// Judge every clause with a vehicle cell by cell, speed by speed and light by light, [[grid]]: the table that a maker hands in
@@ -53,7 +53,7 @@ pub(super) struct RuleArgs {
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
     #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "figures", "grid", "on"])]
     verify: Option<PathBuf>,
-    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
     accept: Vec<String>,
     /// Cameras to be judged in the place of the rule's own, by name: the program's, or those of --cameras; may be given several times

@@ -44,7 +44,7 @@ pub(super) struct SimulateArgs {
     /// Leave out the camera's electronic noise
     #[arg(long, help_heading = "Spectra")]
     shot_noise_only: bool,
-    /// Alternatives that are classes beside the target (default: the one nearest to it); `all` for all of them
+    /// Alternatives that are classes in addition to the target (default: the most similar one); `all` for all of them
     #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Spectra")]
     against: Vec<String>,
     /// Write the trained classifiers of the last experiment into this folder

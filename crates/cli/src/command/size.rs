@@ -22,7 +22,7 @@ pub(super) struct SizeArgs {
     /// cheapest proofs
     #[arg(long)]
     check: bool,
-    /// Codes of conditions under which a 'yes' is one, as `hadar explain CODE` tells them
+    /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition)]
     accept: Vec<String>,
     /// The distance that decides, instead of the scenario's

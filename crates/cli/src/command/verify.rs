@@ -32,7 +32,7 @@ pub(super) struct VerifyArgs {
     /// Demand that it is about this day
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
     on: Option<Date>,
-    /// Demand that this DSSE envelope holds the statement; whose signature it has is for the tool to say that made it
+    /// Demand that this DSSE envelope holds the statement; whether its signature is valid must be checked with the tool that made it
     #[arg(long, value_name = "FILE")]
     envelope: Option<PathBuf>,
 }
@@ -54,8 +54,10 @@ impl VerifyArgs {
             }
             None => None,
         };
-        let envelope =
-            self.envelope.as_deref().map(|path| file::bytes(path, "read the envelope", LONGEST_ENVELOPE));
+        let envelope = self
+            .envelope
+            .as_deref()
+            .map(|path| file::bytes(path, "read the DSSE envelope", LONGEST_ENVELOPE));
         let on = self.on.map(|day| day.to_string());
         Ok(Demands { passed: self.passed, rule, on, envelope: envelope.transpose()? })
     }

@@ -237,7 +237,7 @@ fn what_is_set_is_as_if_the_file_said_it() {
     assert!(read("scenario.toml").contains("temperature = \"60 degC\""));
     assert!(read("hadar.json").contains("target.temperature=60 degC"));
     let line =
-        "in the place of the file's values: target.temperature = 60 degC; environment[0].lighting = 0.3";
+        "values that replace those of the file: target.temperature = 60 degC; environment[0].lighting = 0.3";
     assert!(
         read("answer.txt").contains(line) && read("report.html").contains("target.temperature = 60 degC")
     );

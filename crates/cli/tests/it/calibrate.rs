@@ -299,7 +299,7 @@ fn mistakes_are_one_message() {
         (["stripes", "constant.npy"], "constant.npy: all samples of the cube are the same"),
         (
             ["stripes", "filled.npy"],
-            "stripes, too many to tell them from the scene; correct the cube by a uniform source first",
+            "stripes, too many to distinguish them from the scene; correct the cube by a uniform source first",
         ),
         (["noise", "a.toml"], "this is a decomposition scenario"),
     ] {

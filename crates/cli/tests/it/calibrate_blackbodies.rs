@@ -203,7 +203,7 @@ fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
         &["a.toml:12: blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 283.15 K"],
     );
     let one = SPECTROMETER.split("[[blackbody]]\ntemperature = \"35").next().unwrap().to_owned();
-    says(&(one + "[noise]\nsample = 2.0\n"), &["one temperature tells response and offset not apart"]);
+    says(&(one + "[noise]\nsample = 2.0\n"), &["one temperature does not determine response and offset"]);
     says(&SPECTROMETER.replace("sample = 2.0\n", ""), &["nothing says how samples scatter", "sample = 1.5"]);
     says(&SPECTROMETER.replace("mild.npy", "none.npy"), &["none.npy", "there is no such file"]);
     says(

@@ -131,7 +131,11 @@ fn a_rule_that_is_not_in_force_is_no_pass() {
     for (day, told, result) in [("2030-06-01", true, "WARNED"), ("2029-06-01", false, "FAILED")] {
         let run = |more: &[&str]| folder.run(&[&["rule", "a.toml", "--on", day], more].concat()).stdout;
         let text = run(&["--out", "out", "--force"]);
-        assert_eq!(text.starts_with(&format!("Nothing is demanded: {idle}. As if it did: ")), told, "{text}");
+        assert_eq!(
+            text.starts_with(&format!("Nothing is required: {idle}. If it were in force: ")),
+            told,
+            "{text}"
+        );
         let statement = fs::read_to_string(folder.path().join("out/certificate.intoto.json")).unwrap();
         assert!(statement.contains(&format!("\"result\": \"{result}\"")), "{statement}");
         for option in ["--check", "--test", "--stand-in"] {

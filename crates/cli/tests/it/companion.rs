@@ -27,7 +27,7 @@ fn a_target_of_a_size_has_its_companion_everywhere() {
     let at = |text: &str| answer.find(text).unwrap_or_else(|| panic!("{text}: {answer}"));
     // One after the other, before the assumptions; 12.5 pixels by the lens and another angle by the field of view.
     let in_order = [
-        "\nWhat sizing practice says beside the bound, of 250 mm at 30.0 m\n",
+        "\nRules of thumb of sizing practice, for comparison with the bound, of 250 mm at 30.0 m\n",
         "  rule of thumb   pixels across it                12.5 (6.25 cycles)\n",
         "field of view and focal length contradict each other",
         "\n  observer model  ",
@@ -57,7 +57,8 @@ fn at_one_temperature_practice_says_what_it_always_says() {
     for (before, after) in warm.iter().zip(&still) {
         assert_eq!(before == after, !before.contains("  d of "), "{before}\n{after}");
     }
-    let nothing = still.iter().filter(|line| line.contains("0: told from aluminium with probability 0.5000"));
+    let nothing =
+        still.iter().filter(|line| line.contains("0: distinguished from aluminium with probability 0.5000"));
     assert_eq!(nothing.count(), 2, "{still:?}");
 }
 

@@ -277,7 +277,11 @@ fn maps_and_numbers_are_those_of_the_scene() {
     let again = folder.json(&["decompose", "out/scenario.toml"]);
     assert_eq!(again["found"], found["found"]);
     let text = folder.run(&["decompose", "a.toml", "--stats"]);
-    assert!(text.stdout.starts_with("6 of 6 pixels (100 %) have one material of 2 left."), "{}", text.stdout);
+    assert!(
+        text.stdout.starts_with("6 of 6 pixels (100 %) have one remaining material of 2."),
+        "{}",
+        text.stdout
+    );
     assert!(text.stderr.contains("fits of a material to a pixel"), "{}", text.stderr);
 }
 

@@ -24,6 +24,13 @@ fn keys_of_answers_are_told_as_in_the_sources() {
     assert!(told == written, "run this test with HADAR_WRITE=1 in the environment, and commit results.tsv");
 }
 
+/// An explanation is a sentence that says what the number is, and of what: 'Which ones.' is none.
+#[test]
+fn no_explanation_is_of_fewer_than_five_words() {
+    let short: Vec<_> = explain::results().filter(|one| one.meaning.split_whitespace().count() < 5).collect();
+    assert!(short.is_empty(), "write out the documentation of these fields: {short:#?}");
+}
+
 /// Tables whose keys are names of somebody's own: materials, reasons, files.
 const NAMES: [&str; 9] =
     ["classes", "confusion", "elasticities", "hues", "scenario", "rule", "decisions", "priors", "solve_for"];
@@ -117,7 +124,11 @@ fn every_word_is_explained() {
         ("nearest-at-edge", "requirement"),
         ("rule", "hadar rule: Which cameras meet a rule"),
         ("calibrate noise", "hadar calibrate noise"),
-        ("distance_nearest", "Nearest distance per"),
+        ("distance_nearest", "Nearest distance of the two materials, per"),
+        ("temperature resolution", "NETD\n  means      Noise-equivalent temperature difference"),
+        ("V", "thermal lighting factor, V_k\n"),
+        ("s29", "S29\n"),
+        ("cramer-rao bound", "Smallest variance that any unbiased estimator can have"),
     ] {
         let outcome = folder.run(&["explain", word]);
         assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""), "{word}");
@@ -133,10 +144,12 @@ fn every_word_is_explained() {
     assert_eq!(shown["keys"][0]["example"], "noise_bandwidth = \"175 kHz\"");
     let line = folder.refusal(&["explain", "noise_bandwith"]);
     assert!(line.contains("`noise_bandwidth`"), "{line}");
+    let line = folder.refusal(&["explain", "NETTD"]);
+    assert!(line.contains("`NETD`"), "{line}");
     let line = folder.refusal(&["explain", "size.toml"]);
     assert_eq!(line.matches("`size`").count(), 1, "{line}");
     let line = folder.refusal(&["explain", "123"]);
-    assert!(line.contains("`hadar explain` says what there is"), "{line}");
+    assert!(line.contains("`hadar explain` gives an overview"), "{line}");
     let demand = folder.json(&["explain", "clause.requirement"]);
     let inside = demand["keys"][0]["inside"].to_string();
     assert!(inside.contains("detection_probability") && inside.contains("depth_error"), "{inside}");
@@ -157,7 +170,8 @@ fn all_of_it_is_what_is_said_of_each() {
         assert!(alone["keys"].as_array().unwrap().contains(key), "{word}");
         assert!(text.contains(&format!("\n{word}\n  means      {}\n", key["meaning"].as_str().unwrap())));
     }
-    for part in ["keys", "warnings", "results"] {
+    assert_eq!(items("terms").len(), explain::terms().count());
+    for part in ["terms", "keys", "warnings", "results"] {
         let told = items(part).iter().all(|item| {
             let meaning = item["meaning"].as_str().unwrap();
             text.contains(meaning)

@@ -61,9 +61,9 @@ const ALLOWED_IN_REPORT: [(&str, &str); 2] = [
 ];
 
 /// A literal, and the statements that it stands in, the outermost first.
-struct Literal {
-    line: usize,
-    text: String,
+pub(crate) struct Literal {
+    pub(crate) line: usize,
+    pub(crate) text: String,
     within: Vec<String>,
 }
 
@@ -110,7 +110,7 @@ impl Literal {
 }
 
 /// The literals of a file.
-fn literals(source: &str) -> Vec<Literal> {
+pub(crate) fn literals(source: &str) -> Vec<Literal> {
     let source = source.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let characters: Vec<char> = source.chars().collect();
     let at = |i: usize| characters.get(i).copied().unwrap_or('\0');
@@ -200,7 +200,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// The names and texts of the files of a package.
-fn sources(package: &str) -> Vec<(String, String)> {
+pub(crate) fn sources(package: &str) -> Vec<(String, String)> {
     let folder = hadar_testing::repository().join("crates").join(package).join("src");
     let mut found = Vec::new();
     files(&folder, &mut found);
@@ -265,7 +265,7 @@ fn a_sentence_is_told_from_the_words_of_an_error() {
         (found.len(), found.iter().filter(|one| one.words() >= SENTENCE && !one.is_of_an_error()).count())
     };
     for (text, expected) in [
-        ("fn f() -> String { format!(\"{a} tells {b} from {c} at best\") }", (1, 1)),
+        ("fn f() -> String { format!(\"{a} distinguishes {b} from {c} at best\") }", (1, 1)),
         (
             "// \"a comment has many words\"\nconst A: &str = \"three words only {but many more here}\";",
             (1, 0),

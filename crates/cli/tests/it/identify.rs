@@ -215,7 +215,7 @@ fn who_is_told_apart_is_the_same_by_every_way() {
         assert_eq!(searches(&slow, "computed"), possible);
         assert!(searches(&fast, "computed") < possible, "{exposure}");
         let (told, not) = (pairs(&full["told_apart"]), pairs(&full["not_told_apart"]));
-        println!("{exposure}: {} pairs told apart, {} not", told.len(), not.len());
+        println!("{exposure}: {} pairs distinguished, {} not", told.len(), not.len());
         assert!(told.is_disjoint(&not));
         assert_eq!(told.len() + not.len(), count * (count - 1) / 2);
         assert!(!told.is_empty() && !not.is_empty(), "{exposure} decides everything alike");
@@ -268,12 +268,12 @@ fn a_check_ends_with_the_code_of_its_answer() {
             let start = if expected {
                 "Yes, if "
             } else if by == "nearest" {
-                "No: the camera cannot tell skin from "
+                "No: the camera cannot distinguish skin from "
             } else {
-                "No: the camera does not tell skin from "
+                "No: the camera does not distinguish skin from "
             };
             assert!(words.stdout.starts_with(start), "{}", words.stdout);
-            assert_eq!(words.stdout.contains(": the camera tells skin from "), expected);
+            assert_eq!(words.stdout.contains(": the camera distinguishes skin from "), expected);
             answers.insert(expected);
         }
     }

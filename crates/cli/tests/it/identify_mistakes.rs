@@ -86,7 +86,7 @@ fn every_mistake_about_libraries_and_alternatives_is_one_line() {
 fn every_mistake_in_a_flag_is_one_line_that_names_it() {
     let without = SCENARIO.replace(NO_CAMERA, "");
     let no_camera =
-        "camera: without a camera nothing decides which materials can be told apart; add a [camera]";
+        "camera: without a camera nothing decides which materials can be distinguished; add a [camera]";
     for (scenario, flags, said) in [
         (&without, vec!["--apart"], no_camera),
         (
@@ -216,7 +216,7 @@ fn odd_scenes_are_answered_by_every_flag() {
     assert_eq!(found["exact"]["pairs"][0]["limit"], 0.5);
     let said = refused(&equilibrium, &["--bands", "3"]);
     assert!(
-        said.contains("not even all bands tell the target from any alternative; change the scene"),
+        said.contains("not even all bands distinguish the target from any alternative; change the scene"),
         "{said}"
     );
 

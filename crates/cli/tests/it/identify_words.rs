@@ -12,14 +12,14 @@ fn said(scenario: &str, flags: &[&str]) -> String {
 
 #[test]
 fn what_was_asked_for_comes_first() {
-    let lead = "The camera tells 7 of 10 pairs apart with 84.1 % reliability, either of them the target\n";
+    let lead =
+        "The camera distinguishes 7 of 10 pairs with a probability of 84.1 %, either of them the target\n";
     let (apart, matrix) = (said(FIVE, &["--apart"]), said(FIVE, &["--matrix"]));
     assert!(apart.starts_with(lead) && matrix.starts_with(lead), "{apart}\n{matrix}");
     let table = "  distances per sqrt(photon), the nearest proved to 1e-6 of it; photons by shot noise alone; camera d: statistical distance, required 1.000\n";
     assert!(!apart.contains(table) && matrix.contains(table), "{apart}\n{matrix}");
-    let chains = "Chains: groups held together by pairs that are not told apart\n  1   (4) skin, aluminium, pmma, concrete\n";
-    let clusters =
-        "told apart; members of different clusters may be confused all the same\n  1   (2) skin, aluminium\n";
+    let chains = "Chains: groups held together by pairs that are not distinguished\n  1   (4) skin, aluminium, pmma, concrete\n";
+    let clusters = "distinguished; members of different clusters may be confused all the same\n  1   (2) skin, aluminium\n";
     assert!(apart.contains(chains) && apart.contains(clusters), "{apart}");
     // Where the groups are the same nothing more is said.
     let two = FIVE.replace(
@@ -27,16 +27,19 @@ fn what_was_asked_for_comes_first() {
         "\"aluminium\", \"fused-silica\"",
     );
     let apart = said(&two, &["--apart"]);
-    assert!(apart.contains("no two members are told apart\n") && !apart.contains("Chains"), "{apart}");
+    assert!(apart.contains("no two members are distinguished\n") && !apart.contains("Chains"), "{apart}");
 }
 
 #[test]
 fn certain_is_only_what_is_certain() {
     for (wanted, words) in [("0.999999", "99.9999 %"), ("0.99", "99.0 %"), ("0.9995", "99.95 %")] {
         let scenario = FIVE.to_owned() + &format!("[requirement]\ndetection_probability = {wanted}\n");
-        assert!(said(&scenario, &["--apart"]).contains(&format!("with {words} reliability")), "{wanted}");
+        assert!(
+            said(&scenario, &["--apart"]).contains(&format!("with a probability of {words}")),
+            "{wanted}"
+        );
         let said = Folder::with(&scenario).run(&["identify", "a.toml", "--check"]).stdout;
-        assert!(said.ends_with(&format!("with {words} reliability.\n")), "{said}");
+        assert!(said.ends_with(&format!("with a probability of {words}.\n")), "{said}");
     }
 }
 
@@ -64,8 +67,9 @@ fn a_changed_preset_and_skies_left_out_are_said() {
         "preset = \"flir-a325sc\"\nexposure = \"20 ms\"\nnetd = \"20 mK\"",
     );
     assert!(
-        said(&changed, &[])
-            .starts_with("No: flir-a325sc with exposure, netd changed cannot tell skin from aluminium")
+        said(&changed, &[]).starts_with(
+            "No: flir-a325sc with exposure, netd changed cannot distinguish skin from aluminium"
+        )
     );
     assert!(said(SCENARIO, &[]).starts_with("No: flir-a325sc cannot tell"));
     let skies = "skies of the library are surroundings, no alternatives: left out sky-midlatitude-summer, ";

@@ -63,6 +63,7 @@ mod stopped;
 mod sweep;
 mod vectors;
 mod verify;
+mod vocabulary;
 mod written;
 
 mod support {

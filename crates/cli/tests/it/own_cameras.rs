@@ -56,6 +56,31 @@ fn it_is_listed_with_its_file_and_asked_for_what_it_lacks() {
     assert!(outcome.code == 1 && outcome.stderr.contains("f_number"), "{}", outcome.stderr);
 }
 
+/// One round of questions: what is wrong, what else is missing, and how it is written.
+#[test]
+fn messages_say_what_to_write() {
+    let folder = Folder::with(&SCENARIO.replace("\"flir-a325sc\"", "\"FLIR A325SC\""));
+    assert!(folder.refusal(&["size", "a.toml"]).contains("did you mean `flir-a325sc`?"));
+    folder.file("b.toml", &format!("frames = 2\n{SCENARIO}"));
+    let line = folder.refusal(&["size", "b.toml"]);
+    assert!(
+        line.contains("there is no key `frames`; it is a key of another table: write `camera.frames`"),
+        "{line}"
+    );
+    let own = SCENARIO.replace("preset = \"flir-a325sc\"", "detectivity = \"4.7e10 cm Hz^0.5/W\"");
+    folder.file("c.toml", &own);
+    let outcome = folder.run(&["size", "c.toml"]);
+    for part in
+        ["detectivity without a bandwidth", "are missing as well", "\n  exposure = ", "\n  f_number = "]
+    {
+        assert!(outcome.code == 1 && outcome.stderr.contains(part), "{part}: {}", outcome.stderr);
+    }
+    let vary = ["sweep", "a.toml", "--vary", "camera.exposure", "1 ms..10 ms:3", "--out", "rows"];
+    let outcome = folder.run(&vary);
+    let said = "join key and value by `=`: --vary camera.exposure=\"1 ms..10 ms:3\"";
+    assert!(outcome.code == 2 && outcome.stderr.contains(said), "{}", outcome.stderr);
+}
+
 #[test]
 fn mistakes_are_told_by_file_line_and_key() {
     let folder = Folder::with(SCENARIO);

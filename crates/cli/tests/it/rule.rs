@@ -527,7 +527,7 @@ fn the_report_is_complete_and_the_same_every_time() {
     for part in [
         "> A camera meets this rule if",
         "t A_p/((1+gamma) F^2) >=",
-        "| flir-a325sc | no: it cannot tell ",
+        "| flir-a325sc | no: it cannot distinguish ",
         "## Inputs",
     ] {
         assert!(certificate.contains(part), "{part}\n{certificate}");

@@ -138,7 +138,7 @@ fn the_clause_that_is_turned_round_is_named() {
     folder.file("both.toml", &clauses);
     assert_eq!(
         folder.refusal(&["rule", "both.toml", "--stand-in"]).split_once(": ").unwrap().1,
-        "stand_in: 2 clauses tell people apart: \"warm\", \"surer\"; write clause = \"warm\" in [stand_in], or another of them"
+        "stand_in: 2 clauses distinguish people: \"warm\", \"surer\"; write clause = \"warm\" in [stand_in], or another of them"
     );
     let named = |name: &str| clauses.replace("[stand_in]", &format!("[stand_in]\nclause = {name:?}"));
     for (name, probability) in [("warm", 0.9), ("surer", 0.99)] {
@@ -157,7 +157,7 @@ fn the_clause_that_is_turned_round_is_named() {
     let message = folder.refusal(&["rule", "one.toml", "--stand-in"]);
     assert!(
         message.contains(
-            "stand_in.clause: no clause `sure` tells people apart; write one of \"warm\", \"surer\""
+            "stand_in.clause: no clause `sure` distinguishes people; write one of \"warm\", \"surer\""
         ),
         "{message}"
     );

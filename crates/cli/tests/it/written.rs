@@ -248,7 +248,7 @@ fn a_check_is_a_line_a_camera() {
     );
     assert!(
         lines[1].starts_with("flir-a325sc: not met: 0.")
-            && lines[1].ends_with("it cannot tell skin from aluminium"),
+            && lines[1].ends_with("it cannot distinguish skin from aluminium"),
         "{}",
         lines[1]
     );

@@ -62,7 +62,7 @@ pub struct Asked {
 /// The noise of a cube.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Transfer {
-    /// Each band.
+    /// The noise of each band by itself.
     pub bands: Vec<OfBand>,
     /// One line for all bands.
     pub common: Line,
@@ -72,7 +72,7 @@ pub struct Transfer {
     pub chi_square_limit: f64,
     /// Share of the differences that were left out as outliers.
     pub outliers: f64,
-    /// Share of the pairs of neighbours that were left out since the bands together tell them apart; `None` of frames.
+    /// Share of the pairs of neighbours that were left out since the bands together distinguish them; `None` of frames.
     pub uneven: Option<f64>,
 }
 
@@ -88,7 +88,7 @@ pub struct OfBand {
     pub mean: f64,
     /// Variance at that mean, as measured without any line.
     pub variance: f64,
-    /// Standard error of it.
+    /// Standard error of that variance, unit² of the cube.
     pub sigma_variance: f64,
     /// Variance of texture that was taken out, over the noise's.
     pub texture: f64,
@@ -233,7 +233,7 @@ fn check_bands(cells: &Cells, dark_level: f64, spatial: bool) -> Result<()> {
 fn no_line(why: NoLine, differences: f64, spatial: bool) -> Error {
     let [found, instead] = match why {
         NoLine::Bins(bins, needed) => [
-            format!("{differences} differences of samples at {bins} level(s) that are told apart, where a line needs {needed}"),
+            format!("{differences} differences of samples at {bins} level(s) that are distinguished, where a line needs {needed}"),
             "give more pixels, more frames, or a scene of darker and brighter parts".into(),
         ],
         NoLine::AllTexture => [
@@ -243,7 +243,7 @@ fn no_line(why: NoLine, differences: f64, spatial: bool) -> Error {
         NoLine::OneLevel([spread, noise]) => [
             format!(
                 "levels of samples that were compared differ by {} (rms) where their own noise is {}, so that noise that grows with light \
-                 cannot be told from noise that does not",
+                 cannot be distinguished from noise that does not",
                 significant(spread, 2),
                 significant(noise, 2)
             ),

@@ -96,7 +96,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
     if let Some((band, step)) = filled::filled(&segments, &levels) {
         let found = format!(
             "{name} of band {band} (counted from 0) that differ from one to the next by {} % of their level, as those of the bands beside do \
-             not: stripes, too many to tell them from the scene",
+             not: stripes, too many to distinguish them from the scene",
             significant(100.0 * step, 2)
         );
         let instead = "correct the cube by a uniform source first, or leave the band out";
@@ -119,7 +119,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
             || seen.without_reference as f64 > MOST * seen.usable as f64
         {
             let found = format!(
-                "stripes in {} of {} {name} of band {band} (counted from 0), too many to tell them from the scene",
+                "stripes in {} of {} {name} of band {band} (counted from 0), too many to distinguish them from the scene",
                 told.at_first_sight.max(seen.without_reference),
                 seen.usable
             );

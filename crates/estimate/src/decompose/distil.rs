@@ -71,7 +71,7 @@ pub struct Distilled {
 pub struct Residue {
     /// Its place in the library.
     pub material: usize,
-    /// Its pixels.
+    /// Number of pixels of the material.
     pub pixels: usize,
     /// Root mean square of what is light in them, τ, over all bands, photons s⁻¹ m⁻² sr⁻¹ in a band.
     pub light: f64,

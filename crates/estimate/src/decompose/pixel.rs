@@ -118,7 +118,7 @@ pub struct Spared {
     pub fitted: u64,
     /// Pairs that a bound excluded without a fit.
     pub excluded: u64,
-    /// Pairs that share the fit of an equal material, or of the pixel beside them with the same counts.
+    /// Pairs that share the fit of an equal material, or of the pixel compared with them with the same counts.
     pub equal: u64,
     /// Looks at all bands of a pixel for one material.
     pub looks: u64,

@@ -48,7 +48,7 @@ pub enum SpatialPrior {
 pub struct Spatial {
     /// Pixels whose material is another than by their own counts.
     pub changed: usize,
-    /// Sweeps over the image.
+    /// Number of passes over the image until it settled or was stopped.
     pub sweeps: usize,
     /// Whether the last sweep changed nothing of note.
     pub settled: bool,

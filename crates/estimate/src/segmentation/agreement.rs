@@ -22,7 +22,7 @@ pub struct Agreement {
     pub right: Option<f64>,
     /// Share of the pixels that are undecided.
     pub undecided: Option<f64>,
-    /// Pixels that count.
+    /// Number of pixels that are compared.
     pub pixels: usize,
 }
 

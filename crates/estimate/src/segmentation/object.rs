@@ -8,9 +8,9 @@ use serde::Serialize;
 /// A connected part of a category (pixels that share a side or a corner).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Object {
-    /// Its category.
+    /// The category to which its pixels belong.
     pub category: u8,
-    /// Its pixels.
+    /// Number of pixels of the object.
     pub pixels: usize,
     /// Its first row, and the one after its last.
     pub rows: [usize; 2],

@@ -44,7 +44,7 @@ const TRIED: usize = 4_000;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Cluster {
-    /// Emissivity.
+    /// Emissivity of the group in every band, 0 to 1.
     pub emissivity: Vec<f64>,
     /// Its deviation: noise, all temperatures and lightings unknown, what the prior leaves.
     pub sigma: Vec<f64>,
@@ -67,9 +67,9 @@ pub struct Cluster {
 /// A count of groups and its loss on pixels that were kept apart.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Tried {
-    /// Groups asked for.
+    /// Number of groups that was asked for.
     pub count: usize,
-    /// Groups that have pixels.
+    /// Number of groups to which pixels belong in the end.
     pub left: usize,
     /// Mean loss of a pixel.
     pub loss: f64,
@@ -123,7 +123,7 @@ pub fn library_from_cube(
     check::unit_interval("largest emissivity", asked.max_emissivity)?;
     check::positive("largest emissivity", asked.max_emissivity, "")?;
     if setting.gain {
-        let found = "an unknown gain, which no emissivity can be told from";
+        let found = "an unknown gain, which no emissivity can be distinguished from";
         return Err(Error::malformed(found, "give counts of a known scale"));
     }
     let (found, expected) = (cube.shape().bands(), setting.bands.len());

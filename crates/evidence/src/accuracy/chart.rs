@@ -5,7 +5,7 @@ use std::borrow::Cow;
 /// One method at one setting of its knob.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Measured {
-    /// The method.
+    /// Name of the method of computation.
     pub method: Cow<'static, str>,
     /// What it answers, where a chart holds several questions: a method competes with those of the same question.
     pub question: Cow<'static, str>,
@@ -28,13 +28,13 @@ pub struct Measured {
 pub struct Chart {
     /// Its name, that of its files.
     pub name: &'static str,
-    /// What is computed.
+    /// The quantity that is computed, in words.
     pub title: &'static str,
     /// What the time is of, e.g. "one pair".
     pub timed: &'static str,
     /// Name of the knob, with its unit.
     pub effort: &'static str,
-    /// What the error is.
+    /// How the error is measured, in words.
     pub error: &'static str,
     /// What the true value is taken from.
     pub reference: &'static str,

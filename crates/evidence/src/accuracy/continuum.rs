@@ -40,26 +40,26 @@ const PAIRS: [[&str; 2]; 8] = [
 /// Errors of one pair at one step, relative to the continuum.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct MaterialStep {
-    /// The target.
+    /// Name of the target's material in the library.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
     /// Width of the bands, cm⁻¹.
     pub step_cm1: f64,
     /// Of the photon radiance of the target.
     pub error_radiance: f64,
-    /// Of the local distance.
+    /// Relative error of the local distance.
     pub error_local: f64,
-    /// Of the nearest distance.
+    /// Relative error of the nearest distance.
     pub error_nearest: f64,
 }
 
 /// The widest step with [`GOOD`] nearest distances.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Recommended {
-    /// The target.
+    /// Name of the target's material in the library.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
     /// The step, cm⁻¹; none if not even the narrowest will do.
     pub step_cm1: Option<f64>,

@@ -33,13 +33,13 @@ const SEED: u64 = 1;
 /// A question answered both ways.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Skipped {
-    /// What is there.
+    /// Name of the scenario that is computed.
     pub scenario: &'static str,
-    /// What is asked.
+    /// Name of the question that is answered for it.
     pub question: &'static str,
-    /// With skipping, s.
+    /// Time of the answer with skipping, s.
     pub seconds_on: f64,
-    /// With everything computed, s.
+    /// Time of the answer with everything computed, s.
     pub seconds_off: f64,
     /// Whether both answers are the same.
     pub answers_equal: bool,

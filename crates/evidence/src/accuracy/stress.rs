@@ -44,9 +44,9 @@ const TOGETHER: u64 = 50;
 /// What to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct StressPlan {
-    /// How many cases.
+    /// Number of cases that are generated.
     pub cases: u64,
-    /// Which ones.
+    /// Seed that determines which cases are generated.
     pub seed: u64,
 }
 

@@ -233,3 +233,24 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
     page.push_str(&markdown(ledger));
     page
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{FurtherStudy, Item};
+
+    /// The help of the command is written where the items are not known.
+    #[test]
+    fn the_help_names_all_that_can_be_made() {
+        let path = hadar_testing::repository().join("crates/cli/src/command/evidence.rs");
+        let text = std::fs::read_to_string(path).unwrap();
+        let help = text.split("pub struct ReproduceArgs").nth(1).and_then(|rest| rest.split("#[arg").next());
+        let is_part = |letter: char| letter.is_alphanumeric() || letter == '-';
+        let words: Vec<&str> = help.unwrap().split(|letter| !is_part(letter)).collect();
+        let names = Item::ALL.iter().map(|item| item.name());
+        let missing: Vec<&str> = names
+            .chain(FurtherStudy::ALL.iter().map(|study| study.name()))
+            .filter(|name| !words.contains(name))
+            .collect();
+        assert!(missing.is_empty(), "not in the help of `hadar reproduce`: {missing:?}");
+    }
+}

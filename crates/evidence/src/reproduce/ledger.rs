@@ -43,7 +43,7 @@ impl Verdict {
 pub(crate) struct Line {
     /// Figure, table or section of the paper.
     pub place: &'static str,
-    /// What, with its unit.
+    /// Name of the quantity, with its unit.
     pub quantity: String,
     /// As the paper prints it.
     pub paper: String,
@@ -51,7 +51,7 @@ pub(crate) struct Line {
     pub ours: String,
     /// Relative difference up to which they count as the same, where numbers were compared.
     pub tolerance: Option<f64>,
-    /// Whether they agree.
+    /// Whether the paper's value and ours agree.
     pub verdict: Verdict,
     /// Why, or under which choice.
     pub why: String,

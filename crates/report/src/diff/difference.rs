@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Something that is written down and is another one, or on one side alone.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Changed {
-    /// Its key or path.
+    /// Key of what differs, or its path.
     pub key: String,
     /// As the first has it.
     pub before: Option<String>,
@@ -24,7 +24,7 @@ pub struct Changed {
 /// A figure that moved, or words of an answer that are others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moved {
-    /// Where it stands.
+    /// Path of the figure within the answer.
     pub figure: String,
     /// As the first has it.
     pub before: Option<Value>,
@@ -41,31 +41,31 @@ pub struct Moved {
 /// A curve, some of whose values moved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Curve {
-    /// Its table or list.
+    /// Table or list that holds the curve.
     pub curve: String,
     /// How many values it has.
     pub values: usize,
     /// How many of them moved, or are on one side alone.
     pub moved: usize,
-    /// The largest relative change.
+    /// Largest relative change of a value of the curve.
     pub largest_relative_change: Option<f64>,
 }
 
 /// A warning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Warned {
-    /// Its code.
+    /// Code of the warning that differs.
     pub code: String,
-    /// What it says.
+    /// Text of the warning that differs.
     pub message: String,
 }
 
 /// All that differs.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Difference {
-    /// Whether nothing does.
+    /// Whether the two answers are the same.
     pub same: bool,
-    /// Who made them.
+    /// Differences of the programs that made the two.
     pub made_by: [Vec<String>; 2],
     /// The verdicts, where they are others.
     pub verdict: Option<Changed>,
@@ -76,7 +76,7 @@ pub struct Difference {
     pub conditions_came: Vec<String>,
     /// What the first's does and the second's does not.
     pub conditions_went: Vec<String>,
-    /// Keys of the question.
+    /// Differences of the questions, key by key.
     pub question: Vec<Changed>,
     /// Files that were read, by their SHA-256.
     pub inputs: Vec<Changed>,
@@ -84,7 +84,7 @@ pub struct Difference {
     pub compared: usize,
     /// Figures, the largest change first, words behind them.
     pub figures: Vec<Moved>,
-    /// Curves.
+    /// Curves of which some values moved.
     pub curves: Vec<Curve>,
     /// Warnings that the second has.
     pub warnings_came: Vec<Warned>,

@@ -41,10 +41,10 @@ struct Line {
     /// The basis of the row.
     #[serde(skip_serializing_if = "Option::is_none")]
     on: Option<String>,
-    /// Why it failed.
+    /// The error message of a row that failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<String>,
-    /// What was answered.
+    /// Values that were answered, by column.
     #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
     values: serde_json::Map<String, serde_json::Value>,
 }

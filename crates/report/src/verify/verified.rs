@@ -9,27 +9,27 @@ use serde::Serialize;
 pub enum Difference {
     /// A file of the report is not there.
     Missing {
-        /// Its name.
+        /// Name of the file that is missing.
         file: String,
     },
     /// A file is not as it was when the report was written.
     Changed {
-        /// Its name.
+        /// Name of the file that has changed.
         file: String,
     },
     /// A file is made again with other content.
     Differs {
-        /// Its name.
+        /// Name of the file whose new content differs.
         file: String,
     },
     /// The command makes no such file.
     NotMade {
-        /// Its name.
+        /// Name of the file that is not made again.
         file: String,
     },
     /// The command makes a file that the report does not list.
     Unlisted {
-        /// Its name.
+        /// Name of the file that is not listed.
         file: String,
     },
     /// Something that the answer rests on is another.
@@ -43,9 +43,9 @@ pub enum Difference {
     },
     /// The statement does not say what is demanded.
     Demand {
-        /// What must stand there.
+        /// The text that the statement must have there.
         demanded: String,
-        /// What does.
+        /// The text that the statement has there.
         found: String,
     },
     /// An envelope is not about this statement.
@@ -56,9 +56,9 @@ pub enum Difference {
     },
     /// Another program made it: no difference by itself.
     Program {
-        /// Version and commit.
+        /// Version and commit of the program that made the report.
         was: String,
-        /// Version and commit.
+        /// Version and commit of the program that checks it.
         is: String,
     },
 }
@@ -68,7 +68,7 @@ pub enum Difference {
 pub struct Verified {
     /// Whether all files and inputs are the same.
     pub verified: bool,
-    /// Files that were compared.
+    /// Number of files that were compared.
     pub files: usize,
     /// Whether the file of the question was compared: without it its name and hash are what the report says.
     pub question_compared: bool,
@@ -78,31 +78,31 @@ pub struct Verified {
     pub command: String,
     /// What is not as it should be.
     pub differences: Vec<Difference>,
-    /// By which keys an envelope says that it is signed; whether it is, is not checked here.
+    /// Keys by which a DSSE `envelope` says that it is signed; whether it is, is not checked here.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub signed_by: Vec<String>,
     /// Files in the folder that are not the report's, of which nothing is said.
     pub strangers: Vec<String>,
 }
 
-/// What is wrong with an envelope.
+/// What is wrong with a DSSE envelope.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "fault", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum EnvelopeFault {
     /// It is none.
     NoEnvelope {
-        /// Why not.
+        /// Why the file is no DSSE envelope.
         why: String,
     },
     /// Its payload is of another type.
     OtherType {
-        /// Of which.
+        /// The type of payload that was found.
         found: String,
     },
     /// Its payload is no base64.
     NoBase64 {
-        /// Why not.
+        /// Why the payload cannot be decoded as base64.
         why: String,
     },
     /// It holds another statement.

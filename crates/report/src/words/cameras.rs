@@ -152,13 +152,13 @@ fn array(figures: &CameraSpec) -> String {
 }
 
 fn full_bands(figures: &CameraSpec) -> String {
-    let one = "one of its own: a spectrum takes filters, one after the other";
+    let one = "one, the detector's: a spectrum takes filters, one after the other";
     let Some(readout) = figures.readout else {
         return if figures.spectral_bands == Some(1) { one } else { NOT_STATED }.into();
     };
     match figures.spectral_bands {
         Some(1) if readout != Readout::Sequential => {
-            format!("one of its own, modelled as any number, {}", readout.name())
+            format!("one, the detector's, modelled as any number, {}", readout.name())
         }
         Some(1) => one.into(),
         Some(bands) => format!("{bands}, {}", readout.name()),
@@ -208,7 +208,7 @@ fn one_exposure(figures: &Figures) -> String {
         ("noise of a band reading", format!("{} counts", significant(figures.noise_counts, 3))),
         (&format!("gamma of a band, {} bands", figures.bands), significant(figures.gamma_per_band, 2)),
         ("etendue of a pixel", format!("{} m^2 sr", significant(figures.etendue_m2_sr, 3))),
-        ("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", significant(figures.hardware_m2_s, 3))),
+        ("H = t A_p / ((1+gamma) F^2)", format!("{} m^2 s", significant(figures.hardware_m2_s, 3))),
     ])
 }
 

@@ -134,4 +134,4 @@ fn with_spectra(side: &ClassSide) -> String {
 
 /// Below the picture of all pairs.
 pub(crate) const LIGHTEST: &str =
-    "The lightest are proved to be at least as far as is drawn; they decide nothing.";
+    "The lightest are proved to have at least the distance that is drawn; they decide nothing.";

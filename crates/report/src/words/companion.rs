@@ -62,7 +62,7 @@ impl Say for Unknown {
             Self::BeyondNumbers => "size over distance is beyond all numbers",
             Self::FinerThanPixels => "such bars are finer than the pixels sample",
             Self::FinerThanLens => "the lens leaves nothing of such bars",
-            Self::NotCompared => "nothing was told from anything",
+            Self::NotCompared => "nothing was distinguished from anything",
         };
         words.into()
     }

@@ -1,6 +1,7 @@
 //! What a verdict rests on. A favourable condition completes 'yes, if ', another says what was taken.
 
 use super::Say;
+use super::text::footing::ASK_MORE;
 use super::text::numbers::{celsius, in_number, listed};
 use hadar::instrument::Assumed;
 use hadar::words::{length, quantity, share, significant};
@@ -70,13 +71,13 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
     let taken = &figure.taken;
     let said = match figure.figure {
         "exposure" => format!("its exposure is {taken}"),
-        "optics_efficiency" => "its optics lose nothing".into(),
+        "optics_efficiency" => "its optics transmit everything".into(),
         "quantum_efficiency" => "all photons on its detector are counted".into(),
         "netd_temperature" => format!("its NETD is of a blackbody of {taken}"),
         "netd_f_number" => format!("its NETD is that behind {taken}"),
         "netd_pixel" => format!("its NETD is that of a pixel of {taken}"),
         "netd_optics_efficiency" => "its NETD is that behind its own lens".into(),
-        "spectral_bands" => "it has as many bands of its own as are asked for".into(),
+        "spectral_bands" => "it measures as many bands as the scenario has".into(),
         "noise_exposure" => format!("its noise is that of an exposure of {taken}"),
         "spectral_range" => format!("its detector sees {taken} and no more"),
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),
@@ -126,7 +127,7 @@ impl Say for Condition {
             }
             Self::NobodyCrosses => "what is looked for neither crosses the way nor leaves the view".into(),
             Self::InView { bearing_rad } => format!(
-                "who crosses, up to {} deg beside the axis, is in its view (field_of_view is not stated)",
+                "a target that crosses, up to {} deg off the axis, is in its view (field_of_view is not stated)",
                 significant(bearing_rad.to_degrees(), 2)
             ),
             Self::PatternOfEachBand => {
@@ -143,7 +144,7 @@ impl Say for Condition {
                 in_number(*pixels)
             ),
             Self::FrameNoise { figures } => format!(
-                "rows, columns and frames of the array have no noise of their own from frame to frame ({} not stated)",
+                "rows, columns and frames of the array have no common noise from frame to frame ({} not stated)",
                 figures.join(", ")
             ),
             Self::Assumed { figure, counts } if figure.favourable => holds(figure, *counts),
@@ -173,11 +174,11 @@ impl Say for Condition {
                 format!("the target, which fills {} of a pixel, lies in the middle of one", share(*fill))
             }
             Self::Diffraction { blur_m } => format!(
-                "what is beside the target does not matter, though the lens blurs a point over {}",
+                "the neighbourhood of the target does not matter, although the lens blurs a point over {}",
                 quantity(*blur_m, "m")
             ),
             Self::NoFilterLight => {
-                "the filters neither shine nor throw light back (sensor_temperature is not stated)".into()
+                "the filters neither emit nor reflect radiation onto the sensor (sensor_temperature is not stated)".into()
             }
             Self::FilterAngle { before_lens: true, .. } => {
                 "the target is near the axis: at an angle filters before the lens pass shorter waves".into()
@@ -186,8 +187,8 @@ impl Say for Condition {
                 "the filters pass in a beam of up to {:.0} degrees what they pass at right angles (place is not stated)",
                 sine.asin().to_degrees()
             ),
-            Self::NoAir => "the air on the path takes nothing away".into(),
-            Self::NoSurroundings => "nothing around the target lights it".into(),
+            Self::NoAir => "the air on the path absorbs nothing".into(),
+            Self::NoSurroundings => "no surroundings illuminate the target".into(),
             Self::DarkRest { share: rest } => format!(
                 "up to {} of the hemisphere above the target, which no object fills, are black and cold",
                 share(*rest)
@@ -203,12 +204,12 @@ impl Say for Condition {
                 format!("spectra go on beyond their tables as they are guessed to ({})", listed(materials))
             }
             Self::LeftOut { materials } => {
-                format!("what was left out is never met ({})", listed(materials))
+                format!("the omitted materials never occur ({})", listed(materials))
             }
             Self::Setting { key, value, of_rule: true } => {
-                format!("the rule said {key} = {value}, which it does not")
+                format!("{key} = {value} replaces the value of the rule")
             }
-            Self::Setting { key, value, .. } => format!("{key} = {value} in the place of the file's"),
+            Self::Setting { key, value, .. } => format!("{key} = {value} replaces the value of the file"),
         }
     }
 }
@@ -217,7 +218,7 @@ impl Say for Condition {
 pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     [
         "range",
-        "A range that the scenario sets for the alternatives keeps out states that would not be told apart.",
+        "A range that the scenario sets for the alternatives excludes states that could not be distinguished.",
         "Widen the range to all that may happen, or make sure that nothing is beyond it.",
     ],
     [
@@ -232,7 +233,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "constant-emissivities",
-        "Both of the pair that decides are entered as one number: nothing is known of what tells real surfaces apart.",
+        "Both materials of the deciding pair are entered as one number: the differences of real surfaces are not known.",
         "Measure their spectra, or name materials of which one is known.",
     ],
     [
@@ -249,7 +250,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     [
         "errors-correlated",
         "Over which length errors of the emissivities are correlated is not stated.",
-        "State sensitivity.correlation beside the error.",
+        "State sensitivity.correlation together with the error.",
     ],
     [
         "extrapolated",
@@ -259,7 +260,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     [
         "nobody-crosses",
         "Only the vehicle moves: who crosses blurs more, and is outside the view of a slow vehicle's camera.",
-        "State [stop] crossing_speed, 0 of one that stands, and offset.",
+        "State [stop] crossing_speed (0 for a target that does not move) and offset.",
     ],
     [
         "in-view",
@@ -333,12 +334,12 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "diffraction",
-        "The lens blurs a point over more than a pixel: an edge of the target mixes with what is beside it.",
+        "The lens blurs a point over more than a pixel: the edge of the target mixes with its neighbourhood.",
         "Lower the f-number or enlarge the pixel.",
     ],
     [
         "no-filter-light",
-        "The light that filters send and throw back onto the sensor is left out.",
+        "The radiation that filters emit and reflect onto the sensor is omitted.",
         "Write camera.sensor_temperature.",
     ],
     [
@@ -349,7 +350,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ["no-air", "There is no air on the path.", "Write [atmosphere] with model = \"us-standard\"."],
     [
         "no-surroundings",
-        "Nothing around the target lights it.",
+        "No surroundings illuminate the target.",
         "Write [[environment]] with what is around the target.",
     ],
     [
@@ -389,7 +390,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "setting",
-        "A value stands in the place of that of the file; of a rule that is another rule.",
+        "A value replaces that of the file; a rule with other values is another rule.",
         "Write it into the file.",
     ],
 ];
@@ -416,7 +417,10 @@ pub(crate) fn yes_alone(conditions: &[Condition]) -> String {
 
 /// All conditions of a 'yes', or of a 'no', in a paragraph of their own; nothing without.
 pub(crate) fn paragraph(conditions: &[Condition], met: bool) -> String {
-    paragraph_of("", conditions, met)
+    match paragraph_of("", conditions, met) {
+        none if none.is_empty() => none,
+        said => format!("{}\n{ASK_MORE}\n\n", said.trim_end()),
+    }
 }
 
 /// The same of a camera among several.
@@ -427,13 +431,13 @@ pub(crate) fn paragraph_of(camera: &str, conditions: &[Condition], met: bool) ->
     let mut out = if camera.is_empty() { String::new() } else { format!("{camera}: ") };
     let (open, rest): (Vec<_>, Vec<_>) = conditions.iter().partition(|one| met && one.favourable());
     if !open.is_empty() {
-        out += "A yes holds only if\n";
+        out += "The yes holds only if\n";
         for one in &open {
             let _ = writeln!(out, "  [{}] {}", one.code(), one.say());
         }
     }
     if !rest.is_empty() {
-        out += if open.is_empty() { "It rests on\n" } else { "It rests on as well\n" };
+        out += if open.is_empty() { "The verdict assumes\n" } else { "It assumes as well\n" };
         for one in rest {
             let _ = writeln!(out, "  [{}] {}", one.code(), one.say());
         }
@@ -455,7 +459,7 @@ mod tests {
         assert_eq!(yes(&all), "yes, if nothing moves for 88.0 s, and on 2 more conditions");
         let said = paragraph(&all, true);
         assert_eq!(said.matches("\n  [").count(), 4, "{said}");
-        assert!(said.contains("It rests on as well\n  [setting] camera.frames = 256"), "{said}");
+        assert!(said.contains("It assumes as well\n  [setting] camera.frames = 256"), "{said}");
     }
 
     #[test]

@@ -28,8 +28,8 @@ pub fn text(result: &Decomposed) -> String {
     let is_rejected = result.model.verdict.takes_back();
     let safety =
         result.segmentation.as_ref().map_or_else(String::new, |found| segmented::safety(found, is_rejected));
-    let besides = surroundings_found(&result.surroundings_found) + &constants(result);
-    let mut out = format!("{}{besides}\n{safety}\n{}", sentence(result), read_as(&result.read));
+    let others = surroundings_found(&result.surroundings_found) + &constants(result);
+    let mut out = format!("{}{others}\n{safety}\n{}", sentence(result), read_as(&result.read));
     out.push_str(&judged::text(&result.model));
     out.push_str(&result.shared.as_ref().map_or_else(String::new, shared::text));
     out.push_str(&result.none_of_these.as_ref().map_or_else(String::new, none_of_these));
@@ -66,7 +66,7 @@ fn distilled(result: &Decomposed) -> String {
             significant(of.noise, 2)
         );
     }
-    out.push_str("  Residues are taken for the sky's as far as they are no noise; light of objects that are no surroundings is in them.\n\n");
+    out.push_str("  Residues that are no noise are attributed to the sky; radiation of objects that are not listed as surroundings is contained in them.\n\n");
     out
 }
 
@@ -92,23 +92,25 @@ fn sentence(result: &Decomposed) -> String {
     if !result.method.has_likelihood() {
         let named = result.found.iter().map(|row| row.pixels).sum();
         return match result.method.names_materials() {
-            true => format!(
-                "{} pixels have a material named; how sure that is the method does not say.",
-                of(named, seen)
-            ),
-            false => format!("{} pixels as one blackbody each: no material is told.", whole(seen as u64)),
+            true => {
+                format!("{} pixels have a material named; the method gives no confidence.", of(named, seen))
+            }
+            false => {
+                format!("{} pixels as one blackbody each: no material is determined.", whole(seen as u64))
+            }
         };
     }
     let taken_back = match result.model.verdict {
         ModelVerdict::Rejected => Some(("The cube does not follow its model", "if it held")),
-        ModelVerdict::SharedNotTold => {
-            Some(("What the whole cube shares is not told well enough", "with it as estimated"))
-        }
+        ModelVerdict::SharedNotTold => Some((
+            "The unknowns that all pixels share are not determined well enough",
+            "with it as estimated",
+        )),
         _ => None,
     };
     if let Some((why, condition)) = taken_back {
         return format!(
-            "{why}: {} pixels ({}) would have one material of {} left {condition}; none is decided.",
+            "{why}: {} pixels ({}) would have one remaining material of {} {condition}; none is decided.",
             of(result.decided_if_model_holds, seen),
             share(result.decided_if_model_holds as f64 / seen.max(1) as f64),
             result.materials.len()
@@ -117,7 +119,7 @@ fn sentence(result: &Decomposed) -> String {
     let mut out = match result.decided {
         0 => format!("No pixel of {} is decided", whole(seen as u64)),
         decided => format!(
-            "{} pixels ({}) have one material of {} left",
+            "{} pixels ({}) have one remaining material of {}",
             of(decided, seen),
             share(decided as f64 / seen.max(1) as f64),
             result.materials.len()
@@ -160,7 +162,7 @@ pub(crate) fn surroundings_found(all: &[LightFound]) -> String {
 fn none_of_these(found: &Besides) -> String {
     format!(
         "None of these materials (smooth emissivities, prior {})\n  {}\n  \
-         such a pixel is of no category, may be of any, and has a temperature of its own with its deviation\n\n",
+         such a pixel is of no category, may be of any, and has a temperature with its standard deviation\n\n",
         share(found.prior),
         besides(found),
     )
@@ -256,12 +258,12 @@ pub(crate) fn flag_said(bit: u8, result: &Decomposed) -> &'static str {
         },
         flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
         flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
-        flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
+        flag::NO_INFORMATION => "in equilibrium with their surroundings: the material cannot be determined",
         flag::LIGHTING_UNKNOWN => {
-            "the lighting is hardly told: little is scattered, or surroundings look alike"
+            "the lighting is hardly determined: little is reflected, or the surroundings are alike"
         }
-        flag::UNDECIDED => "several materials are left by 95 %",
-        flag::SKIPPED => "left out: a sample is missing, or the pixel is bad",
+        flag::UNDECIDED => "several materials remain at 95 %",
+        flag::SKIPPED => "omitted: a sample is missing, or the pixel is bad",
         flag::TEMPERATURE_UNKNOWN => "the temperature could be anything: nothing is emitted",
         _ => "",
     }
@@ -271,7 +273,7 @@ fn flags(result: &Decomposed) -> String {
     if result.flags.is_empty() {
         return String::new();
     }
-    let mut out = String::from("Said of pixels\n");
+    let mut out = String::from("Flags of pixels\n");
     for row in &result.flags {
         let meaning = flag_said(row.bit, result);
         let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
@@ -293,8 +295,7 @@ fn against(truth: &TruthFound, result: &Decomposed) -> String {
         let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
             let error = truth.right_material_limit_error.unwrap_or(0.0);
             format!(
-                "; {} +- {} by the nearest distances (the most of any test between a pixel{} and the nearest state of another \
-                 material, mean over {} pixels)",
+                "; {} +- {} by the nearest distances (upper limit of any test between a pixel{} and the closest confuser of another material, mean over {} pixels)",
                 percent(limit),
                 significant(100.0 * error, 1),
                 if neighbours { ", without its neighbours," } else { "" },
@@ -336,10 +337,10 @@ pub(crate) fn how(result: &Decomposed) -> &'static str {
             "Maximum posterior of every pixel with its neighbours (Potts prior)"
         }
         (Some(SpatialPrior::TexSgd { .. }), _) => "Least cost of every pixel with its neighbours (TeX-SGD)",
-        (None, Method::Ml) => "Maximum likelihood of every pixel, for itself",
-        (None, Method::AnalyticInverse) => "Inverse functions along wavenumber, every pixel for itself",
-        (None, Method::Te) => "Maximum likelihood without scattered light, every pixel for itself",
-        (None, Method::GreyBody) => "Brightness temperature of every pixel, for itself",
+        (None, Method::Ml) => "Maximum likelihood of every pixel independently",
+        (None, Method::AnalyticInverse) => "Inverse functions along wavenumber, every pixel independently",
+        (None, Method::Te) => "Maximum likelihood without scattered light, every pixel independently",
+        (None, Method::GreyBody) => "Brightness temperature of every pixel independently",
     }
 }
 
@@ -374,7 +375,7 @@ fn neighbours(result: &Decomposed) -> String {
     };
     match prior {
         SpatialPrior::Potts { weight, .. } => format!(
-            "  neighbours (Potts): each of four adds {} to the log-odds of its own material and temperature{}{}\n",
+            "  neighbours (Potts): each of four adds {} to the log-odds of the neighbour's material and temperature{}{}\n",
             significant(weight, 3),
             about.temperature_step_k.map_or_else(String::new, |step| {
                 format!("; temperatures of a material differ by {} from pixel to pixel", quantity(step, "K"))

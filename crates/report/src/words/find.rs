@@ -62,20 +62,20 @@ pub fn sentence(found: &FindAnswer) -> String {
         if !found.undecided.is_empty() {
             let cameras: Vec<&str> = found.undecided.iter().map(|choice| choice.camera.as_str()).collect();
             return format!(
-                "Undecided: of no camera it is proved that it reaches d = {required}; {} may.{near}",
+                "Undecided: no camera is proved to reach d = {required}; {} may.{near}",
                 listed(&cameras)
             );
         }
         return match judged {
-            0 => "No: not one of the cameras can be asked; what each lacks is below.".into(),
+            0 => "No: no camera can be judged; the figures that each lacks are listed below.".into(),
             1 if all_judged => {
-                format!("No: the one camera that can be asked does not reach d = {required}.{near}")
+                format!("No: the only camera that can be judged does not reach d = {required}.{near}")
             }
             _ if !all_judged => format!(
-                "No camera was found that reaches d = {required}, as far as {judged} of them with their lenses were searched.{near}"
+                "No camera was found that reaches d = {required}; only {judged} of them with their lenses were searched.{near}"
             ),
             _ => format!(
-                "No: of {judged} cameras with their lenses that can be asked none reaches d = {required}.{near}"
+                "No: none of the {judged} cameras that can be judged reaches d = {required} with its lenses.{near}"
             ),
         };
     };
@@ -164,10 +164,7 @@ fn bought(best: &Choice) -> String {
         line("", source);
     }
     if let Some(exposure_s) = best.exposure_s {
-        line(
-            "exposure",
-            &format!("{}, shortened so that no reading fills the well", quantity(exposure_s, "s")),
-        );
+        line("exposure", &format!("{}, shortened so that no reading saturates", quantity(exposure_s, "s")));
     }
     out.push('\n');
     out
@@ -289,7 +286,7 @@ pub fn why(failed: &Failed, required: f64) -> String {
             format!("not with all filters at once, and no number of frames would do{short}")
         }
         Why::Distance { filters, frames, all_judged, is_cut } => {
-            let searched = if *all_judged { "" } else { ", as far as was searched" };
+            let searched = if *all_judged { "" } else { " among those that were searched" };
             let frames = if *frames == 1 { "1 frame".into() } else { format!("{frames} frames") };
             let filters = if *filters == 1 { "1 filter".into() } else { format!("up to {filters} filters") };
             let cut = if *is_cut { ", and more take too long for the time or for what moves" } else { "" };
@@ -348,7 +345,7 @@ fn footing(found: &FindAnswer) -> String {
             "what meets was held against the whole rule as `hadar rule` does, after a search in {} of its scenes",
             found.scenes
         ),
-        None => "what meets was put to `hadar size` as its scenario stands".into(),
+        None => "every camera that meets was checked by `hadar size` with its scenario".into(),
     };
     let mut notes = vec![
         format!("{put}; a price is a class of one piece where a public page states one"),

@@ -102,27 +102,29 @@ fn verdict(result: &Identification, study: &Study) -> String {
         let name = camera(study);
         let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
         let sentence = match (all, told) {
-            (1, 1) => format!("{yes}: {name} tells {target} from {alternative}"),
+            (1, 1) => format!("{yes}: {name} distinguishes {target} from {alternative}"),
             // Neither shown nor ruled out.
             (1, _) if pair.told == Some(YesNo::Undecided) => {
-                format!("Undecided: whether {name} tells {target} from {alternative}")
+                format!("Undecided: whether {name} distinguishes {target} from {alternative}")
             }
             (1, _) => format!("No: {name} {} {target} from {alternative}", does_not_tell(study)),
-            (_, told) if told == all => format!("{yes}: {name} tells {target} from all {all} alternatives"),
+            (_, told) if told == all => {
+                format!("{yes}: {name} distinguishes {target} from all {all} alternatives")
+            }
             (_, told) if open > 0 => {
                 let start = if told + open == all { "Undecided" } else { "No" };
                 {
                     let shown = if told == 0 { "none".to_owned() } else { told.to_string() };
                     let are = if open == 1 { "is" } else { "are" };
                     format!(
-                        "{start}: {name} is shown to tell {target} from {shown} of {all} alternatives, while {open} {are} undecided,"
+                        "{start}: {name} is shown to distinguish {target} from {shown} of {all} alternatives, while {open} {are} undecided,"
                     )
                 }
             }
-            (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
-            (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
+            (_, 0) => format!("No: {name} distinguishes {target} from none of {all} alternatives"),
+            (_, told) => format!("No: {name} distinguishes {target} from only {told} of {all} alternatives"),
         };
-        let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", told_by(study));
+        let _ = writeln!(out, "{sentence} with a probability of {reliability}{}.", told_by(study));
         if let Some(class) = class {
             let _ = writeln!(out, "{}", class.say());
         }
@@ -151,8 +153,12 @@ fn verdict(result: &Identification, study: &Study) -> String {
         }
         [None, _] => "no number of photons suffices".into(),
     };
-    let _ =
-        writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));
+    let _ = writeln!(
+        out,
+        "{target} is hardest to distinguish from {}: {needed}{}.",
+        pair.alternative,
+        no_limit(study)
+    );
     out.push('\n');
     out
 }
@@ -189,7 +195,7 @@ pub fn check(result: &Check, study: &Study) -> String {
             let other = class.map_or(other, |class| &class.alternative.name);
             let cannot = does_not_tell(study);
             let by = told_by(study);
-            format!("No: {camera} {cannot} {target} from {other} with {reliability} reliability{by}.\n")
+            format!("No: {camera} {cannot} {target} from {other} with a probability of {reliability}{by}.\n")
         }
         None => {
             let all = match study.alternatives() {
@@ -198,8 +204,9 @@ pub fn check(result: &Check, study: &Study) -> String {
             };
             let by = told_by(study);
             let yes = conditions::yes(&result.conditions).replacen('y', "Y", 1);
-            let verdict =
-                format!("{yes}: {camera} tells {target} from {all} with {reliability} reliability{by}.\n");
+            let verdict = format!(
+                "{yes}: {camera} distinguishes {target} from {all} with a probability of {reliability}{by}.\n"
+            );
             match conditions::paragraph(&result.conditions, true) {
                 none if none.is_empty() => verdict,
                 all => format!("{verdict}\n{}\n", all.trim_end()),

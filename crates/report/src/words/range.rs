@@ -16,7 +16,7 @@ impl Say for DepthFinding {
         match self {
             Self::Judged { met, error, share, required_share, signal, beside, windows: [judged, of] } => {
                 let mut out = format!(
-                    "{}: depth can be measured to within {} in {} of {} at best, by the {} ({} demanded)",
+                    "{}: depth can be measured to within {} in {} of {} at best, by the {} ({} required)",
                     match met {
                         Some(true) => "Yes",
                         Some(false) => "No",

@@ -45,10 +45,9 @@ use hadar_study::{
 
 impl Say for WhoMeets {
     fn say(&self) -> String {
-        let mut out = self
-            .idle
-            .as_ref()
-            .map_or_else(String::new, |idle| format!("Nothing is demanded: {}. As if it did: ", idle.say()));
+        let mut out = self.idle.as_ref().map_or_else(String::new, |idle| {
+            format!("Nothing is required: {}. If it were in force: ", idle.say())
+        });
         out += &which(self);
         let named = self.meet.len() + self.undecided.len() + self.fail.len() > 1;
         for (name, interval) in &self.undecided {
@@ -70,8 +69,8 @@ impl Say for WhoMeets {
         }
         for (target, alternative, [one, other]) in &self.placeholders {
             out += &format!(
-                " It hangs on {target} against {alternative}, which are entered as one number each ({one} and {other}): that \
-                 says nothing of real surfaces."
+                " The deciding pair is {target} and {alternative}, each entered as one number ({one} and {other}): the result \
+                 says nothing about real surfaces."
             );
         }
         out
@@ -94,7 +93,7 @@ fn which(who: &WhoMeets) -> String {
         who.undecided.iter().map(|(name, _)| name.clone()).chain(who.fail.iter().cloned()).collect();
     match (meet.as_slice(), others.as_slice()) {
         ([], [one]) if who.fail.is_empty() => format!("Whether {one} meets the {what} is undecided."),
-        ([], _) if !who.undecided.is_empty() => format!("None of {all} cameras surely meets the {what}."),
+        ([], _) if !who.undecided.is_empty() => format!("No camera of {all} is shown to meet the {what}."),
         ([one], []) => format!("{one} meets the {what}."),
         ([], [one]) => format!("{one} does not meet the {what}."),
         (names, []) => format!("All {all} cameras meet the {what}: {}.", names.join(", ")),
@@ -107,7 +106,7 @@ fn which(who: &WhoMeets) -> String {
 impl Say for Quotable {
     fn say(&self) -> String {
         let mut out = format!(
-            "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {}{} with {} reliability \
+            "A camera meets this rule if, in every scene of the operating envelope ({}), it distinguishes {} from {}{} with a probability of {} \
              (statistical distance d of at least {})",
             ranges(&self.envelope, self.stop.as_ref(), self.units),
             either(&with_spectra(&self.envelope, &self.envelope.materials)),
@@ -131,15 +130,15 @@ impl Say for Quotable {
                 0.0 => "which does not cross".to_owned(),
                 speed => format!("which crosses at {}", self.units.speed(speed)),
             };
-            let (beside, speed) = (self.units.length(crossing.offset_m), self.units.speed(speed));
+            let (offset, speed) = (self.units.length(crossing.offset_m), self.units.speed(speed));
             out += &format!(
-                ", and the target, {way} and is met within {beside} of the camera's axis, is in its view in time and moves by less than a \
+                ", and the target, {way} and is met within {offset} of the camera's axis, is in its view in time and moves by less than a \
                  pixel while all bands are exposed, seen from a vehicle that drives forward at {speed}"
             );
         } else if let Some(speed) = self.speed_m_s {
             let speed = self.units.speed(speed);
             out += &format!(
-                ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \
+                ", and no object at rest moves by a pixel while all bands are exposed, seen from a vehicle that drives \
                  forward at {speed}"
             );
         }
@@ -163,7 +162,9 @@ impl Say for Certified {
     fn say(&self) -> String {
         let percent = 100.0 * self.gap.unwrap_or(0.0).max(0.0);
         match self.kind {
-            Proof::Equilibrium => "proved: the envelope holds a scene in which nothing differs".into(),
+            Proof::Equilibrium => {
+                "proved: the operating envelope contains a scene in which the spectra do not differ".into()
+            }
             Proof::DenseSearch => {
                 "searched, not proved: the best of a dense search and its refinements".into()
             }
@@ -231,7 +232,7 @@ impl Say for IdealCamera {
         let distance = self.distance_m.map_or_else(String::new, |z| format!(" at {}", self.units.length(z)));
         format!(
             "no camera: a detector that counts every photon and adds no noise, f/{}, pixel {} (the largest of the \
-             cameras), light of {} ({}), {filled}{distance}, does not tell the pair with {} reliability",
+             cameras), exposure of {} ({}), {filled}{distance}, does not distinguish the pair with a probability of {}",
             self.f_number,
             quantity(self.pixel_m, "m"),
             quantity(self.time_s, "s"),
@@ -298,7 +299,7 @@ fn ranges(envelope: &EnvelopeResult, stop: Option<&StopResult>, units: Units) ->
 /// What a kind of clause demands, in words.
 pub(crate) fn in_words_of_kind(kind: &str) -> &str {
     match kind {
-        "tell-apart" => "tells materials apart",
+        "tell-apart" => "distinguishes materials",
         "false-alarm" => "no false alarm",
         "contrast" => "sees that something is there",
         "resolution" => "pixels on the target",
@@ -313,12 +314,12 @@ pub(crate) const LEAST: &str = "The least margin of all clauses and scenes.";
 
 /// Below the margins over all clauses.
 pub(crate) const ALL_CLAUSES: &str =
-    "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails.";
+    "Least over all clauses. Filled symbols meet the rule; below a name are the clauses that it fails.";
 
 /// Below the margins of a rule that only tells materials apart.
 pub(crate) fn one_clause(distance: f64) -> String {
     format!(
-        "Least over the envelope; demanded is d = {}. Full symbols meet the rule; a camera may have signal enough and \
+        "Least over the operating envelope; d = {} is required. Filled symbols meet the rule; a camera may have enough signal and \
          still fail by its image.",
         significant(distance, 3)
     )

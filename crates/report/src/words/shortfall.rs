@@ -6,12 +6,12 @@ use hadar_study::Shortfall;
 pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
     [
         "distance",
-        "the statistical distance from the nearest look-alike is below that demanded: what is counted does not tell the two apart as reliably as that",
+        "the statistical distance from the closest confuser is below the required one: the counts do not distinguish the two with the required probability",
         "more light (exposure, frames, f-number, pixel), less noise, other bands, or states of the alternative that are ruled out (priors, temperature of the alternatives)",
     ],
     [
         "pixels",
-        "fewer pixels lie across the target than are demanded, or they run into each other while a frame is exposed",
+        "fewer pixels lie across the target than required, or motion blurs them during an exposure",
         "a longer focal length, a shorter exposure, or a decision nearer to the target",
     ],
     [
@@ -26,7 +26,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
     ],
     [
         "decision-time",
-        "the frames are read later than the decision must stand",
+        "the frames are read after the time at which the decision is due",
         "fewer frames or bands, a higher frame rate, or a target that comes into view earlier",
     ],
     [
@@ -42,11 +42,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
     [
         "out-of-view",
         "the target, on its way across, is not in the camera's view in time for the decision",
-        "a wider view (field_of_view), or a higher speed of the vehicle from which on it is",
+        "a wider field of view (field_of_view), or a lowest speed of the vehicle from which the target is in view",
     ],
     [
         "full-well",
-        "a reading of the brightest scene does not fit into the full well",
+        "a reading of the brightest scene exceeds the well capacity: the pixel saturates",
         "a shorter exposure, a smaller aperture, or a filter",
     ],
     ["frame-rate", "the exposure is longer than a frame", "a shorter exposure or a lower frame rate"],
@@ -71,17 +71,17 @@ pub(super) fn clauses(spoiled: &[Shortfall]) -> String {
 /// It in a clause that follows 'but'.
 const fn clause(by: Shortfall) -> &'static str {
     match by {
-        Shortfall::Distance => "the statistical distance is below that demanded",
+        Shortfall::Distance => "the statistical distance is below the required one",
         Shortfall::Pixels => "too few pixels lie across the target",
         Shortfall::TemperatureError => "the temperature is not known as well as demanded",
         Shortfall::DepthError => "the distance is not known as well as demanded",
-        Shortfall::DecisionTime => "its frames are read later than the decision must stand",
+        Shortfall::DecisionTime => "its frames are read after the decision is due",
         Shortfall::MotionBlur => "the target moves by a pixel or more while all bands are exposed",
         Shortfall::MotionUnknown => {
             "whether the target moves by a pixel while all bands are exposed is not known without target.distance"
         }
         Shortfall::OutOfView => "the target is not in the view in time",
-        Shortfall::FullWell => "a reading does not fit into the full well",
+        Shortfall::FullWell => "a reading exceeds the well capacity (the pixel saturates)",
         Shortfall::FrameRate => "the exposure is longer than a frame",
         Shortfall::Diffraction => "the lens blurs a point over more than the pixel",
         Shortfall::Impractical => "no camera is built or used like that",
@@ -98,7 +98,7 @@ pub(crate) fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::MotionBlur => "motion blur of a pixel or more",
         Shortfall::MotionUnknown => "motion that is not known without a distance",
         Shortfall::OutOfView => "the target is not in the view in time",
-        Shortfall::FullWell => "the brightest scene fills the well",
+        Shortfall::FullWell => "the brightest scene saturates the pixels",
         Shortfall::FrameRate => "longer than a frame",
         Shortfall::Impractical => "not a practical camera",
         Shortfall::Diffraction => "diffraction blurs over more than a pixel",
@@ -106,7 +106,7 @@ pub(crate) fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::Pixels => "too few pixels",
         Shortfall::TemperatureError => "the temperature is not known well enough",
         Shortfall::DepthError => "the distance is not known well enough",
-        Shortfall::DecisionTime => "its frames are read after the decision must stand",
+        Shortfall::DecisionTime => "its frames are read after the decision is due",
     });
     words.collect::<Vec<_>>().join(", ")
 }

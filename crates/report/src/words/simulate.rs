@@ -87,12 +87,12 @@ fn sentence(result: &Simulation) -> String {
     let which = if judged == 1 { "the only one".to_owned() } else { format!("the best of {judged}") };
     let name = format!("{which} ({})", best.words());
     if result.comparisons == 0 {
-        return format!("In {often} {name} tells {apart}; there is no limit to hold it against.");
+        return format!("{name} distinguishes {apart} in {often}; there is no limit to compare it with.");
     }
     let beyond = of_standing(result, Standing::Beyond);
     if beyond > 0 {
         return format!(
-            "The limit does not hold: {beyond} of {} times a classifier told {apart} more often than it allows.",
+            "The limit does not hold: {beyond} of {} times a classifier distinguished {apart} more often than it allows.",
             result.comparisons
         );
     }
@@ -100,7 +100,7 @@ fn sentence(result: &Simulation) -> String {
         [point] => {
             let limit = percent(point.limit_accuracy.unwrap_or(point.limit_accuracy_normal));
             format!(
-                "No classifier beats the limit of {limit} by more than chance: {name} tells {apart} in {often}."
+                "No classifier beats the limit of {limit} by more than chance: {name} distinguishes {apart} in {often}."
             )
         }
         points => format!(

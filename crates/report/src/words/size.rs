@@ -53,7 +53,7 @@ impl Say for Finding {
 /// Mixtures of which more is found than is proved.
 fn not_proved_of_mixtures(finding: &Finding, alternative: &str, found: &MixtureAnswer) -> String {
     format!(
-        "No: that {} tells {} from {alternative} with {} reliability is so for the worst mixture found (d = {}), but no more than d = {} is \
+        "No: that {} distinguishes {} from {alternative} with a probability of {} holds for the worst mixture found (d = {}), but only d = {} is \
          proved of all mixtures.",
         finding.camera,
         finding.target,
@@ -72,7 +72,7 @@ fn yes(finding: &Finding) -> String {
 fn of_pixels(finding: &Finding, reached: f64) -> String {
     finding.pixels.map_or_else(String::new, |pixels| {
         format!(
-            "; all {} pixels on it together {}, if they are alike and share no noise",
+            "; of all {} pixels on it together {}, if they are alike and share no noise",
             significant(pixels, 3),
             reliability(reached * pixels.sqrt())
         )
@@ -97,40 +97,40 @@ fn answered(finding: &Finding) -> String {
     }
     match &finding.answer {
         Answer::NothingDiffers => {
-            format!("No camera can tell {target} from {other} here: nothing in the spectrum differs.")
+            format!("No camera can distinguish {target} from {other} here: nothing in the spectrum differs.")
         }
         Answer::UnknownsExplain => format!(
-            "No camera can tell {target} from {other} here: the unknowns explain every difference in the spectrum."
+            "No camera can distinguish {target} from {other} here: the unknowns explain every difference in the spectrum."
         ),
         Answer::TooFewBands { bands, unknowns } => {
             let (yes, colon) = if camera.is_empty() {
-                (format!("No camera can tell {target} from {other} here"), String::new())
+                (format!("No camera can distinguish {target} from {other} here"), String::new())
             } else {
-                ("No".into(), format!(": {camera} cannot tell {target} from {other}"))
+                ("No".into(), format!(": {camera} cannot distinguish {target} from {other}"))
             };
             let (unknown, are) = together(unknowns);
             let many = match bands {
                 1 => "one band".into(),
                 bands => format!("{bands} bands"),
             };
-            format!("{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
+            format!("{yes}: {many} cannot distinguish materials while {unknown} {are} unknown{colon}.")
         }
         Answer::Takes { photons, enough, .. } => {
             let more = match enough {
                 Some(enough) if *enough <= *photons * (1.0 + ROUNDED) => String::new(),
-                Some(enough) => format!("; by what is proved it may take {}", significant(*enough, 3)),
-                None => "; nothing is proved to suffice".into(),
+                Some(enough) => format!("; the proof allows for up to {}", significant(*enough, 3)),
+                None => "; no number is proved to suffice".into(),
             };
             format!(
-                "Telling {target} from {other} with {wanted} reliability takes at least {} photons{more}.",
+                "Distinguishing {target} from {other} with a probability of {wanted} takes at least {} photons{more}.",
                 significant(*photons, 3)
             )
         }
         Answer::Judged { undecided: true, reached: Some(reached), proved: Some(proved), .. } => {
             let [proved, reached] = [proved, reached].map(|d| reliability(*d));
             format!(
-                "Undecided: whether {camera} can tell {target} from {other} with {wanted} reliability{}; {proved} are proved, and no state \
-                 was found in which it is less than {reached}.",
+                "Undecided: whether {camera} can distinguish {target} from {other} with a probability of {wanted}{}; {proved} is proved, and no state \
+                 was found in which the probability is below {reached}.",
                 by_pixels(finding)
             )
         }
@@ -143,18 +143,19 @@ fn answered(finding: &Finding) -> String {
             let end = match reached {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
                 Some(reached) => {
-                    let (one, all) = match finding.pixels {
-                        Some(_) if finding.of_object => ("it", String::new()),
-                        Some(_) => ("a pixel", of_pixels(finding, *reached)),
-                        None => ("it", String::new()),
+                    let (of, all) = match finding.pixels {
+                        Some(_) if !finding.of_object => (" of one pixel", of_pixels(finding, *reached)),
+                        _ => ("", String::new()),
                     };
-                    let few = if *few_counts { ", by the own law of counts so few" } else { "" };
-                    format!("; {one} reaches {} at most{few}{all}.", reliability(*reached))
+                    let few = if *few_counts { ", by the law of small counts" } else { "" };
+                    format!("; upper limit{of} {}{few}{all}.", reliability(*reached))
                 }
                 None => ".".into(),
             };
             let by = by_pixels(finding);
-            format!("{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability{by}{end}")
+            format!(
+                "{yes}: {camera} {can} distinguish {target} from {other} with a probability of {wanted}{by}{end}"
+            )
         }
     }
 }
@@ -176,32 +177,33 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
     let Finding { camera, target, .. } = finding;
     match &finding.answer {
         Answer::NothingDiffers => format!(
-            "{target} is not told from {other} here by {reading}: to first order nothing in the spectrum differs."
+            "{target} is not distinguished from {other} here by {reading}: to first order nothing in the spectrum differs."
         ),
         Answer::UnknownsExplain => format!(
-            "{target} is not told from {other} here by {reading}: to first order the unknowns explain every \
+            "{target} is not distinguished from {other} here by {reading}: to first order the unknowns explain every \
              difference in the spectrum."
         ),
         Answer::TooFewBands { bands, unknowns } => {
             let (unknown, are) = together(unknowns);
             format!(
-                "No: {target} is not told from {other} here by {reading}: there are {bands} bands, and {unknown} {are} \
+                "No: {target} is not distinguished from {other} here by {reading}: there are {bands} bands, and {unknown} {are} \
                  unknown."
             )
         }
         Answer::Takes { photons, limit, .. } => {
             let photons = significant(*photons, 3);
-            let limit = limit.map_or_else(|| "no number suffices".into(), |limit| significant(limit, 3));
+            let limit =
+                limit.map_or_else(|| "no number of photons suffices".into(), |limit| significant(limit, 3));
             format!(
-                "Telling {target} from {other} with {wanted} reliability takes {photons} photons by {reading}; by the \
+                "Distinguishing {target} from {other} with a probability of {wanted} takes {photons} photons by {reading}; by the \
                  nearest, the limit, {limit}."
             )
         }
         Answer::Judged { enough, spoiled, reached, limit, .. } => {
-            let (yes, tells) = match (enough, spoiled.is_empty()) {
-                (true, true) => (yes(finding), "tells"),
-                (true, false) => ("No".into(), "would tell"),
-                (false, _) => ("No".into(), "does not tell"),
+            let (yes, distinguishes) = match (enough, spoiled.is_empty()) {
+                (true, true) => (yes(finding), "distinguishes"),
+                (true, false) => ("No".into(), "would distinguish"),
+                (false, _) => ("No".into(), "does not distinguish"),
             };
             let but = match *enough && !spoiled.is_empty() {
                 true => format!(", but {}", clauses(spoiled)),
@@ -210,12 +212,12 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
             let end = match (reached, limit) {
                 (Some(reached), Some(limit)) => {
                     let [reached, limit] = [reached, limit].map(|d| reliability(*d));
-                    format!(": it reads {reached}; the limit, by the nearest distance, is {limit}.")
+                    format!(": it gives {reached}; the limit, by the nearest distance, is {limit}.")
                 }
                 _ => ".".into(),
             };
             format!(
-                "{yes}: {camera} {tells} {target} from {other} with {wanted} reliability{but}, by {reading}{end}"
+                "{yes}: {camera} {distinguishes} {target} from {other} with a probability of {wanted}{but}, by {reading}{end}"
             )
         }
     }
@@ -268,7 +270,7 @@ mod tests {
         let yes = judged(true, Vec::new());
         assert_eq!(
             yes.say(),
-            "Yes: ours can tell skin from aluminium with 84.1 % reliability; it reaches 97.7 % at most."
+            "Yes: ours can distinguish skin from aluminium with a probability of 84.1 %; upper limit 97.7 %."
         );
         let conditions = vec![Condition::RegisteredFrames(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 })];
         let said = Finding { conditions, placeholders: Some([0.95, 0.9]), ..yes }.say();
@@ -293,8 +295,8 @@ mod tests {
             limit: Some(1.1),
         };
         let said = finding(found).say();
-        assert!(said.starts_with("Undecided: whether ours can tell skin from aluminium"), "{said}");
-        assert!(said.contains("78.8 % are proved") && said.contains("less than 86.4 %"), "{said}");
+        assert!(said.starts_with("Undecided: whether ours can distinguish skin from aluminium"), "{said}");
+        assert!(said.contains("78.8 % is proved") && said.contains("below 86.4 %"), "{said}");
     }
 
     /// No shortfall is called by another's name.
@@ -317,7 +319,7 @@ mod tests {
         ];
         for (by, part) in all {
             let said = judged(true, vec![by]).say();
-            let start = "No: ours could tell skin from aluminium with 84.1 % reliability, but ";
+            let start = "No: ours could distinguish skin from aluminium with a probability of 84.1 %, but ";
             assert!(said.starts_with(start) && said.contains(part), "{said}");
             assert_eq!(all.iter().filter(|(_, part)| said.contains(part)).count(), 1, "{said}");
         }
@@ -327,8 +329,7 @@ mod tests {
     fn one_band_is_not_enough_while_something_is_unknown() {
         let unknowns = vec![Nuisance::Temperature, Nuisance::Lighting];
         let said = finding(Answer::TooFewBands { bands: 1, unknowns }).say();
-        let start =
-            "No: one band cannot tell materials while temperature and lighting are unknown: ours cannot";
+        let start = "No: one band cannot distinguish materials while temperature and lighting are unknown: ours cannot";
         assert!(said.starts_with(start), "{said}");
     }
 }

@@ -37,7 +37,7 @@ pub fn text(verified: &Verified) -> String {
     if !verified.signed_by.is_empty() {
         let _ = writeln!(
             text,
-            "The envelope holds this statement, signed by {}; whether the signature is theirs the tool that made it says.",
+            "The DSSE envelope holds this statement, signed by {}; whether the signature is valid must be checked with the tool that made it.",
             verified.signed_by.iter().map(|key| words::visible(named(key))).collect::<Vec<_>>().join(", ")
         );
     }
@@ -86,7 +86,7 @@ impl Say for Difference {
             Self::Demand { demanded, found } => {
                 format!("the statement says {found}, and {demanded} is demanded")
             }
-            Self::Envelope { fault } => format!("the envelope: {}", fault.say()),
+            Self::Envelope { fault } => format!("the DSSE envelope: {}", fault.say()),
             Self::Program { was, is } => format!("made by {was}; made again by {is}"),
         }
     }

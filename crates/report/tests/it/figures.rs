@@ -100,7 +100,7 @@ fn required_photons() -> Figure {
         }
     }
     HeatMap::new(
-        "Photons needed to tell a human from a robot",
+        "Photons needed to distinguish a human from a robot",
         (Axis::linear("temperature of the target (°C)"), columns),
         (Axis::linear("thermal lighting factor V"), rows),
         (Axis::log("required photons").range(1e4, 1e14), values),
@@ -182,7 +182,7 @@ fn confusability(count: usize) -> Matrix {
     }
     let axis = Axis::log("distance d₀ (per √photon)");
     Matrix::new(
-        "Which materials can be told apart",
+        "Which materials can be distinguished",
         ("target", names.clone()),
         ("alternative", names),
         (axis, values),
@@ -425,6 +425,9 @@ fn no_text_of_a_matrix_leaves_the_figure() {
 fn a_matrix_of_wrong_size_is_an_error() {
     let matrix = Matrix { values: vec![1.0; 3], ..confusability(2) };
     let error = render_svg(&matrix.into()).expect_err("one value is missing").to_string();
-    assert_eq!(error, "cells of the matrix `Which materials can be told apart`: 3 values where 4 are needed");
+    assert_eq!(
+        error,
+        "cells of the matrix `Which materials can be distinguished`: 3 values where 4 are needed"
+    );
     assert!(render_png(&confusability(3).groups(vec![3]).into()).is_err());
 }

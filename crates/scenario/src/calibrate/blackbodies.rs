@@ -152,7 +152,7 @@ pub(super) fn blackbodies(root: &Section<'_>) -> Result<Vec<BlackbodySpec>> {
     let specs = entries.iter().map(BlackbodySpec::read).collect::<Result<Vec<_>>>()?;
     let (Some(first), Some(second)) = (specs.first(), specs.get(1)) else {
         let found = Error::malformed(
-            "one temperature tells response and offset not apart",
+            "one temperature does not determine response and offset",
             format!("write {EXAMPLE}, at temperatures that differ"),
         );
         return Err(list.fail(found));

@@ -41,7 +41,7 @@ pub struct BlackbodyScenario {
     pub title: Option<String>,
     /// The channels, bands of one wavenumber each.
     pub bands: BandsSpec,
-    /// The blackbodies (`[[blackbody]]`).
+    /// The blackbodies that were recorded (`[[blackbody]]`).
     pub blackbodies: Vec<BlackbodySpec>,
     /// Deviation of one sample, in the unit of the cubes (`[noise] sample`).
     pub noise: f64,

@@ -30,9 +30,9 @@ const HALF: u32 = 10;
 pub struct ResponseScenario {
     /// What it is about, for headings.
     pub title: Option<String>,
-    /// What is sought (`[response]`).
+    /// The response that is to be estimated (`[response]`).
     pub response: ResponseSpec,
-    /// The blackbodies (`[[blackbody]]`).
+    /// The blackbodies that were recorded (`[[blackbody]]`).
     pub blackbodies: Vec<BlackbodySpec>,
     /// Deviation of one sample, in the unit of the cubes (`[noise] sample`).
     pub noise: f64,

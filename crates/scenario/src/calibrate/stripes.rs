@@ -22,9 +22,9 @@ const SOUGHT: Sought = Sought { axis: Axis::Rows, gain_deviation: 0.1, in_all_ba
 pub struct StripesScenario {
     /// What it is about, for headings.
     pub title: Option<String>,
-    /// The cube (`[cube]`).
+    /// The cube that is to be destriped (`[cube]`).
     pub cube: Frames,
-    /// How stripes lie (`[stripes]`).
+    /// Direction and treatment of the stripes (`[stripes]`).
     pub stripes: Sought,
     /// Where it was read from.
     pub source: Source,

@@ -60,8 +60,8 @@ const AIR_UNKNOWN_KEYS: &[Key] = &[
         Value::List(&AIR_NUISANCE),
         Is("[\"temperature\", \"lighting\"]"),
         "[\"temperature\", \"lighting\"]",
-        "What of the scene is not known beside the distance.",
-        "columns of the Fisher matrix that the distance is told apart from",
+        "What of the scene is not known in addition to the distance.",
+        "columns of the Fisher matrix that the distance is distinguished from",
     ),
     Key::row(
         "priors",
@@ -91,7 +91,7 @@ const AIR_UNKNOWN_KEYS: &[Key] = &[
 ];
 /// `[unknown]` of ranging by air.
 pub(crate) static AIR_UNKNOWN: Table =
-    Table::of("What is not known of the scene beside the distance.", &[AIR_UNKNOWN_KEYS]);
+    Table::of("What of the scene is not known in addition to the distance.", &[AIR_UNKNOWN_KEYS]);
 
 const AIR_STEREO_KEYS: &[Key] = &[
     Key::row(
@@ -121,7 +121,7 @@ const AIR_STEREO_KEYS: &[Key] = &[
 ];
 /// `[stereo]` of ranging by air.
 pub(crate) static AIR_STEREO: Table =
-    Table::of("A second camera beside the first, for comparison.", &[AIR_STEREO_KEYS]);
+    Table::of("A second camera next to the first, for comparison.", &[AIR_STEREO_KEYS]);
 
 const AIR_REQUIREMENT_KEYS: &[Key] = &[
     Key::row(

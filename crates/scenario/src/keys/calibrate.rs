@@ -143,7 +143,7 @@ const BLACKBODY_KEYS: &[Key] = &[
     Key::row(
         "surroundings",
         KELVIN,
-        Means("it is black; must be there beside an emissivity below 1"),
+        Means("it is black; must be there together with an emissivity below 1"),
         "\"22 degC\"",
         "Temperature of what the blackbody reflects.",
         "L = e B(T) + (1 - e) B(T_s)",

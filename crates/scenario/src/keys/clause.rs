@@ -142,7 +142,7 @@ const OWN_KEYS: &[Key] = &[
     own!(
         "alternatives",
         Value::Table(&task::ALTERNATIVES),
-        "What it must be told apart from, in this clause."
+        "What it must be distinguished from, in this clause."
     ),
     own!("atmosphere", Value::Table(&task::ATMOSPHERE), "The air, in this clause."),
     own!("bands", Value::Table(&task::BANDS), "The bands, in this clause."),
@@ -153,7 +153,7 @@ const OWN_KEYS: &[Key] = &[
 const REQUIREMENT_OF_TASK: &[Key] = &[own!(
     "requirement",
     Value::Table(&task::REQUIREMENT),
-    "How reliable the decision must be, in this clause."
+    "Required probability of a correct decision, in this clause."
 )];
 const DEMANDS: &[Value] = &[
     Value::Table(&task::REQUIREMENT),
@@ -162,7 +162,7 @@ const DEMANDS: &[Value] = &[
     Value::Table(&DEPTH),
 ];
 const REQUIREMENT_OF_ANY: &[Key] = &[Key {
-    silent: Means("that of the rule; of kinds that tell nothing apart it must be there"),
+    silent: Means("that of the rule; of kinds that distinguish nothing it must be there"),
     ..own!("requirement", Value::Either(DEMANDS), "What is demanded, in terms of the clause's kind.")
 }];
 const WHAT: &str = "One demand, with the tables in which its scenes differ from the rule's.";

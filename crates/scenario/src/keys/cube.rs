@@ -101,7 +101,7 @@ const LIGHT_KEYS: &[Key] = &[
     Key::row(
         "column",
         Value::Text,
-        Means("must be there beside spectrum"),
+        Means("must be there together with spectrum"),
         "\"sky\"",
         "The column of that table.",
         "S_k in X = sum of V_k S_k (S2)",
@@ -127,7 +127,7 @@ const LIGHT_KEYS: &[Key] = &[
         Value::Pair(&WHOLE),
         Means("spectrum, temperature or found"),
         "[0, 540]",
-        "The mean of rows of the cube itself, from the first up to the second, counted from 0; beside found, rows in which that is looked for.",
+        "The mean of rows of the cube itself, from the first up to the second, counted from 0; together with found, rows in which that is looked for.",
         "S_k in X = sum of V_k S_k (S2)",
     ),
     Key::row(
@@ -311,7 +311,7 @@ const SPATIAL_KEYS: &[Key] = &[
 ];
 /// `[spatial]`.
 pub(crate) static SPATIAL: Table =
-    Table::of("What neighbours tell about a pixel; each is for itself where it is silent.", &[SPATIAL_KEYS]);
+    Table::of("What neighbours tell about a pixel; default: each pixel independently.", &[SPATIAL_KEYS]);
 
 const HUE: Allowed =
     Allowed { holds: |value| (0.0..360.0).contains(&value), expected: "from 0, below 360 degrees" };
@@ -403,7 +403,7 @@ const SURFACES: Key = Key::row(
     Means("none"),
     "[\"car\", \"tyres of car\"]",
     "Surfaces of a scene to be rendered that it is.",
-    "map of the truth beside the rendered cube",
+    "map of the truth next to the rendered cube",
 );
 /// `[[category]]` of a task or a rule: what `safety` says of it.
 pub(crate) static CATEGORY_OF_TASK: Table = Table::of(

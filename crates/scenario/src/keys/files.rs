@@ -77,7 +77,7 @@ const TASK: &[Key] = &[
 ];
 /// A task.
 pub(crate) static SCENARIO: Table =
-    Table::of("A target, what it must be told apart from, a camera.", &[TASK, &[CAMERA]]);
+    Table::of("A target, what it must be distinguished from, a camera.", &[TASK, &[CAMERA]]);
 
 const PRESETS: Key = Key::row(
     "cameras",

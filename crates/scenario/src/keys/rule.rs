@@ -19,7 +19,7 @@ const ABOUT_KEYS: &[Key] = &[
         "text",
         Value::Text,
         Means("none"),
-        "\"A camera must tell a person from a robot.\"",
+        "\"A camera must distinguish a person from a robot.\"",
         "Its wording.",
         "quoted in the certificate",
     ),
@@ -164,7 +164,7 @@ const UNCERTAIN_KEYS: &[Key] = &[
     Key::row(
         "u",
         Value::Figure,
-        Means("must be there beside value"),
+        Means("must be there together with value"),
         "\"5 mK\"",
         "Its standard uncertainty, 0 or above, in the unit of the figure.",
         "budget of the margin: u times how the margin changes with the figure (GUM)",
@@ -368,7 +368,7 @@ const TEST_KEYS: &[Key] = &[
         Value::Quantity(Dimension::Angle, ABOVE_ZERO),
         Means("any"),
         "\"27 deg\"",
-        "How far beside the axis a target that crosses is until then, at most, as it is expected.",
+        "Largest angle from the axis that a crossing target has until then, as it is expected.",
         "`hadar rule --test`",
     ),
     Key::row(

@@ -22,7 +22,7 @@ const SKY_KEYS: &[Key] = &[
     Key::row(
         "column",
         Value::Text,
-        Means("must be there beside spectrum"),
+        Means("must be there together with spectrum"),
         "\"sky\"",
         "The column of that table.",
         "light of the sky in X (S2)",
@@ -190,7 +190,7 @@ const SCENE_KEYS: &[Key] = &[
         Means("those of the scene alone"),
         "[\"brick-red\"]",
         "Materials besides those of the scene that a decomposition chooses from.",
-        "library.csv beside the rendered cube",
+        "library.csv next to the rendered cube",
     ),
     Key::row(
         "camera_height",
@@ -227,7 +227,7 @@ const SCENE_KEYS: &[Key] = &[
 ];
 /// `[scene]`.
 pub(crate) static SCENE: Table =
-    Table::of("A scene that is rendered; what is silent is that of the built-in street.", &[SCENE_KEYS]);
+    Table::of("A scene that is rendered; defaults are those of the built-in street.", &[SCENE_KEYS]);
 
 const OBJECT_KEYS: &[Key] = &[
     Key::row(

@@ -121,7 +121,7 @@ fn property(key: &Key, defs: &mut Defs) -> Json {
     };
     made.insert("title".into(), key.name.into());
     let description =
-        format!("{}{silent} Written: {}. Enters: {}.", key.meaning, key.value.words(), key.enters);
+        format!("{}{silent} Written: {}. Used in: {}.", key.meaning, key.value.words(), key.enters);
     made.insert("description".into(), description.into());
     if let Silent::Is(text) = key.silent
         && let Some(value) = written(text)

@@ -80,7 +80,7 @@ const STOP_KEYS: &[Key] = &[
         LENGTH_FROM_ZERO,
         Means("1 m, where crossing_speed is stated"),
         "\"0.5 m\"",
-        "How far beside the camera's axis target and vehicle would meet, at most.",
+        "Largest distance from the camera's axis at which target and vehicle would meet.",
         "bearing of the target until the decision",
     ),
 ];
@@ -94,7 +94,7 @@ const STAND_IN_KEYS: &[Key] = &[
     Key::row(
         "clause",
         Value::Text,
-        Means("the only one that tells people apart"),
+        Means("the only one that distinguishes people"),
         "\"crossing\"",
         "The clause whose limit is turned round.",
         "scenes in which no camera may tell the stand-in",
@@ -134,7 +134,7 @@ const STAND_IN_KEYS: &[Key] = &[
     Key::row(
         "correlation",
         WAVENUMBER,
-        Means("10 cm^-1 beside emissivity_error"),
+        Means("10 cm^-1 with emissivity_error"),
         "\"50 cm^-1\"",
         "Difference of wavenumbers over which these errors lose their correlation.",
         "covariance s^2 exp(-|dnu|/l)",

@@ -130,7 +130,7 @@ const ALTERNATIVES_KEYS: &[Key] = &[
         MATERIALS,
         Means("every other material of the library, skies apart"),
         "[\"aluminium\"]",
-        "What the target must be told apart from.",
+        "What the target must be distinguished from.",
         "emissivity of the other hypothesis (S18)",
     ),
     Key::row(
@@ -161,7 +161,7 @@ const ALTERNATIVES_KEYS: &[Key] = &[
 ];
 /// `[alternatives]`.
 pub(crate) static ALTERNATIVES: Table =
-    Table::of("What the target must be told apart from.", &[ALTERNATIVES_KEYS]);
+    Table::of("What the target must be distinguished from.", &[ALTERNATIVES_KEYS]);
 
 const CLASS_KEYS: &[Key] = &[
     Key::row(
@@ -207,7 +207,7 @@ const CLASS_KEYS: &[Key] = &[
     Key::row(
         "correlation",
         WAVENUMBER,
-        Means("must be there beside emissivity_error"),
+        Means("must be there together with emissivity_error"),
         "\"50 cm^-1\"",
         "Difference of wavenumbers over which that scatter loses its correlation.",
         "covariance of the emissivity, s^2 exp(-|dnu|/l)",
@@ -277,7 +277,7 @@ const UNKNOWN_KEYS: &[Key] = &[
         Is("[\"temperature\", \"lighting\"]"),
         "[\"temperature\", \"lighting\"]",
         "What of the scene is not known and has to be read from the same photons.",
-        "columns of the Fisher matrix that the material is told apart from (S27, S29)",
+        "columns of the Fisher matrix that the material is distinguished from (S27, S29)",
     ),
     Key::row(
         "priors",
@@ -304,7 +304,7 @@ const REQUIREMENT_KEYS: &[Key] = &[
         Value::Number(PROBABILITY),
         Means("that of distance"),
         "0.8413",
-        "How often the decision must be right, P.",
+        "Required probability of a correct decision P, above 0.5.",
         "P = Phi(d) (Theorem 1, equation 2)",
     ),
     Key::row(
@@ -312,7 +312,7 @@ const REQUIREMENT_KEYS: &[Key] = &[
         Value::Number(BELOW_HALF),
         Means("as rare as misses"),
         "0.001",
-        "How often an alternative may be taken for the target, beside a detection_probability.",
+        "Largest probability with which an alternative may be taken for the target, together with a detection_probability.",
         "2 d = Phi^-1(detection) + Phi^-1(1 - false alarm)",
     ),
     Key::row(
@@ -358,7 +358,7 @@ const REQUIREMENT_KEYS: &[Key] = &[
 ];
 /// `[requirement]` of a task.
 pub(crate) static REQUIREMENT: Table =
-    Table::of("How reliable the decision must be, and at which speed.", &[REQUIREMENT_KEYS]);
+    Table::of("Required probability of a correct decision, and speed.", &[REQUIREMENT_KEYS]);
 
 /// Ranges of what lights a scene.
 pub(super) const LIT_KEYS: &[Key] = &[
@@ -452,7 +452,7 @@ const ATMOSPHERE_KEYS: &[Key] = &[
     Key::row(
         "temperature",
         KELVIN,
-        Means("that of the model; beside a table it must be there"),
+        Means("that of the model; with a table it must be there"),
         "\"15 degC\"",
         "Temperature of the air.",
         "its emission (1 - tau) B(T_air)",
@@ -575,7 +575,7 @@ const BANDS_KEYS: &[Key] = &[
 ];
 /// `[bands]`.
 pub(crate) static BANDS: Table = Table::of(
-    "The spectral bands: a grid, ranges, rows or filters; silent: the band of a camera that has one, else 715 to 1250 cm^-1 in steps of 1.",
+    "The spectral bands: a grid, ranges, rows or filters; default: the band of a camera that has one, else 715 to 1250 cm^-1 in steps of 1.",
     &[BANDS_KEYS],
 );
 

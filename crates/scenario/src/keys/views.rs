@@ -77,7 +77,7 @@ const STEREO_KEYS: &[Key] = &[
     Key::row(
         "psf_sigma",
         LENGTH,
-        Means("must be there beside diffraction = \"gaussian\""),
+        Means("must be there together with diffraction = \"gaussian\""),
         "\"5 um\"",
         "Deviation of a Gaussian blur on the detector.",
         "S41 to S43",
@@ -149,7 +149,7 @@ const VIEWS_KEYS: &[Key] = &[
         Means("that of the camera"),
         "50.0",
         "Variance of the electronic noise: a number in counts^2, a table by band, or a cube by sample.",
-        "noise of a sample beside its shot noise (S14 to S16)",
+        "noise of a sample in addition to its shot noise (S14 to S16)",
     ),
     Key::row(
         "bad",

@@ -43,7 +43,7 @@ impl LibraryScenario {
         let unknown = root.read("unknown", unknown)?.unwrap_or(PixelUnknown::default());
         if unknown.gain {
             let found = Error::malformed(
-                "no emissivity can be told from an unknown scale of the counts",
+                "no emissivity can be distinguished from an unknown scale of the counts",
                 "write gain = false, or leave it out",
             );
             return Err(found.at(root.source().place("unknown.gain")));

@@ -21,12 +21,12 @@ const NO_FIGURES_OF_CAMERA: &[&str] = &["name", "preset", "share"];
 /// The same of a clause.
 const NO_FIGURES_OF_CLAUSE: &[&str] = &["name", "kind", "text"];
 
-/// What stands behind some figures of a rule (`[[source]]`).
+/// The source of some figures of a rule (`[[source]]`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Citation {
-    /// Keys of the figures, or of tables with all their figures, e.g. `stop.latency` or `clause[1].envelope`.
+    /// Keys of the figures, or of tables with all their figures, e.g. `stop.latency` or `clause[1].operating envelope`.
     pub keys: Vec<String>,
-    /// What says so.
+    /// The document or choice on which the figures are based.
     pub ground: Ground,
 }
 
@@ -35,15 +35,15 @@ pub struct Citation {
 pub enum Ground {
     /// A document says so.
     Document {
-        /// Which.
+        /// Title of the document, as it is cited.
         document: String,
-        /// Where in it.
+        /// Clause or page of the document.
         clause: String,
-        /// In its own words.
+        /// The words of the document, quoted.
         quote: String,
-        /// Its date.
+        /// Date of the document or of the choice.
         date: Date,
-        /// How it was read.
+        /// How the document was read, as a mark.
         mark: Mark,
     },
     /// Nobody says so but the author of the rule, for this reason.
@@ -181,11 +181,11 @@ pub(super) fn ground(section: &Section<'_>) -> Result<Ground> {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Figure {
-    /// Its key.
+    /// Key of the figure, as a path in the file.
     pub key: String,
     /// Its value as it is written.
     pub value: String,
-    /// Its line.
+    /// Number of the line of the file that states the figure.
     pub line: usize,
 }
 

@@ -18,7 +18,7 @@ pub(crate) const TIE: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Confusion {
-    /// `decisions[true][chosen]`.
+    /// Number of decisions of every true class for every chosen class, `decisions[true][chosen]`.
     pub decisions: Vec<Vec<f64>>,
     /// Spectra whose scores were not as good as they should be.
     pub unconverged: u64,

@@ -28,7 +28,7 @@ pub const SHRINKAGES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(try_from = "Raw")]
 pub struct Discriminant {
-    /// λ that was kept.
+    /// Shrinkage λ of the covariance that was kept, 0 to 1.
     shrinkage: f64,
     rule: Affine,
 }

@@ -56,7 +56,7 @@ impl LikelihoodRatio {
     pub fn new(statistics: &Statistics, means: &[Vec<f64>]) -> Result<Self> {
         let Some(first) = means.first() else {
             return Err(Error::malformed(
-                "there are no classes to tell apart",
+                "there are no classes to distinguish",
                 "give the mean counts of two",
             ));
         };

@@ -160,14 +160,14 @@ const SAME_BAND: f64 = 1e-9;
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct SavedModel {
-    /// Version of this format.
+    /// Version of the format of the file, a whole number.
     #[serde(rename = "schema", alias = "format")]
     format: u32,
     /// Version of the program that trained it.
     hadar: String,
     /// Centres of its bands, cm⁻¹.
     pub wavenumber_cm1: Vec<f64>,
-    /// Names of its classes.
+    /// Names of the classes, in the order of the scores.
     pub classes: Vec<String>,
     /// Photons of the first class in all bands, with which it was trained.
     pub photons: f64,
@@ -175,7 +175,7 @@ pub struct SavedModel {
     pub seed: u64,
     /// Generator that the seed belongs to.
     pub generator: String,
-    /// The classifier.
+    /// The trained classifier, with all its coefficients.
     pub model: Trained,
 }
 

@@ -12,7 +12,7 @@
 use hadar::error::{Result, check};
 use std::f64::consts::PI;
 
-/// Largest distance between the distribution functions of the Gaussian law and of what it stands for.
+/// Largest distance between the distribution functions of the Gaussian law and of the law that it approximates.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct GaussianDistance {

@@ -22,9 +22,9 @@ use hadar::identifiability::detection;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PhotonShare {
-    /// Share of right decisions.
+    /// Share of decisions that are right, 0 to 1.
     pub accuracy: f64,
-    /// Interval of it.
+    /// Confidence interval of the accuracy, 0 to 1.
     pub accuracy_interval: Interval,
     /// What the best decision reaches, Φ(d).
     pub accuracy_limit: f64,

@@ -58,9 +58,9 @@ impl Fit {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Block {
-    /// The block.
+    /// Size of the block of pixels that is matched.
     pub window: Window,
-    /// What is compared.
+    /// The measure of similarity by which blocks are compared.
     pub score: Score,
     /// How the peak is found.
     pub fit: Fit,

@@ -96,7 +96,7 @@ impl Noisy {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Likelihood {
-    /// The window.
+    /// Size of the window of pixels that is matched.
     pub window: Window,
     /// How the right view is interpolated.
     pub interpolation: Interpolation,

@@ -19,11 +19,11 @@ pub const OUTLIER: f64 = 1.0;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CentreReport {
-    /// The window.
+    /// Position of the middle of the window, with its true disparity.
     pub centre: Centre,
     /// Error without noise, pixels: systematic. `None` where there is no match even so.
     pub systematic: Option<f64>,
-    /// Trials.
+    /// Number of trials at this window.
     pub trials: usize,
     /// Trials without a disparity, in the order of [`Failure::ALL`].
     pub failures: [usize; 3],
@@ -31,17 +31,17 @@ pub struct CentreReport {
     pub outliers: usize,
     /// Share of trials that are either, and its interval (Wilson).
     pub lost: f64,
-    /// Interval of it.
+    /// Confidence interval of the share of lost trials, 0 to 1.
     pub lost_interval: Interval,
     /// All disparities found; `None` for fewer than two.
     pub errors: Option<Errors>,
-    /// Those without outliers.
+    /// Errors of the trials that found a disparity, without outliers.
     pub inliers: Option<Errors>,
     /// Quartiles of the error of all found, pixels.
     pub quartiles: Option<[f64; 3]>,
-    /// All found beside the bound, if one was given.
+    /// All found compared with the bound, if one was given.
     pub efficiency: Option<ParameterEfficiency>,
-    /// Those without outliers beside it.
+    /// Those without outliers compared with it.
     pub efficiency_inliers: Option<ParameterEfficiency>,
 }
 
@@ -49,11 +49,11 @@ pub struct CentreReport {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct LineReport {
-    /// One by one.
+    /// One report for each window.
     pub centres: Vec<CentreReport>,
     /// Root mean square error of all disparities found, pixels; `None` without any.
     pub rmse: Option<f64>,
-    /// That without outliers.
+    /// Root mean square error of all windows without outliers, pixels.
     pub rmse_inliers: Option<f64>,
     /// Root mean square of the errors without noise.
     pub rms_systematic: Option<f64>,

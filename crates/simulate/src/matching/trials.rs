@@ -28,11 +28,11 @@ const TOGETHER: usize = 4;
 /// A window of the left view.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Centre {
-    /// Row of its middle.
+    /// Row of the middle of the window, counted from 0.
     pub row: usize,
-    /// Column of its middle.
+    /// Column of the middle of the window, counted from 0.
     pub column: usize,
-    /// True disparity there, pixels.
+    /// True disparity at the middle of the window, pixels.
     pub disparity: f64,
 }
 

@@ -20,19 +20,19 @@ const MOST_SOLIDS: usize = 32;
 pub enum Body {
     /// A person of this height.
     Person {
-        /// Height, m.
+        /// Height of the object above its base, m.
         height_m: f64,
     },
     /// A robot of a person's form, of this height.
     Robot {
-        /// Height, m.
+        /// Height of the object above its base, m.
         height_m: f64,
     },
     /// A car along z; its tyres are a surface of their own.
     Car {
         /// Length, width and height, m.
         size_m: [f64; 3],
-        /// Its tyres.
+        /// The surface of the tyres of the car.
         tyres: Box<Surface>,
     },
     /// A box: a wall, a crate.
@@ -42,9 +42,9 @@ pub enum Body {
     },
     /// An upright cylinder with round ends: a post, a trunk.
     Post {
-        /// Height, m.
+        /// Height of the object above its base, m.
         height_m: f64,
-        /// Radius, m.
+        /// Radius of the round object, m.
         radius_m: f64,
     },
     /// An ellipsoid, its middle above the ground: a bush, a crown.
@@ -56,14 +56,14 @@ pub enum Body {
     },
 }
 
-/// Something that stands in a scene.
+/// An object of a scene.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Object {
-    /// Its surface.
+    /// The surface that the object shows.
     pub surface: Surface,
-    /// Where it stands: x and z on the ground, m; of a car and a block the middle of the near end.
+    /// Its place on the ground, x and z, m; of a car and a block the middle of the near end.
     pub at_m: [f64; 2],
-    /// Its form.
+    /// The geometric form of the object.
     pub body: Body,
 }
 

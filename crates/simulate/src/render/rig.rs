@@ -8,19 +8,19 @@ use super::vector::{Vector, along, dot, subtract};
 use hadar::cube::Shape;
 use hadar::error::{Error, Result, check};
 
-/// A stereo camera above the ground; the left camera stands at x = −b/2, the right one at +b/2.
+/// A stereo camera above the ground; the left camera is at x = −b/2, the right one at +b/2.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Rig {
     /// Distance b between the cameras, m.
     pub baseline_m: f64,
-    /// Focal length f, m.
+    /// Focal length f of both cameras, m.
     pub focal_length_m: f64,
     /// Side of a square pixel, m.
     pub pixel_m: f64,
-    /// Pixels in y.
+    /// Number of pixels in the direction y.
     pub rows: usize,
-    /// Pixels in x.
+    /// Number of pixels in the direction x.
     pub columns: usize,
     /// Height above the ground, m.
     pub height_m: f64,

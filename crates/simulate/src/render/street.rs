@@ -19,11 +19,11 @@ use hadar::error::Result;
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StreetSpec {
-    /// Sky temperature, K.
+    /// Temperature of the sky, taken as a blackbody, K.
     pub sky_k: f64,
     /// Sky emissivity; what is missing to 1 is deep space without radiation.
     pub sky_emissivity: Emissivity,
-    /// Ground temperature, K.
+    /// Mean temperature of the ground, K.
     pub ground_k: f64,
     /// Emissivities of the ground where its texture is 0 and where it is 1.
     pub ground_emissivity: [Emissivity; 2],
@@ -33,31 +33,31 @@ pub struct StreetSpec {
     pub ground_bump: Option<Bump>,
     /// Whether the car is there.
     pub car: bool,
-    /// Middle of the car's rear bumper: x and z on the ground, m. The car stands along z.
+    /// Middle of the car's rear bumper: x and z on the ground, m. The car is parallel to z.
     pub car_at_m: [f64; 2],
     /// Length, width and height of the car, m.
     pub car_size_m: [f64; 3],
     /// Temperature of its paint, K.
     pub car_k: f64,
-    /// Emissivity of its paint.
+    /// Emissivity of the paint of the car, 0 to 1.
     pub car_emissivity: Emissivity,
-    /// Roughness of its panels.
+    /// Roughness of the panels of the car, as slopes.
     pub car_bump: Option<Bump>,
     /// Temperature of its tyres, K.
     pub tyre_k: f64,
-    /// Emissivity of its tyres.
+    /// Emissivity of the tyres of the car, 0 to 1.
     pub tyre_emissivity: Emissivity,
     /// Whether the person is there.
     pub person: bool,
-    /// Where the person stands: x and z on the ground, m.
+    /// Place of the person on the ground, x and z, m.
     pub person_at_m: [f64; 2],
     /// Height of the person, m.
     pub person_height_m: f64,
     /// Temperature of the person, K.
     pub person_k: f64,
-    /// Emissivity of the person.
+    /// Emissivity of the surface of the person, 0 to 1.
     pub person_emissivity: Emissivity,
-    /// Folds of the clothing.
+    /// Roughness of the clothing of the person, as slopes.
     pub person_bump: Option<Bump>,
 }
 

@@ -47,9 +47,9 @@ impl Emissivity {
 /// A surface.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Surface {
-    /// Its name.
+    /// Name by which the surface is reported.
     pub name: String,
-    /// Mean temperature, K.
+    /// Mean temperature of the surface, K.
     pub temperature_k: f64,
     /// How the temperature varies over it; the same everywhere where `None`.
     pub uneven: Option<Uneven>,
@@ -150,7 +150,7 @@ pub struct Bump {
     pub size_m: f64,
     /// Root mean square slope against the smooth surface.
     pub slope: f64,
-    /// Which bumps.
+    /// Seed that determines the pattern of bumps.
     pub seed: u32,
 }
 
@@ -161,7 +161,7 @@ pub struct Bump {
 pub struct Wave {
     /// Cycles per metre in x and y.
     pub cycles_per_m: [f64; 2],
-    /// Amplitude of τ.
+    /// Amplitude of the variation of τ by this sinusoid.
     pub amplitude: f64,
     /// Phase at x = y = 0, rad.
     pub phase_rad: f64,
@@ -177,9 +177,9 @@ pub enum Texture {
     Road(Road),
     /// τ = mean + Σ amplitude·cos(2π(f_x x + f_y y) + phase).
     Waves {
-        /// Mean of τ.
+        /// Mean of the mixing τ over the surface, 0 to 1.
         mean: f64,
-        /// The sinusoids.
+        /// The sinusoids that add up to the texture.
         waves: Vec<Wave>,
     },
 }
@@ -188,11 +188,11 @@ pub enum Texture {
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Road {
-    /// Which noise.
+    /// Seed that determines the pattern of noise.
     pub seed: u32,
     /// Size of the coarsest grains, m.
     pub coarsest_m: f64,
-    /// Number of octaves.
+    /// Number of octaves of noise that are added.
     pub octaves: usize,
     /// Amplitude of an octave over that of the one before.
     pub persistence: f64,
@@ -200,7 +200,7 @@ pub struct Road {
     pub asphalt: f64,
     /// Root mean square of τ about its mean on the asphalt, before it is cut off at 0 and 1.
     pub contrast: f64,
-    /// τ of the marks.
+    /// Mixing τ of the lane marks, 0 to 1.
     pub mark: f64,
     /// Distance between the marks on both sides of the lane, m; the lane's middle is x = 0.
     pub lane_m: f64,

@@ -23,7 +23,7 @@ pub struct Uneven {
     pub sigma_k: f64,
     /// Size of what is warmer or cooler, m.
     pub size_m: f64,
-    /// Which noise.
+    /// Seed that determines the pattern of the temperature.
     pub seed: u32,
 }
 

@@ -17,17 +17,17 @@ use hadar::error::{Result, check};
 pub struct WallSpec {
     /// Distance of the wall, m.
     pub distance_m: f64,
-    /// Sky temperature, K.
+    /// Temperature of the sky, taken as a blackbody, K.
     pub sky_k: f64,
-    /// Ground temperature, K.
+    /// Temperature of the ground below the sky, K.
     pub ground_k: f64,
-    /// Ground emissivity.
+    /// Emissivity of the ground, 0 to 1.
     pub ground_emissivity: Emissivity,
-    /// Wall temperature, K.
+    /// Temperature of the wall in front of the cameras, K.
     pub wall_k: f64,
     /// Emissivities of the wall where its texture is 0 and where it is 1.
     pub wall_emissivity: [Emissivity; 2],
-    /// Mean of the texture.
+    /// Mean of the texture of the wall, 0 to 1.
     pub mean: f64,
     /// Sinusoids of the texture; see [`Rig::cycles_per_m`](super::Rig::cycles_per_m).
     pub waves: Vec<Wave>,

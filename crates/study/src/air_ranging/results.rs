@@ -17,13 +17,13 @@ pub struct AirRanging {
     pub scenario: AirRangingScenario,
     /// The answer in a sentence.
     pub verdict: AirVerdict,
-    /// Target.
+    /// Name of the material of the target.
     pub target: String,
-    /// Camera.
+    /// Name of the camera that looks at it.
     pub camera: String,
-    /// Air.
+    /// Name of the model of the air, or of its file.
     pub air: String,
-    /// Its temperature, K.
+    /// Temperature of the air along the path, K.
     pub air_temperature_k: f64,
     /// Whether the distance is seen at all.
     pub sight: AirSight,
@@ -39,15 +39,15 @@ pub struct AirRanging {
     pub bands: Vec<AirBand>,
     /// The few best bands, where they are asked for.
     pub best_bands: Option<AirBest>,
-    /// An estimator beside its bound.
+    /// An estimator compared with its bound.
     pub witness: Vec<AirWitness>,
     /// Spectra at each of its distances.
     pub trials: usize,
-    /// Seed of the draws.
+    /// Seed from which the spectra were drawn.
     pub seed: u64,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -91,7 +91,7 @@ pub enum AirFinding {
 /// How an unknown hides a change of the distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BlindChange {
-    /// The unknown.
+    /// Name of the unknown that changes with the distance.
     pub unknown: String,
     /// Its change for 1 m.
     pub change_per_m: f64,
@@ -102,11 +102,11 @@ pub struct BlindChange {
 pub struct AirSight {
     /// Whether it is seen, and why not.
     pub status: Sight,
-    /// What hides it.
+    /// Changes of the unknowns that imitate a change of the distance.
     pub blind_direction: Vec<BlindChange>,
     /// Unknowns that change nothing, or nothing that others do not.
     pub without_effect: Vec<String>,
-    /// What is unknown besides the distance.
+    /// What is unknown in addition to the distance.
     pub unknown: Vec<String>,
     /// Modes of the errors of the emissivity.
     pub emissivity_modes: usize,
@@ -121,7 +121,7 @@ pub struct AirSight {
 /// One distance. Errors are `None` where the distance is not seen, or nobody asked.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AirPoint {
-    /// Distance, m.
+    /// Distance of the target from the camera, m.
     pub distance_m: f64,
     /// Least error of the distance, m.
     pub sigma_m: Option<f64>,
@@ -141,18 +141,18 @@ pub struct AirPoint {
     pub sigma_window_m: Option<f64>,
     /// That of stereo with such a window, m.
     pub sigma_stereo_m: Option<f64>,
-    /// Counts of all bands.
+    /// Expected counts of all bands together.
     pub counts: f64,
 }
 
 /// One band at the target's own distance.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AirBand {
-    /// Centre, cm⁻¹.
+    /// Wavenumber at the centre of the band, cm⁻¹.
     pub center_cm1: f64,
     /// Share of the target's light that the air lets through.
     pub transmittance: f64,
-    /// Counts.
+    /// Expected counts of the band at that distance.
     pub counts: f64,
     /// Share of them that the path itself sends.
     pub share_of_path: f64,
@@ -165,36 +165,36 @@ pub struct AirBand {
 /// The few best bands.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AirBest {
-    /// How many.
+    /// Number of bands that was asked for.
     pub count: usize,
-    /// Their centres, cm⁻¹.
+    /// Wavenumbers of the centres of the chosen bands, cm⁻¹.
     pub centers_cm1: Vec<f64>,
     /// Least error with them, m.
     pub sigma_m: Option<f64>,
     /// No choice of as many has a smaller one, m: proved.
     pub sigma_proved_m: Option<f64>,
-    /// With all bands, m.
+    /// Least error of the distance with all bands, m.
     pub sigma_all_bands_m: Option<f64>,
     /// Whether the choice is proved to be the best.
     pub exact: bool,
 }
 
-/// Estimates at one distance beside their bound.
+/// Estimates at one distance compared with their bound.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AirWitness {
-    /// Distance, m.
+    /// True distance of the target, m.
     pub distance_m: f64,
-    /// The bound, m.
+    /// Least standard deviation of an unbiased estimate of the distance, m.
     pub bound_m: f64,
-    /// Spectra.
+    /// Number of spectra that were drawn.
     pub trials: usize,
-    /// Bias and errors, m.
+    /// Bias and errors of the estimates of the distance, m.
     pub errors: Errors,
     /// Root mean square error over the bound.
     pub rmse_over_bound: f64,
-    /// Its interval.
+    /// Confidence interval of the root mean square error over the bound.
     pub rmse_over_bound_interval: Interval,
-    /// What follows.
+    /// Whether the estimator reaches its bound, as the interval shows.
     pub verdict: Verdict,
     /// Share of the fits that ended at an end of the table of the air.
     pub at_edge: f64,

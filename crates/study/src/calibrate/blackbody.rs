@@ -49,17 +49,17 @@ pub struct BlackbodyStudy {
 /// A channel with its errors; radiances in photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ChannelRow {
-    /// Its wavenumber, cm⁻¹.
+    /// Wavenumber of the channel, cm⁻¹.
     pub wavenumber_cm1: f64,
-    /// R, counts per radiance.
+    /// Response R of the channel, counts per radiance.
     pub response: f64,
-    /// Its errors.
+    /// Errors of the response in two parts, counts per radiance.
     pub response_error: Parts,
-    /// ξ, counts.
+    /// Offset ξ of the channel, counts.
     pub offset: f64,
-    /// Its errors, counts.
+    /// Errors of the offset in two parts, counts.
     pub offset_error: Parts,
-    /// Covariance of the two.
+    /// Covariance of the errors of response and offset, counts² per radiance.
     pub covariance: f64,
     /// Error common to all pixels of a radiance in the middle of the blackbodies, as temperature, K: by noise, by temperatures.
     pub sigma_middle_k: [f64; 2],
@@ -70,7 +70,7 @@ pub struct ChannelRow {
 /// The largest errors of radiances between those of the blackbodies, rms of the channels, K.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Worst {
-    /// Coldest and warmest blackbody.
+    /// Temperatures of the coldest and of the warmest blackbody, K.
     pub range_k: [f64; 2],
     /// The temperature at which what is common to all pixels is the largest.
     pub at_k: f64,
@@ -83,7 +83,7 @@ pub struct Worst {
 /// What was found.
 #[derive(Debug, Clone, Serialize)]
 pub struct BlackbodyFound {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: BlackbodyScenario,
     /// The channels; bands that are left out are none.
     pub channels: Vec<ChannelRow>,
@@ -103,7 +103,7 @@ pub struct BlackbodyFound {
     pub temperature_shifts_k: Vec<[f64; 2]>,
     /// χ² over its degrees of freedom; none of two blackbodies.
     pub chi_square_reduced: Option<f64>,
-    /// The scene.
+    /// The calibrated scene; none where no scene was given.
     pub scene: Option<SceneFound>,
     /// What was done and what was spared.
     pub stats: Work,

@@ -28,11 +28,11 @@ pub struct NoiseStudy {
 /// The noise that was found.
 #[derive(Debug, Clone, Serialize)]
 pub struct NoiseFound {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: NoiseScenario,
     /// What the files were read as.
     pub read: Vec<Found>,
-    /// Rows, columns and bands.
+    /// Numbers of rows, columns and bands of the cube.
     pub shape: Shape,
     /// How many frames there are.
     pub frames: usize,

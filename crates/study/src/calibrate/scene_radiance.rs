@@ -24,7 +24,7 @@ const KEPT_OF_EACH: u64 = 24;
 /// A calibrated scene, W m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Serialize)]
 pub struct SceneFound {
-    /// Rows, columns and bands.
+    /// Numbers of rows, columns and bands of the scene.
     pub shape: Shape,
     /// Radiance of every sample.
     #[serde(skip)]

@@ -37,11 +37,11 @@ pub enum Samples {
 /// A destriped cube.
 #[derive(Debug, Clone, Serialize)]
 pub struct StripesFound {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: StripesScenario,
     /// What the file was read as.
     pub read: Found,
-    /// Rows, columns and bands.
+    /// Numbers of rows, columns and bands of the cube.
     pub shape: Shape,
     /// Striped lines, counted in every band.
     pub striped: usize,

@@ -6,7 +6,7 @@ use hadar::identifiability::multi::ClassDistances;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ClassSide {
-    /// Name.
+    /// Name of the class, or of the material.
     pub name: String,
     /// Spectra that it rests on.
     pub spectra: usize,
@@ -14,7 +14,7 @@ pub struct ClassSide {
     pub is_class: bool,
     /// Whether mixtures of its members belong to it.
     pub mixtures: bool,
-    /// Whether it stands as the mean of its spectra.
+    /// Whether the class is represented by the mean of its spectra.
     pub mean: bool,
     /// Its members, and their shares.
     pub members: Vec<String>,
@@ -28,9 +28,9 @@ pub struct ClassSide {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct LeftOut {
-    /// Class of the member.
+    /// Name of the class to which the member belongs.
     pub class: String,
-    /// The member.
+    /// Name of the member that is left out.
     pub member: String,
     /// Distance of the worst pair that is left.
     pub distance: Option<f64>,
@@ -46,7 +46,7 @@ pub struct MixtureAnswer {
     pub alternative: Vec<(String, f64)>,
     /// Distance of the two, all parts in one lighting.
     pub distance: f64,
-    /// No mixture is nearer, even if every part has a lighting of its own.
+    /// No mixture is nearer, even if every part has a different lighting.
     pub distance_lower: f64,
 }
 
@@ -54,11 +54,11 @@ pub struct MixtureAnswer {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ClassAnswer {
-    /// The target's class.
+    /// The class to which the target belongs.
     pub target: ClassSide,
-    /// The alternative's.
+    /// The class of the alternative that it must be distinguished from.
     pub alternative: ClassSide,
-    /// Pairs of members.
+    /// Number of pairs of a target's member with an alternative's.
     pub pairs: usize,
     /// Pairs whose distance was searched; the others were proved to decide nothing.
     pub searched: usize,
@@ -66,9 +66,9 @@ pub struct ClassAnswer {
     pub statistical: bool,
     /// Statistical distance demanded; `None` without a camera.
     pub required: Option<f64>,
-    /// The pair of members that is hardest to tell apart.
+    /// The pair of members that is hardest to distinguish.
     pub worst: [String; 2],
-    /// Its distance.
+    /// Distance of that pair, per √photon or of the camera as `statistical` says.
     pub distance: f64,
     /// No pair of members is surely nearer than this.
     pub distance_lower: f64,
@@ -76,7 +76,7 @@ pub struct ClassAnswer {
     pub told_apart: Option<bool>,
     /// Share of the pairs that the camera tells, by the weights of the members.
     pub share_of_pairs_told: Option<f64>,
-    /// Mean detection probability over the pairs: it is between these.
+    /// Mean probability of a correct decision over the pairs: it is between these.
     pub mean_detection_probability: Option<[f64; 2]>,
     /// The worst pair without the one or the other of its members.
     pub leave_one_out: Vec<LeftOut>,

@@ -4,7 +4,7 @@ use super::measure::{Caveat, Measure, Unknown};
 use hadar::policy::practice::ObserverTask;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-/// What sizing practice says of a camera, beside what is proved.
+/// What sizing practice says of a camera, for comparison with what is proved.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Companion {
@@ -12,7 +12,7 @@ pub struct Companion {
     pub camera: Option<String>,
     /// Critical dimension of the target, m.
     pub size_m: Option<f64>,
-    /// Its distance, m.
+    /// Distance of the target from the camera, m.
     pub distance_m: Option<f64>,
     /// The rows, kind by kind.
     pub rows: Vec<CompanionRow>,
@@ -60,7 +60,7 @@ pub enum Condition {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CompanionRow {
-    /// What is told.
+    /// Name of the measure that the row gives.
     pub measure: Measure,
     /// What an observer is to do, where that matters.
     pub task: Option<ObserverTask>,

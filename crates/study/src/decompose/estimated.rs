@@ -21,7 +21,7 @@ pub(super) const AGAINST: f64 = 4.5;
 /// What was estimated for the whole cube.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SharedFound {
-    /// Each of the unknowns.
+    /// The estimate of each unknown that all pixels share.
     pub unknowns: Vec<SharedRow>,
     /// By how much all noise is larger than told; 1 where that is not asked.
     pub noise_factor: f64,
@@ -45,7 +45,7 @@ pub struct SharedRow {
     pub estimate: f64,
     /// Deviation of that, together with all others.
     pub sigma: f64,
-    /// Others, by their places in this list, from which the pixels do not tell it apart.
+    /// Others, by their places in this list, from which the pixels do not distinguish it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub same_as: Vec<usize>,
 }

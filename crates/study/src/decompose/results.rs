@@ -23,17 +23,17 @@ use std::collections::BTreeMap;
 /// A cube decomposed.
 #[derive(Debug, Clone, Serialize)]
 pub struct Decomposed {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: DecomposeScenario,
-    /// By which method.
+    /// Name of the method by which it was decomposed.
     pub method: Method,
     /// What the file of the cube was read as.
     pub read: Found,
-    /// Rows, columns and bands.
+    /// Numbers of rows, columns and bands of the cube.
     pub shape: Shape,
     /// Names of the materials, in the order of their indices.
     pub materials: Vec<String>,
-    /// All pixels.
+    /// Number of all pixels of the cube.
     pub pixels: usize,
     /// Pixels with one candidate; none while the cube does not follow its model.
     pub decided: usize,
@@ -90,7 +90,7 @@ pub struct Decomposed {
 /// Pixels that may be something else than one surface of the library.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Besides {
-    /// Prior probability of that.
+    /// Prior probability that a pixel is no single surface of the library.
     pub prior: f64,
     /// Pixels of which it is more probable than every material.
     pub likeliest: usize,
@@ -126,7 +126,7 @@ pub struct PairRow {
 /// What was found of one material.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MaterialRow {
-    /// Its name.
+    /// Name of the material in the library.
     pub material: String,
     /// Pixels of which it is the most probable material.
     pub pixels: usize,
@@ -145,7 +145,7 @@ pub struct MaterialRow {
 /// What was found of a class.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ClassRow {
-    /// Its name.
+    /// Name of the class of materials.
     pub class: String,
     /// Spectra that it rests on.
     pub spectra: usize,
@@ -156,11 +156,11 @@ pub struct ClassRow {
 /// How many pixels have a flag.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FlagCount {
-    /// Its name.
+    /// Name of the flag of a pixel.
     pub flag: &'static str,
-    /// Its bit in `flags.npy`.
+    /// Number of its bit in `flags.npy`, counted from 0.
     pub bit: u8,
-    /// Pixels.
+    /// Number of pixels that have the flag.
     pub pixels: usize,
 }
 

@@ -15,7 +15,7 @@ use serde::Serialize;
 /// Where a category cannot be excluded.
 #[derive(Debug, Clone, Serialize)]
 pub struct SafetyRow {
-    /// Its name.
+    /// Name of the category that matters for safety.
     pub category: String,
     /// Pixels in which it cannot be excluded: all of them while the cube does not follow its model.
     pub pixels: usize,
@@ -39,7 +39,7 @@ pub struct SafetyRow {
 /// Connected pixels in which a category cannot be excluded.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct NotExcluded {
-    /// Its pixels.
+    /// Number of connected pixels in this place.
     pub pixels: usize,
     /// Those of them that are decided to be of the category by themselves.
     pub decided: usize,

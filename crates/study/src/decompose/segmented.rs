@@ -21,11 +21,11 @@ const NOT_KNOWN: usize = 255;
 /// A cube segmented.
 #[derive(Debug, Clone, Serialize)]
 pub struct Segmented {
-    /// By which rule.
+    /// The rule by which pixels were segmented.
     pub rule: Rule,
     /// Whether the likeliest category of each pixel is the commonest of 5 × 5 in the end; no finding rests on it.
     pub smoothing: bool,
-    /// Of each category.
+    /// What was found of each category.
     pub categories: Vec<CategoryRow>,
     /// Pixels all candidates of which are in no category.
     pub none: usize,
@@ -61,9 +61,9 @@ pub struct Segmented {
 /// What was found of a category.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CategoryRow {
-    /// Its name.
+    /// Name of the category of materials.
     pub category: String,
-    /// Its pixels.
+    /// Number of pixels of the category.
     pub pixels: usize,
     /// Those of them that are decided by themselves: all their candidates are of this category alone; none while the cube does not follow
     /// its model.
@@ -77,7 +77,7 @@ pub struct CategoryRow {
 pub struct ObjectRow {
     /// The name of its category, or the names of all that it may be of with `or` between them.
     pub category: String,
-    /// Its pixels.
+    /// Number of pixels of the object.
     pub pixels: usize,
     /// Those of them that are decided by themselves: all their candidates are of this category alone; none while the cube does not follow
     /// its model.

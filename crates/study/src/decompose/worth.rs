@@ -29,17 +29,17 @@ const NINETY_FIVE: f64 = 1.959_963_984_540_054;
 pub struct TruthFound {
     /// Share of pixels whose material is right.
     pub right_material: Option<f64>,
-    /// Mean of Φ(d), what no test exceeds between a pixel and the nearest state of the others; `None` without all of the truth.
+    /// Mean of Φ(d), what no test exceeds between a pixel and the closest confuser of the others; `None` without all of the truth.
     pub right_material_limit: Option<f64>,
     /// Standard error of that mean.
     pub right_material_limit_error: Option<f64>,
-    /// Pixels of that mean.
+    /// Number of pixels over which that mean is taken.
     pub right_material_limit_pixels: usize,
     /// Root mean square of the error of the temperature over its bound.
     pub temperature_error_over_bound_rms: Option<f64>,
     /// Share of temperatures within 1.96 deviations.
     pub coverage_95: Option<f64>,
-    /// Pixels of these two.
+    /// Number of pixels over which these two are taken.
     pub coverage_pixels: usize,
     /// The same share of all pixels with an interval, whatever their material and limits.
     pub coverage_95_all: Option<f64>,

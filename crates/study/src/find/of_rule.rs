@@ -46,7 +46,7 @@ pub fn find_for_rule(
     }
     let Some(first) = scenes.first().cloned() else {
         let error = Error::malformed(
-            "the rule tells no materials apart",
+            "the rule distinguishes no materials",
             "hold cameras against it with `hadar rule`",
         );
         return Err(error.at(rule.scenario.place("clause")));

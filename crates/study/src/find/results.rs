@@ -17,7 +17,7 @@ pub struct FindAnswer {
     pub rule: Option<Rule>,
     /// Scenes in which choices were judged before the whole rule was asked; 1 of a scenario.
     pub scenes: usize,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of the camera.
     pub required_distance: f64,
     /// Whether any camera meets it.
     pub met: bool,
@@ -40,7 +40,7 @@ pub struct FindAnswer {
     pub near: Option<NearMiss>,
     /// What the reader must know of the best.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -48,9 +48,9 @@ pub struct FindAnswer {
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct Choice {
-    /// Name of the camera.
+    /// Name of the camera in the catalogue.
     pub camera: String,
-    /// Its lens.
+    /// The lens in front of the camera.
     pub lens: LensUsed,
     /// Its filters by their wavelengths; empty for the camera alone.
     pub filters: Vec<FilterUsed>,
@@ -74,11 +74,11 @@ pub struct Choice {
     pub lower: f64,
     /// That of a state that was found.
     pub upper: f64,
-    /// The alternative that is hardest to tell from the target.
+    /// The alternative that is hardest to distinguish from the target.
     pub limiting: String,
     /// What the main job says of it, with its conditions.
     pub verdict: Option<Verdict>,
-    /// What it warns of.
+    /// What the reader must know about this choice.
     pub warnings: Vec<Warning>,
     /// The scenario of this choice, as the main job takes it; of a rule that of its first clause.
     pub scenario: Scenario,
@@ -127,9 +127,9 @@ impl Choice {
 pub struct LensUsed {
     /// Its name; none of one that the camera has.
     pub name: Option<String>,
-    /// Focal length over aperture.
+    /// f-number: focal length over the diameter of the aperture.
     pub f_number: f64,
-    /// Focal length, m.
+    /// Focal length of the lens, m.
     pub focal_length_m: f64,
     /// The document that names it for the camera; none of one that the question gives.
     pub document: Option<String>,
@@ -148,11 +148,11 @@ pub struct FilterUsed {
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct Failed {
-    /// Its name.
+    /// Name of the camera in the catalogue.
     pub camera: String,
     /// Its lens, if it comes to that.
     pub lens: Option<LensUsed>,
-    /// Why.
+    /// The reason why the camera does not meet the requirement.
     pub why: Why,
     /// What is proved of the best that it reaches; none where it does not come to that.
     pub lower: Option<f64>,
@@ -166,7 +166,7 @@ pub struct Failed {
 pub enum Why {
     /// No document states these figures.
     Figures {
-        /// Their keys.
+        /// Keys of the figures that are not known of the camera.
         missing: Vec<&'static str>,
     },
     /// No document names a lens for it, and the question gives none.
@@ -178,7 +178,7 @@ pub enum Why {
     },
     /// It cannot be asked, with the message of why.
     Refused {
-        /// The message.
+        /// The error message of the camera's computation.
         because: String,
     },
     /// Nobody can order it.
@@ -218,7 +218,7 @@ pub enum Why {
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct NearMiss {
-    /// The choice.
+    /// The choice of lens, filters and frames that comes nearest.
     pub choice: Choice,
     /// Every quantity of its camera with the others held.
     pub solve_for: Option<Solutions>,

@@ -31,19 +31,19 @@ pub struct Answers {
     /// The target against every alternative.
     #[serde(flatten)]
     pub identification: Identification,
-    /// All materials against all.
+    /// Distances of all materials against all others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matrix: Option<Matrix>,
-    /// Which of them can be told apart.
+    /// Which of them can be distinguished.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub apart: Option<Apart>,
-    /// The scaling laws.
+    /// Scaling of the least distance with the size of the library and with the number of bands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaling: Option<Scaling>,
-    /// The bands that matter.
+    /// Which spectral bands carry the information, and which are enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bands_that_matter: Option<BandsThatMatter>,
-    /// Simulated decisions.
+    /// Simulated decisions, at the numbers of photons that are counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exact: Option<Exact>,
 }

@@ -16,9 +16,9 @@ use std::ops::Range;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Passband {
-    /// Lower edge, cm⁻¹.
+    /// Wavenumber of the lower edge of the band, cm⁻¹.
     pub low_cm1: f64,
-    /// Upper edge, cm⁻¹.
+    /// Wavenumber of the upper edge of the band, cm⁻¹.
     pub high_cm1: f64,
     /// Centre of a single band, else the middle, cm⁻¹.
     pub center_cm1: f64,
@@ -54,9 +54,9 @@ pub struct Choice {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct BandsThatMatter {
-    /// Alternatives that are counted.
+    /// Names of the alternatives that are taken into account.
     pub alternatives: Vec<String>,
-    /// Those left out since not even all bands tell them apart.
+    /// Those left out since not even all bands distinguish them.
     pub left_out: Vec<String>,
     /// Those left out since not even all bands with shot noise alone tell them as required. None is left out for that
     /// where it holds for all.
@@ -69,7 +69,7 @@ pub struct BandsThatMatter {
     pub share_local: Vec<f64>,
     /// Share of the square that is lost without the band alone.
     pub lost_without: Vec<f64>,
-    /// Share of each band in the separation from the nearest state.
+    /// Share of each band in the separation from the closest confuser.
     pub share_nearest: Vec<f64>,
     /// The best single bands; `None` if not asked for.
     pub bands: Option<Choice>,
@@ -113,7 +113,7 @@ impl Study {
         let hardest = (0..told.len())
             .min_by(|&a, &b| information[a].distance.total_cmp(&information[b].distance))
             .ok_or_else(|| {
-                let found = "not even all bands tell the target from any alternative";
+                let found = "not even all bands distinguish the target from any alternative";
                 Error::malformed(found, "change the scene or the alternatives")
                     .at(self.scenario.place("alternatives"))
             })?;

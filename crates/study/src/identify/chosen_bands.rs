@@ -19,7 +19,7 @@ pub struct Reached {
     pub statistical_distance: f64,
     /// The alternative it belongs to.
     pub limiting: String,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of the camera.
     pub required: f64,
 }
 

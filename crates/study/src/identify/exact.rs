@@ -159,7 +159,7 @@ impl Study {
         let photons =
             hardest_first.iter().find_map(|(distance, _)| policy::photons_required(self.required, *distance));
         photons.ok_or_else(|| {
-            let found = "no number of photons tells the target from any alternative";
+            let found = "no number of photons distinguishes the target from any alternative";
             Error::malformed(found, "change the scene or the alternatives").at(self.scenario.place("target"))
         })
     }

@@ -252,7 +252,7 @@ impl Study {
 
     fn needed_counting(&self) -> Result<Counting> {
         self.counting().ok_or_else(|| {
-            let found = "without a camera nothing decides which materials can be told apart";
+            let found = "without a camera nothing decides which materials can be distinguished";
             let instead = "add a [camera], e.g. preset = \"flir-a325sc\"";
             Error::malformed(found, instead).at(self.scenario.place("camera"))
         })

@@ -12,11 +12,11 @@ use hadar::identifiability::detection;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PriorAverage {
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
     /// Fewer photons than this are not enough for any test to be right as often as required; no number suffices where `None`.
     pub photons_required_lower: Option<f64>,
-    /// With so many photons the ratio of the mixtures is right as often as required; not known where `None`.
+    /// With this number of photons the ratio of the mixtures is right with the required probability; not known where none.
     pub photons_required_upper: Option<f64>,
     /// Photons that the target in the scenario's state sends to the camera; `None` without a camera.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -10,7 +10,7 @@ use hadar::scene::State;
 use hadar_scenario::{DistanceKind, Scenario};
 use std::collections::BTreeMap;
 
-/// What can be told apart from the target, alternative by alternative.
+/// What can be distinguished from the target, alternative by alternative.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct Identification {
@@ -20,7 +20,7 @@ pub struct Identification {
     pub photon_radiance: f64,
     /// The pairs, in the order of the alternatives.
     pub pairs: Vec<PairResult>,
-    /// The alternative that is hardest to tell apart.
+    /// The alternative that is hardest to distinguish.
     pub limiting: String,
     /// The target against the library as a whole (Algorithm 3).
     pub identifiability: Identifiability,
@@ -41,7 +41,7 @@ pub struct Identification {
     pub stats: Work,
 }
 
-/// A target against all its alternatives (Algorithm 3): the one hardest to tell apart decides.
+/// A target against all its alternatives (Algorithm 3): the one hardest to distinguish decides.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Identifiability {
@@ -51,13 +51,13 @@ pub struct Identifiability {
     pub statistical_distance_minimum: Option<f64>,
     /// What is proved of the least, and that which was found.
     pub statistical_distance_minimum_bounds: Option<[f64; 2]>,
-    /// Φ of it.
+    /// Largest probability of a correct decision, Φ of that distance.
     pub detection_probability_minimum: Option<f64>,
     /// Identifiability log₂ 2P of the paper, bits.
     pub identifiability_bits: Option<f64>,
-    /// Whether the camera tells the target from every alternative as reliably as required.
+    /// Whether the camera distinguishes the target from every alternative with the required probability.
     pub identifiable: Option<bool>,
-    /// Alternatives that it tells the target from.
+    /// Alternatives that it distinguishes the target from.
     pub told_from: Option<usize>,
     /// The paper's prediction vector S32, target first: a heuristic, no bound and no test's probability.
     pub prediction_heuristic: Option<Vec<Prediction>>,
@@ -67,9 +67,9 @@ pub struct Identifiability {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Prediction {
-    /// The material.
+    /// Name of the material of this entry.
     pub material: String,
-    /// Its share by S32.
+    /// Probability that S32 assigns to the material, 0 to 1.
     pub probability: f64,
 }
 
@@ -77,11 +77,11 @@ pub struct Prediction {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct NearestState {
-    /// Its temperature, K.
+    /// Temperature of the alternative in that state, K.
     pub temperature_k: f64,
-    /// Its lighting factors.
+    /// Lighting factors of the alternative in that state, 0 to 1.
     pub lighting: Vec<f64>,
-    /// Its gain.
+    /// Common factor of its counts in that state, where the gain is unknown.
     pub gain: f64,
     /// Temperatures of the environment objects, K, where they are unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -104,9 +104,9 @@ impl NearestState {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PhotonsRequired {
-    /// By the nearest distance.
+    /// Photons required by the nearest distance, which is the limit.
     pub nearest: Option<f64>,
-    /// By the local distance.
+    /// Photons required by the local distance, which is no limit.
     pub local: Option<f64>,
     /// By the local distance with unknown gain (S29).
     pub local_unknown_gain: Option<f64>,
@@ -138,11 +138,11 @@ pub enum NearestProof {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct PairResult {
-    /// The target's material.
+    /// Name of the target's material in the library.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
-    /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what tells them apart.
+    /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what distinguishes them.
     pub placeholders: bool,
     /// Local distance per √photon, nuisances of the scenario.
     pub distance_local: f64,
@@ -150,7 +150,7 @@ pub struct PairResult {
     pub distance_local_unknown_gain: f64,
     /// The same with nothing unknown but the material.
     pub distance_no_nuisance: f64,
-    /// Nearest distance per √photon.
+    /// Nearest distance of the two materials, per √photon.
     pub distance_nearest: f64,
     /// What is proved of it: no state of the alternative is nearer.
     pub distance_nearest_lower: f64,
@@ -160,7 +160,7 @@ pub struct PairResult {
     pub relative_error_nearest: f64,
     /// The state it belongs to.
     pub nearest_state: NearestState,
-    /// What of that state stands at the edge of its range.
+    /// The parameters of that state that are at the edge of their range.
     pub nearest_at_edge: Vec<String>,
     /// Distance from that state back to the target's material, per √photon of the target.
     pub distance_return: f64,
@@ -192,13 +192,13 @@ pub struct PairResult {
     pub decided_by: Option<DecisionLaw>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
     pub statistical_distance_shortcut: Option<f64>,
-    /// Φ(d).
+    /// Largest probability of a correct decision, Φ(d), 0.5 to 1.
     pub detection_probability: Option<f64>,
     /// What it is at least, as proved, and at most.
     pub detection_probability_bounds: Option<[f64; 2]>,
-    /// 1 − Φ(d).
+    /// Smallest probability of a wrong decision, 1 − Φ(d).
     pub miss_probability: Option<f64>,
-    /// log₂ 2P.
+    /// Information on the material, log₂ 2P with P = Φ(d), bits.
     pub information_bits: Option<f64>,
     /// Mutual information of the binary decision.
     pub mutual_information_bits: Option<f64>,
@@ -238,9 +238,9 @@ impl PairResult {
 /// Whether a category that matters for safety is excluded where the target is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SafetyOfTarget {
-    /// Its name.
+    /// Name of the category that matters for safety.
     pub category: String,
-    /// What is there.
+    /// Name of the material that is in the place of the target.
     pub target: String,
     /// Whether the target is of the category itself.
     pub is_target: bool,
@@ -256,7 +256,7 @@ pub struct SafetyOfTarget {
 /// A material of a category that matters for safety, against the target.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SafetyMaterial {
-    /// Its name.
+    /// Name of the material in the library.
     pub material: String,
     /// Whether it is among the alternatives: if not, nothing is known of it.
     pub compared: bool,

@@ -17,17 +17,17 @@ use std::collections::BTreeMap;
 /// A library out of a cube.
 #[derive(Debug, Clone, Serialize)]
 pub struct LibraryFound {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: LibraryScenario,
     /// What the file of the cube was read as.
     pub read: hadar_formats::cube::Found,
-    /// Rows, columns and bands.
+    /// Numbers of rows, columns and bands of the cube.
     pub shape: Shape,
     /// Mean wavenumber of each band, cm⁻¹.
     pub wavenumbers_cm1: Vec<f64>,
     /// Lowest and highest wavenumber at which a band is sampled, cm⁻¹.
     pub range_cm1: [f64; 2],
-    /// All pixels.
+    /// Number of all pixels of the cube.
     pub pixels: usize,
     /// Pixels with one cluster left.
     pub decided: usize,
@@ -88,7 +88,7 @@ pub struct ClusterRow {
     pub pixels: usize,
     /// Median of their temperatures, K.
     pub temperature_median_k: f64,
-    /// Mean of the emissivity.
+    /// Mean emissivity of the cluster over all bands, 0 to 1.
     pub emissivity_mean: f64,
     /// The emissivity and its errors.
     #[serde(flatten)]

@@ -59,7 +59,7 @@ pub struct Ranging {
     pub read: Option<Found>,
     /// Rows, columns and bands of a view.
     pub shape: Shape,
-    /// Where the cameras stand and what a pixel of disparity means.
+    /// Positions of the cameras, and the depth that a pixel of disparity means.
     pub geometry: Geometry,
     /// Bounds, object by object; the first is all of them together.
     pub objects: Vec<ObjectBounds>,
@@ -80,7 +80,7 @@ pub struct Ranging {
     /// Windows that hold a missing sample, and have no bound; none where there are none.
     #[serde(skip_serializing_if = "is_none")]
     pub missing_windows: usize,
-    /// Row and column of the view, from 0, that the first value of the maps stands for: the centre of the first window.
+    /// Row and column of the view, from 0, to which the first value of the maps belongs: the centre of the first window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub maps_begin_at: Option<[usize; 2]>,
     /// What was computed and what was skipped.
@@ -95,7 +95,7 @@ pub struct Ranging {
 /// Bad pixels of a view.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct BadInView {
-    /// `left` or `right`.
+    /// The view that it is about: `left` or `right`.
     pub view: &'static str,
     /// How many pixels are bad, by why.
     pub pixels: Vec<BadPixels>,
@@ -119,9 +119,9 @@ pub struct DepthVerdict {
     /// Share of the windows that reach it by the heat cube: of a cube those without a bound (no depth, a missing sample, no partner in the
     /// right view) are counted, as not reaching it.
     pub share: Option<f64>,
-    /// Share demanded.
+    /// Share of the windows that must meet the requirement, 0 to 1.
     pub required_share: f64,
-    /// The signal that decides.
+    /// Name of the signal by which the verdict is given.
     pub signal: Signal,
     /// Windows that were judged: those with a bound and a depth.
     pub windows: usize,
@@ -163,7 +163,7 @@ pub enum DepthFinding {
 pub struct Geometry {
     /// Distance of the cameras, m.
     pub baseline_m: f64,
-    /// Focal length, m.
+    /// Focal length of both cameras, m.
     pub focal_length_m: f64,
     /// Distance of the pixels, m.
     pub pixel_m: f64,
@@ -178,24 +178,24 @@ pub struct Geometry {
 /// Bounds of the windows on one object.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ObjectBounds {
-    /// Which.
+    /// Name of the object in the scene.
     pub name: String,
     /// Windows that both cameras see.
     pub windows: usize,
     /// Least, median and largest depth, m; `None` where depth is not known.
     pub depth_m: Option<[f64; 3]>,
-    /// What each signal gives.
+    /// The bounds of each signal on this object.
     pub signals: Vec<SignalBounds>,
 }
 
 /// Bounds of an object's windows by one signal: medians over the windows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SignalBounds {
-    /// Which.
+    /// Name of the signal to which these bounds apply.
     pub signal: Signal,
     /// How many have a bound; not those in which a sample is 0 and has no noise, whose information has no value.
     pub windows: usize,
-    /// Photons of a window.
+    /// Median number of photons of a window.
     pub photons: f64,
     /// γ: electronic noise over shot noise of a window.
     pub gamma: f64,
@@ -203,7 +203,7 @@ pub struct SignalBounds {
     pub information_per_px2: f64,
     /// Deviation σ_c of one photon by correspondence, pixels; infinite without texture.
     pub sigma_correspondence_px: f64,
-    /// Least disparity error, pixels.
+    /// Least error of the disparity of a window, pixels.
     pub disparity_error_px: f64,
     /// Least depth error: the tenth, the half and nine tenths of the windows stay below, m.
     pub depth_error_m: Option<[f64; 3]>,
@@ -220,11 +220,11 @@ pub struct SignalBounds {
 pub struct CellMedians {
     /// Neither spatial nor spectral resolution.
     pub total: f64,
-    /// Spatial resolution alone.
+    /// Information with spatial but without spectral resolution.
     pub spatial: f64,
-    /// Spectral resolution alone.
+    /// Information with spectral but without spatial resolution.
     pub spectral: f64,
-    /// Both.
+    /// Information with both spatial and spectral resolution.
     pub full: f64,
     /// The last by another derivative (cubic spline, or central if that is the one asked for), over that asked for.
     pub other_derivative: Option<f64>,
@@ -237,7 +237,7 @@ pub struct DepthSolutions {
     pub signal: Signal,
     /// Depth of the window that decides, m.
     pub depth_m: f64,
-    /// Its row and column.
+    /// Row and column of the window that decides.
     pub pixel: [usize; 2],
     /// Largest depth at which this window would do, if texture and window stay on the object, m.
     pub farthest_on_object_m: Option<f64>,
@@ -256,15 +256,15 @@ pub struct DepthSolutions {
 /// Bounds and witnesses along a row of the left view.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Line {
-    /// Row.
+    /// Row of the left view, counted from 0.
     pub row: usize,
-    /// Signal.
+    /// Name of the signal that is matched.
     pub signal: Signal,
     /// Method of matching; `None` for the bound alone.
     pub method: Option<&'static str>,
     /// Columns of the windows' centres.
     pub columns: Vec<usize>,
-    /// True depth, m.
+    /// True depth of the window, m.
     pub depth_m: Vec<f64>,
     /// Least depth error, m; of the disparity in pixels where depth is not known, as all that follows.
     pub bound_m: Vec<f64>,
@@ -272,20 +272,20 @@ pub struct Line {
     pub bound_without_diffraction_m: Vec<f64>,
     /// Root-mean-square depth error of the matches, m.
     pub rmse_m: Vec<f64>,
-    /// Mean depth error, m.
+    /// Mean error of the estimated depth, m.
     pub bias_m: Vec<f64>,
     /// Share of matches that fail or miss by more than a pixel.
     pub outliers: Vec<f64>,
     /// Median over the columns of the scatter of the matches, √(RMSE² − bias²), over the bound without diffraction.
     pub scatter_over_bound: Option<f64>,
-    /// Trials.
+    /// Number of noisy pairs of views that were matched.
     pub trials: usize,
 }
 
 /// A whole view matched once, with noise.
 #[derive(Debug, Clone, Serialize)]
 pub struct Matched {
-    /// Signal.
+    /// Name of the signal that is matched.
     pub signal: Signal,
     /// How far the depths are from the truth.
     pub metrics: DepthMetrics,

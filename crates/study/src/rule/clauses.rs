@@ -40,7 +40,7 @@ pub struct RuleAnswer {
     pub clauses: Vec<ClauseAnswer>,
     /// What the reader must know; what concerns one camera is with that camera.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -48,9 +48,9 @@ pub struct RuleAnswer {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CameraAnswer {
-    /// Its name.
+    /// Name of the camera, as the rule names it.
     pub name: String,
-    /// What comes of it.
+    /// Whether the camera meets the rule: yes, no or undecided.
     pub verdict: Verdict,
     /// Whether it meets the rule.
     pub passes: bool,
@@ -78,9 +78,9 @@ pub struct CameraAnswer {
 pub struct ClauseAnswer {
     /// Its name; none of a rule without clauses.
     pub name: Option<String>,
-    /// Its kind, e.g. `tell-apart`.
+    /// The kind of the clause as the rule names it, such as `tell-apart`.
     pub kind: &'static str,
-    /// Its wording.
+    /// The text of the clause in the rule.
     pub text: Option<String>,
     /// How the vehicle comes to a stop, if that is said.
     pub stop: Option<StopResult>,
@@ -101,17 +101,17 @@ pub enum Found {
     Measured(MeasuredAnswer),
 }
 
-/// A clause that tells materials apart.
+/// A clause that requires materials to be distinguished.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct ApartAnswer {
-    /// What is demanded.
+    /// What the clause requires of a camera.
     pub requirement: RuleRequirement,
-    /// Where it is demanded.
+    /// The operating envelope over which it is required.
     pub envelope: EnvelopeResult,
     /// Every camera, in the order of the rule.
     pub cameras: Vec<CameraVerdict>,
-    /// The part of the envelope in which no camera could do it; `None` where only the verdict was asked for.
+    /// The part of the operating envelope in which no camera could do it; `None` where only the verdict was asked for.
     pub not_identifiable: Option<NotIdentifiable>,
     /// What sizing practice says of every camera at its worst distance, where the rule says how large the target is.
     pub companions: Vec<Companion>,
@@ -124,7 +124,7 @@ pub struct ApartAnswer {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct MeasuredAnswer {
-    /// Which.
+    /// Name of the quantity that is required.
     pub quantity: Measure,
     /// How much of it, in the unit of the quantity.
     pub demanded: f64,
@@ -188,9 +188,9 @@ pub enum Measure {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct MeasuredVerdict {
-    /// Its name.
+    /// Name of the camera, as the rule names it.
     pub name: String,
-    /// What comes of it.
+    /// Whether the camera meets the clause: yes, no or undecided.
     pub verdict: Verdict,
     /// Whether it meets the clause.
     pub passes: bool,
@@ -222,14 +222,14 @@ pub struct MeasuredVerdict {
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 #[non_exhaustive]
 pub struct MeasuredScene {
-    /// Distance, m.
+    /// Distance of the target from the camera, m.
     pub distance_m: Option<f64>,
     /// How far the target moves across the line of sight while a frame is exposed, m, where that is what limits the pixels on it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smear_m: Option<f64>,
-    /// What is looked at.
+    /// Name of the material of the target.
     pub target: Option<String>,
-    /// Its temperature, K.
+    /// Temperature of the target in that scene, K.
     pub temperature_k: Option<f64>,
     /// Lighting factor of every object.
     pub lighting: Vec<f64>,

@@ -10,13 +10,13 @@ const SAME: f64 = 1e-3;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct TestResult {
-    /// The camera.
+    /// Name of the camera that is tested.
     pub camera: String,
     /// The clause; all of them together where `None`.
     pub clause: Option<String>,
     /// Whether everything expected was found.
     pub passes: bool,
-    /// One by one.
+    /// Each expected result with what was found.
     pub checks: Vec<TestCheck>,
 }
 
@@ -26,7 +26,7 @@ pub struct TestResult {
 pub struct TestCheck {
     /// Its key in the test, with the unit it is told in.
     pub what: &'static str,
-    /// What is expected.
+    /// The result that the rule's author expects.
     pub expected: Told,
     /// What was found; `None` where nothing is said of it.
     pub found: Option<Told>,

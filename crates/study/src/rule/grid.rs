@@ -26,7 +26,7 @@ use hadar_scenario::rule::{Clause, Demand, StopSpec, Verdict};
 pub struct Grid {
     /// Every cell: clause by clause, light by light, speed by speed.
     pub cells: Vec<GridCell>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -40,7 +40,7 @@ pub struct GridCell {
     pub light: Option<String>,
     /// Speed of the vehicle, m s⁻¹.
     pub speed_m_s: f64,
-    /// Distance at which the decision must stand, m.
+    /// Distance at which the decision is due, m.
     pub decision_distance_m: f64,
     /// Every camera, in the order of the rule.
     pub cameras: Vec<CameraInCell>,
@@ -50,9 +50,9 @@ pub struct GridCell {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CameraInCell {
-    /// The camera.
+    /// Name of the camera, as the rule names it.
     pub camera: String,
-    /// What comes of it.
+    /// Whether the camera meets the rule in this cell: yes, no or undecided.
     pub verdict: Verdict,
     /// What is there over what is demanded.
     pub margin: f64,

@@ -16,7 +16,7 @@ pub struct Market {
     pub undecided: f64,
     /// Of those that do not.
     pub fails: f64,
-    /// What is left.
+    /// Share of the market that belongs to no camera of the rule, 0 to 1.
     pub not_stated: f64,
 }
 

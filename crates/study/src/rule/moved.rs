@@ -19,7 +19,7 @@ const KELVIN: f64 = 3.0;
 /// Kelvins below which they are a difference.
 const LEAST_KELVIN: f64 = 100.0;
 
-/// What hangs on the figures of a rule.
+/// Sensitivity of the verdicts to the figures of a rule.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct FiguresMoved {
@@ -27,7 +27,7 @@ pub struct FiguresMoved {
     pub law: Vec<BeforeLaw>,
     /// Every number moved, those first that change most.
     pub figures: Vec<Moved>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -37,7 +37,7 @@ pub struct FiguresMoved {
 pub struct Moved {
     /// The figure, with the place in its list.
     pub key: String,
-    /// Its value.
+    /// Value of the figure as the rule states it, with its unit.
     pub value: String,
     /// What stood in its place.
     pub moved_to: String,

@@ -21,7 +21,7 @@ pub struct Reforms {
     pub market: Option<Market>,
     /// The same by each reform.
     pub reforms: Vec<Reformed>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -31,11 +31,11 @@ pub struct Reforms {
 pub struct Reformed {
     /// What the reform is called.
     pub name: String,
-    /// What became of it.
+    /// Status of the reform, as its file states it.
     pub status: Option<String>,
     /// The day from which it would hold.
     pub from: Option<String>,
-    /// What stands in the place of the law's own values.
+    /// Values that replace those of the law.
     pub set: Vec<Setting>,
     /// What says so.
     #[serde(flatten)]
@@ -52,17 +52,17 @@ pub struct Reformed {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct BeforeLaw {
-    /// The camera.
+    /// Name of the camera, as the rule names it.
     pub camera: String,
-    /// What comes of it.
+    /// Whether the camera meets the rule: yes, no or undecided.
     pub verdict: Verdict,
-    /// Its least margin.
+    /// Least margin of the camera over all clauses.
     pub margin: f64,
     /// The clause of that margin.
     pub limiting_clause: Option<String>,
     /// Where the least margin decides nothing: what spoils the picture, by the first clause that it fails.
     pub spoiled_by: Vec<Shortfall>,
-    /// That clause.
+    /// The clause that the camera fails for the reasons in `spoiled_by`.
     pub spoiled_clause: Option<String>,
     /// Codes of the conditions of a 'meets' without which it may be none.
     pub conditions: Vec<String>,

@@ -37,11 +37,11 @@ pub struct WhoMeets {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct WithoutPlaceholders {
-    /// Statistical distance over that demanded, least over the envelope.
+    /// Statistical distance over that demanded, least over the operating envelope.
     pub margin: f64,
-    /// Statistical distance, least over the envelope.
+    /// Statistical distance, least over the operating envelope.
     pub statistical_distance: f64,
-    /// Of the target.
+    /// The numbers of which more than one is known of the target.
     pub target: String,
     /// What it is the least against.
     pub alternative: String,
@@ -51,9 +51,9 @@ pub struct WithoutPlaceholders {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct RuleRequirement {
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of any camera.
     pub distance: f64,
-    /// Detection probability demanded, Φ of it.
+    /// Probability of a correct decision demanded, Φ of it.
     pub detection_probability: f64,
     /// Speed at which an image must not be blurred, m s⁻¹.
     pub speed_m_s: Option<f64>,
@@ -85,7 +85,7 @@ pub struct Quotable {
     pub units: Units,
 }
 
-/// The envelope as it was searched.
+/// The operating envelope as it was searched.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct EnvelopeResult {
@@ -99,7 +99,7 @@ pub struct EnvelopeResult {
     pub distance_m: Option<[f64; 2]>,
     /// Materials of the target, and classes whose members all are.
     pub materials: Vec<String>,
-    /// What they must be told apart from.
+    /// What they must be distinguished from.
     pub alternatives: Vec<String>,
     /// The classes among them; empty without.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -110,9 +110,9 @@ pub struct EnvelopeResult {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CameraVerdict {
-    /// Its name.
+    /// Name of the camera, as the rule names it.
     pub name: String,
-    /// What comes of it.
+    /// Whether the camera meets the rule: yes, no or undecided.
     pub verdict: Verdict,
     /// How that is known: the weakest of what it rests on.
     pub grade: Grade,
@@ -128,9 +128,9 @@ pub struct CameraVerdict {
     pub uncertainty: Option<MarginUncertainty>,
     /// What meeting it rests on, hardest first; of a 'no' what was taken on the unfavourable side.
     pub conditions: Vec<Condition>,
-    /// Number of bands.
+    /// Number of spectral bands that the camera measures.
     pub bands: usize,
-    /// How they are read.
+    /// Whether its bands are measured at once or one after the other.
     pub readout: Readout,
     /// Time until all of them are exposed once, s.
     pub sweep_s: f64,
@@ -140,11 +140,11 @@ pub struct CameraVerdict {
     pub statistical_distance: f64,
     /// Φ of it: no test is right more often there.
     pub detection_probability: f64,
-    /// Proved: no scene of the envelope is below, by the lower end of uncertain figures. `None` if nothing is proved.
+    /// Proved: no scene of the operating envelope is below, by the lower end of uncertain figures. `None` if nothing is proved.
     pub lower_bound: Option<f64>,
     /// How sure the limiting scene is.
     pub certificate: Certified,
-    /// The scene that limits.
+    /// The scene of the operating envelope in which the margin is least.
     pub limiting: LimitingScene,
     /// Where that is of a pair entered as one number each: what the camera does without such pairs, if there are others.
     pub without_placeholders: Option<WithoutPlaceholders>,
@@ -214,9 +214,9 @@ impl Certified {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct LimitingScene {
-    /// Material of the target.
+    /// Name of the material of the target.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative that is most similar there.
     pub alternative: String,
     /// Temperature of the target, K.
     pub temperature_k: f64,
@@ -226,7 +226,7 @@ pub struct LimitingScene {
     pub surroundings_k: Vec<f64>,
     /// Distance, m; infinitely far where `None`.
     pub distance_m: Option<f64>,
-    /// Whether the counts at the least and the greatest distance of the envelope differ by more than a thousandth.
+    /// Whether the counts at the least and the greatest distance of the operating envelope differ by more than a thousandth.
     pub distance_matters: bool,
     /// Emissivities of the two where each is entered as one number.
     pub placeholders: Option<[f64; 2]>,
@@ -260,7 +260,7 @@ impl Fixes {
     }
 }
 
-/// The part of an envelope in which no camera could do what the rule demands.
+/// The part of an operating envelope in which no camera could meet the rule.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct NotIdentifiable {
@@ -268,15 +268,15 @@ pub struct NotIdentifiable {
     pub fraction: f64,
     /// Its statistical error, one standard deviation.
     pub standard_error: f64,
-    /// What 'no camera' means.
+    /// What is taken for 'no camera' here, in words.
     pub definition: IdealCamera,
     /// Share in which errors of the emissivities make up more than the distance, whatever the camera.
     pub fraction_within_emissivity_error: f64,
     /// Its statistical error, one standard deviation.
     pub standard_error_within_emissivity_error: f64,
-    /// What that means.
+    /// What the stated error of the emissivities means here, in words.
     pub emissivity_error: EmissivityError,
-    /// Scenes that were drawn.
+    /// Number of scenes that were drawn from the operating envelope.
     pub scenes: usize,
     /// Where those scenes are in which no camera could do it; `None` where there are none.
     pub neighbourhood: Option<Neighbourhood>,
@@ -362,7 +362,7 @@ pub struct ApproachResult {
     pub needed_s: f64,
     /// Frames that it lays over each other.
     pub frames_needed: u32,
-    /// Least time until the decision must stand, s; `None` where nothing is said of the start.
+    /// Least time until the decision is due, s; none where nothing is said of the start.
     pub time_s: Option<f64>,
     /// Frames of all bands that fit into it.
     pub frames_within: Option<u32>,
@@ -378,11 +378,11 @@ pub struct ApproachResult {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CrossingResult {
-    /// How fast, m s⁻¹.
+    /// Speed of the target across the line of sight, m s⁻¹.
     pub speed_m_s: f64,
-    /// How far beside the camera's axis it would be met, at most, m.
+    /// Largest distance from the camera's axis at which it would be met, m.
     pub offset_m: f64,
-    /// How far beside that axis it is until the decision, at most, rad.
+    /// How far compared with that axis it is until the decision, at most, rad.
     pub bearing_rad: f64,
 }
 

@@ -10,20 +10,20 @@ use crate::identify::AT_99;
 use hadar_scenario::decompose::CategorySpec;
 use serde::Serialize;
 
-/// Whether a camera excludes a category that matters for safety, anywhere in the envelope of a clause.
+/// Whether a camera excludes a category that matters for safety, anywhere in the operating envelope of a clause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SafetyOfRule {
-    /// Its name.
+    /// Name of the category that matters for safety.
     pub category: String,
-    /// The camera.
+    /// Name of the camera, as the rule names it.
     pub camera: String,
     /// Whether it is excluded wherever it is not.
     pub excluded: bool,
-    /// The least statistical distance that is proved over the envelope; `None` if nothing is.
+    /// The least statistical distance that is proved over the operating envelope; `None` if nothing is.
     pub statistical_distance_lower: Option<f64>,
     /// Materials of it that the clause does not compare, of which nothing is known.
     pub not_compared: Vec<String>,
-    /// Other materials that it stands beside, which are not compared with it.
+    /// Other materials of its category, which are not compared with it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub not_compared_with: Vec<String>,
     /// What of the materials that are compared is entered as one number: an exclusion rests on it.

@@ -51,7 +51,7 @@ const SEED: u64 = 1;
 /// Share of the demand up to which a tolerance is proved.
 const PROVED: f64 = 0.99;
 
-/// Within which tolerances stand-ins pass for people.
+/// Tolerances within which surrogate targets pass for people.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandInAnswer {
@@ -59,11 +59,11 @@ pub struct StandInAnswer {
     pub clause: Option<String>,
     /// Statistical distance that the rule demands of cameras.
     pub distance: f64,
-    /// Φ of it.
+    /// Largest probability of a correct decision, Φ of that distance.
     pub detection_probability: f64,
     /// Temperatures that a person may have, K.
     pub person_k: [f64; 2],
-    /// Temperature of the stand-in, K.
+    /// Temperature of the surrogate target, K.
     pub temperature_k: f64,
     /// Every camera, person, material and tolerance of the emissivity.
     pub rows: Vec<StandIn>,
@@ -96,40 +96,40 @@ pub struct ShapesDrawn {
     pub count: usize,
     /// Share of all such shapes that have at least the tolerance.
     pub share: f64,
-    /// How sure that is.
+    /// Level of confidence of that statement, 0 to 1.
     pub confidence: f64,
 }
 
-/// One stand-in before one camera.
+/// One surrogate target seen by one camera.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandIn {
-    /// The camera.
+    /// Name of the camera that looks at both.
     pub camera: String,
-    /// Material of the person.
+    /// Name of the material of the person.
     pub person: String,
-    /// Material of the stand-in.
+    /// Name of the material of the surrogate target.
     pub material: String,
-    /// Tolerance of its emissivity.
+    /// Tolerance of the emissivity of the surrogate target, 0 to 1.
     pub emissivity_tolerance: f64,
-    /// Tolerance of its temperature at the edge, K; `None` where it is told from a person at its very temperature. No more than 40 K are
+    /// Tolerance of its temperature at the edge, K; `None` where it is distinguished from a person at its very temperature. No more than 40 K are
     /// looked at.
     pub temperature_tolerance_k: Option<f64>,
     /// The same, proved for all that is within; `None` where nothing is.
     pub temperature_tolerance_proved_k: Option<f64>,
     /// Statistical distance of the farthest at the edge.
     pub distance: f64,
-    /// Where that is.
+    /// The state at the edge of the tolerance in which the surrogate differs most from the person.
     pub farthest: StandInScene,
 }
 
-/// A stand-in and the person that is most like it.
+/// A surrogate target and the person that is most similar to it.
 #[derive(Debug, Clone, serde::Serialize)]
 #[non_exhaustive]
 pub struct StandInScene {
-    /// Difference of its emissivity.
+    /// Difference of the surrogate's emissivity from that of its material.
     pub emissivity_offset: f64,
-    /// Its temperature, K.
+    /// Temperature of the surrogate in that state, K.
     pub temperature_k: f64,
     /// Lighting factor of every object.
     pub lighting: Vec<f64>,
@@ -137,7 +137,7 @@ pub struct StandInScene {
     pub surroundings_k: Vec<f64>,
     /// Temperature of the person, K.
     pub person_temperature_k: f64,
-    /// Lighting of the person.
+    /// Lighting factors of the person in that state, 0 to 1.
     pub person_lighting: Vec<f64>,
 }
 
@@ -255,7 +255,7 @@ impl RuleStudy {
         match (all.as_slice(), named) {
             ([], _) => {
                 let instead = "write [[clause]] with kind = \"tell-apart\"".into();
-                wrong("", "no clause of the rule tells people apart".into(), instead)
+                wrong("", "no clause of the rule distinguishes people".into(), instead)
             }
             (_, Some(named)) => match all.iter().find(|(_, name)| name.as_deref() == Some(named)) {
                 Some(found) => Ok(found.clone()),
@@ -263,13 +263,13 @@ impl RuleStudy {
                     wrong("stand_in.clause", "the rule has no [[clause]]".into(), "leave it out".into())
                 }
                 None => {
-                    let found = format!("no clause `{named}` tells people apart");
+                    let found = format!("no clause `{named}` distinguishes people");
                     wrong("stand_in.clause", found, format!("write one of {}", names.join(", ")))
                 }
             },
             ([one], None) => Ok(one.clone()),
             (_, None) => {
-                let found = format!("{} clauses tell people apart: {}", all.len(), names.join(", "));
+                let found = format!("{} clauses distinguish people: {}", all.len(), names.join(", "));
                 let instead = format!("write clause = {} in [stand_in], or another of them", names[0]);
                 wrong("stand_in", found, instead)
             }

@@ -55,7 +55,7 @@ pub struct MarginUncertainty {
     pub coverage_factor: f64,
     /// Lower end of the interval: the lower one of the two ways.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the interval of the margin.
     pub high: f64,
     /// Standard uncertainty by first order.
     pub first_order: f64,
@@ -69,15 +69,15 @@ pub struct MarginUncertainty {
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Drawn {
-    /// How many.
+    /// Number of draws of the figures.
     pub count: usize,
-    /// Their mean.
+    /// Mean margin over all draws.
     pub mean: f64,
-    /// Their deviation.
+    /// Standard deviation of the margin over all draws.
     pub deviation: f64,
     /// The interval that holds as much as ±k deviations of a Gaussian.
     pub interval: [f64; 2],
-    /// Its lower end by so many draws: 95 of 100 such sets have it above.
+    /// Lower end of the margin by this number of draws: 95 of 100 such sets have it above.
     pub surely_above: f64,
 }
 
@@ -127,13 +127,13 @@ const ROUNDS: usize = 6;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct BudgetLine {
-    /// Its key, or `emissivities`.
+    /// Key of the figure, or `emissivities` for those of the library.
     pub figure: String,
     /// Its value, in the unit used inside.
     pub value: Option<f64>,
-    /// Its standard uncertainty.
+    /// Standard uncertainty of the figure, in `unit`.
     pub uncertainty: f64,
-    /// That unit.
+    /// Unit in which the uncertainty is given.
     pub unit: &'static str,
     /// Standard uncertainty of the margin from it alone; signed: how the margin goes with the figure.
     pub contribution: f64,

@@ -16,7 +16,7 @@ use hadar_simulate::average::{AverageDecisions, AverageScene};
 /// Deviations of a share beyond which it contradicts the bracket, one in 2 000 times by chance.
 const CONTRADICTS: f64 = 3.5;
 
-/// The Bayes test with so many photons.
+/// The Bayes test with a given number of photons.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct AveragePoint {
@@ -29,7 +29,7 @@ pub struct AveragePoint {
     /// What the drawn decisions came to.
     #[serde(flatten)]
     pub decisions: AverageDecisions,
-    /// Whether the share lies between the two, within 3.5 of its own deviations.
+    /// Whether the share lies between the two, within 3.5 of its standard deviations.
     pub bracket_holds: bool,
 }
 
@@ -37,17 +37,17 @@ pub struct AveragePoint {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct AverageSimulation {
-    /// The target.
+    /// Name of the target's material in the library.
     pub target: String,
-    /// The alternative.
+    /// Name of the alternative material in the library.
     pub alternative: String,
-    /// Law of the photons.
+    /// Law by which the photons are distributed.
     pub photon_law: PhotonLaw,
     /// Whether electronic noise was added.
     pub camera_noise: bool,
     /// The law that the likelihoods take the counts to follow.
     pub judged_as: &'static str,
-    /// Seed of the draws.
+    /// Seed from which the counts were drawn.
     pub seed: u64,
     /// A point for each number of photons.
     pub averages: Vec<AveragePoint>,
@@ -55,7 +55,7 @@ pub struct AverageSimulation {
     pub brackets_hold: bool,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 

@@ -52,7 +52,10 @@ impl Study {
         let (Some(target), Some(rival)) =
             (classes.first(), classes.iter().skip(1).min_by(|a, b| a.distance.total_cmp(&b.distance)))
         else {
-            return Err(Error::malformed("there is no alternative to tell the target from", "name one"));
+            return Err(Error::malformed(
+                "there is no alternative to distinguish the target from",
+                "name one",
+            ));
         };
 
         let means: Vec<Vec<f64>> = classes.iter().map(|class| class.means.clone()).collect();

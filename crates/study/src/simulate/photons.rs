@@ -79,7 +79,8 @@ impl Study {
             return Ok(most);
         }
         let names: Vec<&str> = rivals.iter().map(|rival| rival.name.as_str()).collect();
-        let found = format!("no number of photons tells {} from {}", self.target.name, names.join(", "));
+        let found =
+            format!("no number of photons distinguishes {} from {}", self.target.name, names.join(", "));
         let instead = "change the scene, name other alternatives with --against, or photons with --photons";
         Err(Error::malformed(found, instead).at(self.scenario.place("target")))
     }
@@ -105,8 +106,10 @@ impl Study {
         let distances = self.nearest_distances(&rivals)?;
         let least = distances.into_iter().fold(f64::INFINITY, f64::min);
         if !(least > 0.0 && least.is_finite()) {
-            let found =
-                format!("no number of photons tells {} from the nearest alternative", self.target.name);
+            let found = format!(
+                "no number of photons distinguishes {} from the nearest alternative",
+                self.target.name
+            );
             return Err(Error::malformed(
                 found,
                 "name another with --against, or --photons instead of a sweep",

@@ -46,16 +46,16 @@ const HELD: f64 = 1e-3;
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Thermometry {
-    /// The target.
+    /// Name of the target's material in the library.
     pub target: String,
-    /// The camera.
+    /// Name of the camera that reads the temperature.
     pub camera: String,
-    /// Law of the counts.
+    /// Law by which the counts are distributed.
     pub statistics: &'static str,
     /// Units in which its scenario was written.
     #[serde(skip)]
     pub units: Units,
-    /// True lighting factors.
+    /// True lighting factors of the target, 0 to 1.
     pub lighting: Vec<f64>,
     /// Temperatures of the surroundings, K.
     pub environment_k: Vec<f64>,
@@ -65,9 +65,9 @@ pub struct Thermometry {
     pub priors: BTreeMap<&'static str, f64>,
     /// The known sum of the lighting factors.
     pub lighting_total: Option<f64>,
-    /// Spectra at each temperature.
+    /// Number of spectra drawn at each temperature.
     pub trials: usize,
-    /// Seed.
+    /// Seed from which the spectra were drawn.
     pub seed: u64,
     /// Generator that the seed belongs to.
     pub generator: &'static str,
@@ -83,7 +83,7 @@ pub struct Thermometry {
     pub rows: Vec<ThermometryRow>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -91,7 +91,7 @@ pub struct Thermometry {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ThermometryRow {
-    /// True temperature, K.
+    /// True temperature of the target, K.
     pub temperature_k: f64,
     /// Photons of a spectrum, all bands together.
     pub photons: f64,
@@ -110,7 +110,7 @@ pub struct ThermometryRow {
     pub manual: ImagerErrors,
 }
 
-/// Maximum-likelihood estimates of the temperature beside their bound.
+/// Maximum-likelihood estimates of the temperature compared with their bound.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Reader {
@@ -120,9 +120,9 @@ pub struct Reader {
     pub bound_relative_error: f64,
     /// Whether temperature is seen at all.
     pub sight: Sight,
-    /// Bias and errors, K.
+    /// Bias and errors of the estimates of the temperature, K.
     pub errors: Errors,
-    /// Variance beside the bound's, and the verdict; `None` without a bound.
+    /// Variance compared with the bound's, and the verdict; `None` without a bound.
     pub efficiency: Option<ParameterEfficiency>,
     /// The same over all unknown parameters together; `None` if one of them is not seen.
     pub joint: Option<JointEfficiency>,

@@ -49,11 +49,11 @@ pub struct ObjectCurve {
 pub struct ObjectAnswer {
     /// Rows of pixels that the target fills.
     pub rows: f64,
-    /// Columns of them.
+    /// Number of columns of pixels that the object fills.
     pub columns: f64,
-    /// Pixels that it fills.
+    /// Number of pixels that the object fills.
     pub pixels: f64,
-    /// Frames.
+    /// Number of frames that are averaged.
     pub frames: u32,
     /// Statistical distance of one pixel in one frame, as proved and as found.
     pub distance_of_one_bounds: [f64; 2],
@@ -75,7 +75,7 @@ pub struct ObjectAnswer {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct CeilingShare {
-    /// What it is.
+    /// Name of the noise that remains after any number of frames.
     pub label: &'static str,
     /// Its share of the variance.
     pub share: f64,

@@ -16,11 +16,11 @@ use hadar::instrument::Camera;
 use hadar::policy::elasticity::{Elasticity, Lever, elasticity};
 use serde::ser::{SerializeMap, Serializer};
 
-/// What the verdict on a camera hangs on, against the limiting alternative.
+/// Sensitivity of the verdict on a camera, against the limiting alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Sensitivity {
-    /// ∂ln d/∂ln q.
+    /// Relative change of d for a relative change of each figure q, ∂ln d/∂ln q.
     pub elasticities: Elasticities,
     /// What errors of the emissivities do.
     pub emissivity: EmissivityErrors,

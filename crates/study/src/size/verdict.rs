@@ -25,7 +25,7 @@ pub struct VerdictAlone {
     pub verdict: Verdict,
     /// The first alternative found that the camera does not tell; there may be more.
     pub not_told_from: Option<String>,
-    /// What it took.
+    /// What was computed and what was skipped, with the time.
     pub stats: Work,
 }
 
@@ -51,7 +51,7 @@ pub struct Verdict {
     pub lower: Option<f64>,
     /// What it is at most: a state that was found shows it.
     pub upper: Option<f64>,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required of the camera.
     pub required_distance: f64,
     /// The least over that demanded.
     pub margin: Option<f64>,

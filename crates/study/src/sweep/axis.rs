@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// Values of a key at most; more are no table that anybody reads.
 pub(super) const MOST_VALUES: usize = 1_000_000;
-const EXAMPLE: &str = "write KEY=FROM..TO:COUNT, as in camera.exposure=\"1 ms..100 ms:40:log\", or KEY=A,B,C";
+const EXAMPLE: &str =
+    "write KEY=FROM..TO:COUNT, as in --vary camera.exposure=\"1 ms..100 ms:40:log\", or KEY=A,B,C";
 
 /// A key and the values that it takes.
 #[derive(Debug, Clone, PartialEq)]

@@ -28,7 +28,7 @@ pub struct Pair<'a> {
 pub struct BayesianDistance {
     /// d_B per √photon of the nominal state; 0 where no prior helps.
     pub distance: f64,
-    /// Nodes of the average.
+    /// Number of nodes of the average over the priors.
     pub nodes: usize,
     /// Relative change of the distance from half the states.
     pub quadrature_change: f64,

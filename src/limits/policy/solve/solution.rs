@@ -3,7 +3,7 @@
 use super::quantity::Quantity;
 
 /// Why no value suffices where the distance is 0.
-pub(super) const NEVER: &str = "nothing tells the two apart";
+pub(super) const NEVER: &str = "nothing distinguishes the two";
 
 crate::base::named::named! {
     /// Which limit it is; in the order of the codes' letters, in which several are listed.
@@ -53,13 +53,13 @@ impl CapCode {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Cap {
-    /// Which.
+    /// Code of the limit that is broken.
     pub code: CapCode,
     /// The limit, in the unit of the quantity.
     pub limit: f64,
     /// Whether no value meets the task within the limit; else one on the other side of the limit meets it too.
     pub blocks: bool,
-    /// The reason in words.
+    /// Why the value breaks the limit, in words.
     pub reason: String,
 }
 
@@ -77,7 +77,7 @@ pub struct Solution {
     /// Of a speed, the exposure that it holds at, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exposure_s: Option<f64>,
-    /// Why no value suffices, or what sets it beside the statistical distance.
+    /// Why no value suffices, or what limits it apart from the statistical distance.
     pub reason: Option<String>,
     /// Limits that shot noise does not know and the value breaks.
     pub caps: Vec<Cap>,

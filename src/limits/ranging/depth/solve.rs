@@ -87,7 +87,7 @@ pub struct DepthSolution {
     pub camera: f64,
     /// δz at that value, or the least that the quantity alone can reach, m.
     pub sigma_z_m: f64,
-    /// Why no value suffices.
+    /// Why no value meets the requirement, in words.
     pub reason: Option<String>,
 }
 

@@ -63,9 +63,9 @@ pub struct Stats {
     pub windows_proved_below: usize,
     /// Windows whose pixels were all evaluated.
     pub windows_computed: usize,
-    /// Samples that were evaluated.
+    /// Number of samples of the cubes that were evaluated.
     pub samples_evaluated: usize,
-    /// Samples in any window.
+    /// Number of samples that belong to any window.
     pub samples_total: usize,
 }
 

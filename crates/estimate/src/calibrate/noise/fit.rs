@@ -19,15 +19,15 @@ pub(super) struct Bin {
 pub struct Line {
     /// Variance of the electronic noise a, unit² of the cube.
     pub electronic: f64,
-    /// Standard error of it.
+    /// Standard error of the electronic variance a, unit² of the cube.
     pub sigma_electronic: f64,
     /// What one photon is in the unit of the cube: b.
     pub per_photon: f64,
-    /// Standard error of it.
+    /// Standard error of b, unit of the cube per photon.
     pub sigma_per_photon: f64,
     /// Relative variance of gains c; 0 where it is not fitted.
     pub spread: f64,
-    /// Standard error of it.
+    /// Standard error of the relative variance c of the gains.
     pub sigma_spread: f64,
     /// Correlation of the errors of a and b.
     pub correlation: f64,

@@ -35,9 +35,9 @@ pub struct Stripe {
     pub line: usize,
     /// The band, counted from 0.
     pub band: usize,
-    /// Gain g.
+    /// Gain g of the line, 1 of a clean one.
     pub gain: f64,
-    /// Standard error of it.
+    /// Standard error of the gain g.
     pub sigma_gain: f64,
     /// Offset o, in the unit of the cube.
     pub offset: f64,
@@ -90,13 +90,13 @@ pub struct Kept {
     pub line: usize,
     /// The band, counted from 0.
     pub band: usize,
-    /// Why.
+    /// Why the line was left as it was.
     pub why: Why,
     /// How far it looks off; NaN where that is not known.
     pub off: f64,
 }
 
-/// How lines of a band scatter about what those beside them lead to expect, over the level of the band.
+/// How lines of a band scatter about what their neighbours lead to expect, over the level of the band.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Apart {
@@ -126,11 +126,11 @@ impl Destriped {
 /// The stripes of a cube.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Destriped {
-    /// Along what they lie.
+    /// Direction of the stripes: rows or columns.
     pub axis: Axis,
-    /// Lines of the cube.
+    /// Number of lines of the cube along that direction.
     pub lines: usize,
-    /// Bands of the cube.
+    /// Number of spectral bands of the cube.
     pub bands: usize,
     /// The stripes, by line and band.
     pub stripes: Vec<Stripe>,
@@ -142,7 +142,7 @@ pub struct Destriped {
     pub detectable: Vec<f64>,
     /// The same as a gain at the level of each band.
     pub detectable_gain: Vec<f64>,
-    /// How the lines of each band differ from those beside them; none of too few lines.
+    /// How the lines of each band differ from those compared with them; none of too few lines.
     pub apart: Vec<Option<Apart>>,
     /// Median of the lines of each band.
     pub levels: Vec<f64>,

@@ -12,7 +12,7 @@ const LARGE: f64 = 0.01;
 pub struct BruteForcePlan {
     /// How many scenes of every set of unknowns.
     pub scenes_per_set: u64,
-    /// Which ones.
+    /// Seed that determines which cases are drawn.
     pub seed: u64,
     /// One case alone, by its number.
     pub only: Option<u64>,
@@ -52,16 +52,16 @@ impl Judged {
 pub struct Failure {
     /// Number of the case: with the seed it says all there is to say.
     pub case: u64,
-    /// What is wrong.
+    /// What is wrong in this case, in words.
     pub what: String,
 }
 
 /// How the cases of one set of unknowns went.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct SetReport {
-    /// What is unknown.
+    /// Names of the unknowns of this set.
     pub unknown: String,
-    /// Cases.
+    /// Number of cases of this set.
     pub cases: u64,
     /// Cases with a false statement: in these, `first_failures` say which.
     pub failures: u64,
@@ -77,7 +77,7 @@ pub struct SetReport {
     pub far_above: u64,
     /// Largest excess, as a share, and its case.
     pub worst_excess: f64,
-    /// See `worst_excess`.
+    /// Number of the case with the largest excess, `worst_excess`.
     pub worst_case: u64,
     /// Cases with a lower bound within the tolerance.
     pub proved: u64,
@@ -89,11 +89,11 @@ pub struct SetReport {
     pub error_wrong: u64,
     /// Cases in which the brute force ended above the way down from the answer's own state: how good a witness it is.
     pub missed: u64,
-    /// The last such case.
+    /// Number of the last case that the brute force missed.
     pub missed_case: Option<u64>,
     /// Mean time of the solver and of the brute force, s.
     pub mean_solver_s: f64,
-    /// See `mean_solver_s`.
+    /// Mean time of the brute force for a case, s.
     pub mean_brute_force_s: f64,
     /// Longest time of the solver, s.
     pub longest_solver_s: f64,
@@ -102,13 +102,13 @@ pub struct SetReport {
 /// A plan with how it went.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BruteForceReport {
-    /// Cases of every set.
+    /// Number of cases of every set of unknowns.
     pub scenes_per_set: u64,
-    /// Seed.
+    /// Seed from which the cases were drawn.
     pub seed: u64,
     /// Cases with a false statement.
     pub failures: u64,
-    /// Every set of unknowns.
+    /// One report for every set of unknowns.
     pub sets: Vec<SetReport>,
 }
 

@@ -3,9 +3,9 @@
 /// One scene near equilibrium: what its distance keeps of its digits.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Point {
-    /// Case.
+    /// Number of the case in its family.
     pub case: u64,
-    /// |T − T₀|/T₀.
+    /// Relative difference of the temperatures of target and surroundings, |T − T₀|/T₀.
     pub apart: f64,
     /// 1 − V: the part of the hemisphere that is dark.
     pub unlit: f64,

@@ -15,7 +15,7 @@ const MOST_DIGITS: f64 = 16.0;
 pub struct Failure {
     /// Number of the case: with the seed it says all there is to say.
     pub case: u64,
-    /// What is wrong.
+    /// What is wrong in this case, in words.
     pub what: String,
 }
 
@@ -27,13 +27,13 @@ pub(super) fn digits(relative_error: f64) -> f64 {
 /// How the cases of one family went.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct FamilyReport {
-    /// Which.
+    /// Name of the family of cases.
     pub family: Family,
-    /// What it stresses.
+    /// Which weakness of the computation the family is meant to find.
     pub stresses: &'static str,
-    /// Cases.
+    /// Number of cases of this family.
     pub cases: u64,
-    /// Comparisons with a reference.
+    /// Number of comparisons with a reference computation.
     pub comparisons: u64,
     /// Cases in which anything was wrong.
     pub failures: u64,
@@ -54,13 +54,13 @@ pub struct FamilyReport {
 /// A plan with how it went.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct StressReport {
-    /// Cases.
+    /// Number of cases of every family.
     pub cases: u64,
-    /// Seed.
+    /// Seed from which the cases were generated.
     pub seed: u64,
     /// Cases in which anything was wrong.
     pub failures: u64,
-    /// Every family.
+    /// One report for every family of cases.
     pub families: Vec<FamilyReport>,
     /// Scenes near equilibrium, for a picture.
     pub points: Vec<Point>,

@@ -175,13 +175,13 @@ fn estimates(result: &AirRanging) -> String {
         ]);
     }
     let mut out = format!(
-        "Maximum likelihood beside the bound, {} spectra at each distance (95 % intervals), seed {}\n{}",
+        "Maximum likelihood compared with the bound, {} spectra at each distance (95 % intervals), seed {}\n{}",
         result.trials,
         result.seed,
         table.text()
     );
     out.push_str(
-        "  where the bound is not small beside the distance the estimate is biased and the bound, of unbiased ones, says little; at edge: fits \
+        "  where the bound is not small compared with the distance, the estimate is biased and the bound, of unbiased ones, says little; at edge: fits \
          that end at an end of the table of the air\n\n",
     );
     out
@@ -191,7 +191,7 @@ fn assumptions(result: &AirRanging) -> String {
     let sight = &result.sight;
     let mut out = format!("{ASSUMPTIONS}\n");
     let unknown = if sight.unknown.is_empty() { "nothing".to_owned() } else { sight.unknown.join(", ") };
-    let _ = writeln!(out, "  unknown besides the distance: {unknown}");
+    let _ = writeln!(out, "  unknown in addition to the distance: {unknown}");
     if let Some(errors) = result.scenario.unknown.emissivity {
         let _ = writeln!(
             out,
@@ -229,8 +229,8 @@ fn assumptions(result: &AirRanging) -> String {
 /// Below the pictures of one pixel.
 pub(crate) fn one_reading(result: &AirRanging) -> String {
     let unknown = match result.sight.unknown.is_empty() {
-        true => "nothing unknown besides".to_owned(),
-        false => format!("unknown besides: {}", result.sight.unknown.join(", ")),
+        true => "nothing else unknown".to_owned(),
+        false => format!("unknown in addition: {}", result.sight.unknown.join(", ")),
     };
     format!("{}, {} bands, one pixel, one reading; {unknown}.", result.camera, result.bands.len())
 }

@@ -84,7 +84,7 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
          in every sample.\n",
         match &result.scene {
             Some(scene) if scene.sigma_pixel.is_some() =>
-                "of each pixel its own (errors of its own calibration in sigma_pixel.npy)",
+                "one for each pixel (errors of its calibration in sigma_pixel.npy)",
             _ => "the same in all pixels",
         },
         sent_by(&result.scenario.blackbodies),

@@ -95,8 +95,8 @@ fn sentence(result: &NoiseFound) -> String {
     if let (None, true, Some(terms)) = (usable, result.scenario.noise.uniform, &result.three_dimensional) {
         let of = |place: usize| significant(terms[place].sigma()[0], 3);
         return format!(
-            "Beside {} of each pixel from frame to frame, {} stay from pixel to pixel, {} from row to row and {} from column to column (unit of \
-             the cube); frames of one brightness do not tell photons from electronic noise.",
+            "In addition to {} of each pixel from frame to frame, {} remain from pixel to pixel, {} from row to row and {} from column to column (unit of \
+             the cube); frames of one brightness do not distinguish photons from electronic noise.",
             of(0),
             of(1),
             of(2),

@@ -40,7 +40,7 @@ pub fn text(result: &StripesFound) -> String {
     let mut out = match result.striped {
         0 if !also.is_empty() => format!("Nothing was corrected: {also}.\n\n"),
         0 if differing > 0.0 => format!(
-            "None of the {name} alone stands out, but all {} of them differ from those beside them by up to {} % (rms), which the scene's own \
+            "None of the {name} alone is conspicuous, but all {} of them differ from their neighbours by up to {} % (rms), which the scene's own \
              structure or stripes of every one of them explain alike.\n\n",
             found.lines,
             significant(100.0 * differing, 2)
@@ -67,7 +67,7 @@ pub fn text(result: &StripesFound) -> String {
     let _ = writeln!(
         out,
         "  lines, each alone among clean ones, that are off by less than {} (unit of the cube, or a gain off by {} %; {} and {} % in the worst band) are not seen and stay as they are\n  \
-         nor are lines side by side, or at the ends of the image, that are off in all bands: nothing tells them from the scene",
+         nor are lines side by side, or at the ends of the image, that are off in all bands: nothing distinguishes them from the scene",
         significant(least, 2),
         significant(100.0 * least_gain, 2),
         significant(most, 2),
@@ -76,7 +76,7 @@ pub fn text(result: &StripesFound) -> String {
     let _ = writeln!(
         out,
         "  all lines that are not striped are bit by bit those of the cube\n\n{ASSUMPTIONS}\n  A striped line reads g x + o along its whole \
-         length, gains are 1 +- {}; the clean lines beside it say what it should read.\n",
+         length, gains are 1 +- {}; the clean lines next to it say what it should read.\n",
         significant(result.scenario.stripes.gain_deviation, 2)
     );
     out + &warnings(&result.warnings)

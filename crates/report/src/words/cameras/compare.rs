@@ -56,10 +56,10 @@ fn photons(ratio: f64, a: &str, b: &str) -> String {
 }
 
 fn noises(ratios: &Comparison, a: &str, b: &str) -> String {
-    let only = |noisy: &str| format!("only {noisy} has noise beside theirs");
+    let only = |noisy: &str| format!("only {noisy} has noise other than theirs");
     match ratios.noise_over_photons {
         None if ratios.b.noise_counts > 0.0 => only(b),
-        None => "neither has noise beside theirs".into(),
+        None => "neither has noise other than theirs".into(),
         Some(0.0) => only(a),
         Some(ratio) if same(ratio) => "both have the same noise for their photons".into(),
         Some(ratio) => {
@@ -81,7 +81,7 @@ fn incomplete(a: &Sheet, b: &Sheet) -> String {
     let mut lacking: Vec<String> = [a, b].into_iter().filter_map(lacks).collect();
     lacking.dedup();
     format!(
-        "Which of {} and {} tells more apart cannot be said: no document that was read states {}.",
+        "Which of {} and {} distinguishes more cannot be said: no document that was read states {}.",
         a.preset.name,
         b.preset.name,
         lacking.join(", or ")
@@ -146,10 +146,10 @@ pub(crate) fn caveats(both: &SideBySide) -> Vec<String> {
         let figures = &sheet.preset.figures;
         match (figures.spectral_bands, figures.readout) {
             (Some(1), None | Some(Readout::Sequential)) => all.push(format!(
-                "{name} has one band of its own: a spectrum takes filters, one after the other, here without loss"
+                "{name} separates no bands: a spectrum takes filters, one after the other, here without loss"
             )),
             (Some(1), Some(readout)) => all.push(format!(
-                "{name} has one band of its own and is modelled as if it read a whole spectrum, {}",
+                "{name} separates no bands and is modelled as if it read a whole spectrum, {}",
                 readout.name()
             )),
             _ => {}

@@ -78,7 +78,7 @@ pub(crate) fn alone(both: &SideBySide) -> Vec<Row> {
         }),
         row(
             "hardware_m2_s",
-            "t A_p / ((1+gamma) F^2)",
+            "H = t A_p / ((1+gamma) F^2)",
             |h| format!("{} m^2 s", significant(h, 3)),
             &|sheet| sheet.worked.as_ref().map(|worked| worked.figures.hardware_m2_s),
         ),
@@ -102,7 +102,7 @@ pub(crate) fn in_scene(both: &SideBySide) -> Vec<Row> {
         row("photons", "photons, all bands", [a.photons, b.photons], |photons| significant(photons, 3)),
         row(
             "noise_counts",
-            "noise of a band beside its photons",
+            "noise of a band without shot noise",
             [a.noise_counts, b.noise_counts],
             |counts| format!("{} counts", significant(counts, 3)),
         ),

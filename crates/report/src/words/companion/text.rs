@@ -28,7 +28,7 @@ const LINES: [(Measure, &str); 9] = [
 
 /// The table as text: a line a measure, the label of its kind before the first of each, then what must be known of them.
 pub(crate) fn text(companion: &Companion, units: Units) -> String {
-    let mut out = String::from("What sizing practice says beside the bound");
+    let mut out = String::from("Rules of thumb of sizing practice, for comparison with the bound");
     match (companion.size_m, companion.distance_m) {
         (Some(size), Some(distance)) => {
             let _ = write!(out, ", of {} at {}", units.length(size), units.length(distance));
@@ -124,7 +124,7 @@ fn value(row: &CompanionRow, units: Units) -> String {
                 _ => String::new(),
             };
             format!(
-                "{}: told from {} with probability {}{pixels}",
+                "{}: distinguished from {} with probability {}{pixels}",
                 significant(distance, 3),
                 other.unwrap_or("the alternative"),
                 probability(distance, 4)
@@ -169,7 +169,7 @@ mod tests {
         let camera = camera();
         let text = text(&companion(Some(&camera), 30.0), Units::default());
         let expected = [
-            "What sizing practice says beside the bound, of 600 mm at 30.0 m",
+            "Rules of thumb of sizing practice, for comparison with the bound, of 600 mm at 30.0 m",
             "  rule of thumb   pixels across it                30.0 (15.0 cycles)",
             "                  range by Johnson's cycles       detect 450 m, orient 320 m, recognise 110 m, identify 70 m",
             "                  range by makers' pixels         detect 600 m, recognise 150 m, identify 75 m",
@@ -177,8 +177,8 @@ mod tests {
             "  observer model  observers who are right (TTPF)  detect > 99 %, orient > 99 %, recognise > 99 %, identify 98 %",
             "                  bars that they resolve (MRTD)   detect below 0.2 K, orient below 0.2 K, recognise below 0.2 K, \
              identify below 0.2 K; factor 2.25",
-            "  bound           d of a pixel, at most           0.500: told from aluminium with probability 0.6915",
-            "                  d of all pixels on it, at most  15.0: told from aluminium with probability more than 0.999999 \
+            "  bound           d of a pixel, at most           0.500: distinguished from aluminium with probability 0.6915",
+            "                  d of all pixels on it, at most  15.0: distinguished from aluminium with probability more than 0.999999 \
              (900 of them, all alike; verdicts are of one)",
         ];
         let lines: Vec<&str> = text.lines().collect();

@@ -150,7 +150,7 @@ pub(super) fn text(found: &Segmented, is_rejected: bool) -> String {
     }
     let rule = match found.rule {
         Rule::Raster => "the decided neighbours before say it (Algorithm 4 of the paper)",
-        Rule::Regions => "what is decided around its region, as far as nothing unknown could change it",
+        Rule::Regions => "what is decided around its region, unless something unknown could change it",
     };
     let _ = writeln!(
         out,

@@ -48,7 +48,7 @@ fn line(row: &SharedRow, all: &[SharedRow]) -> String {
         out.push_str("; hardly told by the pixels");
     }
     for other in row.same_as.iter().filter_map(|i| all.get(*i)) {
-        let _ = write!(out, "; the pixels do not tell it from {}", name(other));
+        let _ = write!(out, "; the pixels do not distinguish it from {}", name(other));
     }
     out
 }
@@ -67,7 +67,7 @@ pub(crate) fn named(unknown: &str, light: Option<usize>, order: Option<usize>) -
         "light-shape" => format!("shape{light}, Legendre polynomial {}", order.unwrap_or(1)),
         "light-path" => format!("path of the light{light} through the air"),
         "light-temperature" => format!("temperature{light}"),
-        "light-missing" => "V of a light besides".to_owned(),
+        "light-missing" => "V of another light".to_owned(),
         "air" => "length of the air's path".to_owned(),
         other => other.to_owned(),
     }

@@ -37,7 +37,7 @@ pub(super) fn text(average: &PriorAverage, target: &str, reliability: &str, stud
     };
     let _ = writeln!(
         out,
-        "Averaged over the priors of both, to distinguish {target} from {alternative} with {reliability} right answers {needed}, by shot noise alone.",
+        "Averaged over the priors of both, to distinguish {target} from {alternative} with a probability of {reliability} {needed}, by shot noise alone.",
     );
     if !average.without_prior.is_empty() {
         let _ = writeln!(

@@ -59,7 +59,8 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
         [one] => one.clone(),
         all => format!("{} alternatives", all.len()),
     };
-    let mut out = format!("Bands that matter for telling {target} from {against}, by the local distance\n");
+    let mut out =
+        format!("Bands that matter for distinguishing {target} from {against}, by the local distance\n");
     if !found.left_out.is_empty() {
         let _ = writeln!(out, "  left out, since not even all bands tell them: {}", listed(&found.left_out));
     }

@@ -8,7 +8,7 @@ pub(crate) const SHARES: &str =
 
 /// Below all materials against all.
 pub(crate) fn all_against_all(by: &str, told_apart: bool) -> String {
-    let both = if told_apart { " A pair counts as told apart only if it is both ways." } else { "" };
+    let both = if told_apart { " A pair counts as distinguished only if it is both ways." } else { "" };
     format!("By the {by} distance; every target in the scenario's state.{both}")
 }
 

@@ -18,7 +18,7 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
     let reliability = words::demanded(study.required_distance());
     let mut out = format!(
-        "{camera} tells {} of {pairs} pairs apart with {reliability} reliability, either of them the target{}\n",
+        "{camera} distinguishes {} of {pairs} pairs with a probability of {reliability}, either of them the target{}\n",
         apart.told_apart.len(),
         told_by(study)
     );
@@ -30,9 +30,9 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
     let names = |pairs: &[[String; 2]]| -> Vec<String> {
         pairs.iter().map(|pair| pair.each_ref().map(|name| short.of(name)).join(" | ")).collect()
     };
-    let _ = writeln!(out, "  told apart      {}", listed(&names(&apart.told_apart)));
+    let _ = writeln!(out, "  distinguished      {}", listed(&names(&apart.told_apart)));
     if !apart.not_told_apart.is_empty() {
-        let _ = writeln!(out, "  not told apart  {}", listed(&names(&apart.not_told_apart)));
+        let _ = writeln!(out, "  not distinguished  {}", listed(&names(&apart.not_told_apart)));
     }
     let mut groups = |heading: &str, groups: &[Vec<String>]| {
         if groups.is_empty() {
@@ -45,13 +45,13 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
         }
     };
     if same_groups(&apart.clusters, &apart.chains) {
-        groups("Clusters of which no two members are told apart", &apart.clusters);
+        groups("Clusters of which no two members are distinguished", &apart.clusters);
     } else {
         groups(
-            "Clusters of which no two members are told apart; members of different clusters may be confused all the same",
+            "Clusters of which no two members are distinguished; members of different clusters may be confused all the same",
             &apart.clusters,
         );
-        groups("Chains: groups held together by pairs that are not told apart", &apart.chains);
+        groups("Chains: groups held together by pairs that are not distinguished", &apart.chains);
     }
     out.push('\n');
     out

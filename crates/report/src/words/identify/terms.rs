@@ -28,5 +28,9 @@ pub(super) fn no_limit(study: &Study) -> String {
 
 /// That it is not told apart: a limit forbids it, a reading that is none does not.
 pub(super) fn does_not_tell(study: &Study) -> &'static str {
-    if study.scenario().requirement.by == DistanceKind::Nearest { "cannot tell" } else { "does not tell" }
+    if study.scenario().requirement.by == DistanceKind::Nearest {
+        "cannot distinguish"
+    } else {
+        "does not distinguish"
+    }
 }

@@ -72,7 +72,7 @@ pub(crate) fn some_of(thinned: usize, step: usize) -> String {
         said += &format!(" One in {thinned} rows and columns is shown; all are in the NPY files.");
     }
     if step > 1 {
-        said += &format!(" The table beside holds one in {} rows and columns.", step * thinned);
+        said += &format!(" The table holds one in {} rows and columns.", step * thinned);
     }
     said
 }

@@ -36,7 +36,7 @@ fn bounds(result: &Ranging) -> String {
     let depth = result.objects.iter().any(|object| object.depth_m.is_some());
     let what = if depth { "Least depth error" } else { "Least disparity error" };
     let mut out = format!(
-        "{what}, median over windows of {} x {} pixels (share of them that reach the demand; none: error above the depth itself)\n",
+        "{what}, median over windows of {} x {} pixels (share of them that meet the requirement; none: error above the depth itself)\n",
         window.rows(),
         window.columns()
     );
@@ -75,7 +75,7 @@ fn bounds(result: &Ranging) -> String {
     line("least disparity error, pixels".into(), &|found| finite(found.disparity_error_px));
     if all.signals.iter().any(|found| found.largest_depth_m.is_some()) && depth {
         let share = 100.0 * result.scenario.requirement.share;
-        let label = format!("depth to which {share} % do, as seen");
+        let label = format!("depth up to which {share} % meet it");
         line(label, &|found| found.largest_depth_m.map_or("-".into(), length));
     }
     out.push_str(&table.text());
@@ -113,8 +113,8 @@ fn cells(result: &Ranging) -> String {
     let Some(cells) = result.cells else { return String::new() };
     let mut out =
         String::from("Information of a window with and without resolution, median, pixel^-2 (Table S4)\n");
-    let rows = [("bands together", cells.total, cells.spatial), ("bands apart", cells.spectral, cells.full)];
-    let mut table = Columns::new([left("", 14), right("pixels together", 17), right("pixels apart", 12)]);
+    let rows = [("bands summed", cells.total, cells.spatial), ("bands resolved", cells.spectral, cells.full)];
+    let mut table = Columns::new([left("", 14), right("pixels summed", 17), right("pixels resolved", 12)]);
     for (label, joined, apart) in rows {
         table.row([label.to_owned(), finite(joined), finite(apart)]);
     }
@@ -141,7 +141,7 @@ fn changes(result: &Ranging) -> String {
     let Some(solve) = &result.solve_for else { return String::new() };
     let share = 100.0 * result.scenario.requirement.share;
     let mut out = format!(
-        "What would just meet it, by the {}: {share} % of the windows within the demand\n",
+        "Values that just meet the requirement, by the {}: {share} % of the windows within the demand\n",
         solve.signal.name()
     );
     let mut line = |label: &str, solution: &Solution, shown: &dyn Fn(f64) -> String| {
@@ -172,8 +172,8 @@ fn changes(result: &Ranging) -> String {
     }
     let _ = writeln!(
         out,
-        "  each holds for all windows together, the others as they are; now the window at row {}, column {}, {} away decides; \
-         another exposure needs noise_exposure beside it, else its noise is taken to be stated there\n",
+        "  each with the other figures unchanged, for all windows together; the deciding window is at row {}, column {}, {} away; \
+         another exposure needs noise_exposure as well, else its noise is taken to be stated there\n",
         solve.pixel[0],
         solve.pixel[1],
         length(solve.depth_m)

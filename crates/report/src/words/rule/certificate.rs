@@ -131,7 +131,7 @@ pub const WORDS: [[&str; 2]; 12] = [
     ],
     [
         "d",
-        "statistical distance: how far two materials are apart in what is counted; a decision is right with the probability written beside it",
+        "statistical distance: how different two materials are in the counts, in standard deviations; a decision is right with the probability given with it",
     ],
     ["motion blur", "the picture of the target moves by a pixel or more while it is taken"],
     ["out of view", "the target is not in the camera's field of view long enough before the decision"],
@@ -142,7 +142,7 @@ pub const WORDS: [[&str; 2]; 12] = [
     ],
     [
         "emissivity",
-        "how much of its own heat a surface sends out; the rest of what is seen of it is mirrored surroundings",
+        "the fraction of a blackbody's radiation that a surface emits; the rest of what is seen of it is reflected from the surroundings",
     ],
     [
         "V",
@@ -185,7 +185,7 @@ fn look_alikes(rule: &Rule) -> Option<String> {
     }
     (!silent.is_empty()).then(|| {
         format!(
-            "What the target must be told from may have any {}: the rule sets no range.",
+            "What the target must be distinguished from may have any {}: the rule sets no range.",
             silent.join(" and any ")
         )
     })
@@ -249,8 +249,8 @@ fn details(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> D
 
 /// What is true of every rule.
 const ALWAYS: [&str; 3] = [
-    "the margin is the least statistical distance over the envelope, over that demanded; no test is right more often than the probability in \
-     the table, averaged over the limiting scene and its nearest look-alike",
+    "the margin is the least statistical distance over the operating envelope, divided by the required one; no test is right more often than the probability in \
+     the table, averaged over the limiting scene and its closest confuser",
     "it is a limit of physics: a camera that falls short of the distance cannot do the task with any software; one that reaches it may, if its \
      software comes near the limit",
     "figures of cameras are those of the documents named with them; nothing was measured here",
@@ -272,7 +272,7 @@ fn budgets(clause: &ClauseAnswer, out: &mut Document) {
     }
 }
 
-/// A clause that tells materials apart.
+/// A clause that requires materials to be distinguished.
 fn of_apart(apart: &ApartAnswer, units: Units, out: &mut Document) {
     out.quote(&apart.requirement.quotable.say());
     let head = [
@@ -280,7 +280,7 @@ fn of_apart(apart: &ApartAnswer, units: Units, out: &mut Document) {
         "meets",
         "margin",
         "d at worst",
-        "right at most",
+        "correct at most",
         "bands",
         "certificate",
         "limiting scene",

@@ -33,7 +33,7 @@ pub(crate) fn below(course: &Course, told: bool) -> String {
         (false, false) => "",
     };
     format!(
-        "{told}The decision must stand {} m ahead; one that comes later leaves the closing speed of the last panel at contact.",
+        "{told}The decision is due {} m ahead; one that comes later leaves the closing speed of the last panel at contact.",
         significant(course.decision.distance_m, 3)
     )
 }

@@ -12,9 +12,9 @@ use hadar_study::{CameraVerdict, ClauseAnswer, Found, MeasuredVerdict, NearestSt
 pub(crate) struct HardestScene {
     /// The clause; none of a rule without clauses.
     pub(crate) clause: Option<String>,
-    /// The camera.
+    /// Name of the camera in that scene.
     pub(crate) camera: String,
-    /// The scene in words.
+    /// The scene in which the margin is least, in words.
     pub(crate) scene: String,
     /// What there is in it over what is demanded.
     pub(crate) margin: f64,

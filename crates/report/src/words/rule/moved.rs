@@ -1,4 +1,4 @@
-//! What hangs on the figures of a rule, in words.
+//! Sensitivity of the verdicts to the figures of a rule, in words.
 
 use crate::text::columns::aligned;
 use hadar::words::share;
@@ -19,13 +19,15 @@ pub fn figures_moved(found: &FiguresMoved) -> String {
         }
     }
     let mut out = match keys.as_slice() {
-        [] => "No verdict hangs on a tenth of any one figure of the rule.\n".to_owned(),
-        keys => format!("Verdicts hang on a tenth of {}: {}.\n", counted(keys.len()), keys.join(", ")),
+        [] => "No verdict changes when any one figure of the rule changes by a tenth.\n".to_owned(),
+        keys => {
+            format!("Verdicts change when {} changes by a tenth: {}.\n", counted(keys.len()), keys.join(", "))
+        }
     };
     for one in &deciding {
         let _ = writeln!(
             out,
-            "  {} at {} in the place of {}: {}",
+            "  {} at {} instead of {}: {}",
             one.key,
             one.moved_to,
             one.value,
@@ -54,7 +56,7 @@ pub fn figures_moved(found: &FiguresMoved) -> String {
     silent.sort_unstable();
     silent.dedup();
     if !silent.is_empty() {
-        let _ = writeln!(out, "\nDecide nothing, a tenth either way: {}", silent.join(", "));
+        let _ = writeln!(out, "\nNo verdict changes with a tenth more or less of: {}", silent.join(", "));
     }
     for one in found.figures.iter().filter(|one| one.refused.is_some()) {
         let why = one.refused.as_deref().unwrap_or_default();
@@ -71,7 +73,7 @@ fn counted(count: usize) -> String {
 /// The title of a report about it.
 pub(crate) fn title_of_figures(rule: Option<&str>) -> String {
     rule.map_or_else(
-        || "What hangs on the figures of a rule".into(),
-        |rule| format!("{rule}: what hangs on its figures"),
+        || "Sensitivity of the verdicts to the figures of a rule".into(),
+        |rule| format!("{rule}: sensitivity to its figures"),
     )
 }

@@ -37,13 +37,13 @@ pub(crate) const REASONS: [[&str; 3]; 10] = [
     ],
     [
         "changed",
-        "a value stands in the place of the rule's own, so that this is another rule",
+        "a value of the rule was replaced, so that this is another rule",
         "leave out --set and --judge",
     ],
     [
         "materials-replaced",
         "materials by a name of this program are others",
-        "leave out --library, or give them names of their own",
+        "leave out --library, or give them different names",
     ],
     ["no-day", "no day was stated on which the rule should hold", "name one with --on"],
     ["no-dates", "the rule does not say when it holds", "write from in [rule]"],
@@ -88,7 +88,7 @@ pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
     };
     let changed: Vec<String> = reasons.iter().filter_map(changed).collect();
     if !changed.is_empty() {
-        let what = "values stand in the place of the rule's own, so that this is another rule";
+        let what = "values of the rule were replaced, so that this is another rule";
         out.push(format!("{what}: {}", changed.join("; ")));
     }
     for reason in reasons {

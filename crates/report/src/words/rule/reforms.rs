@@ -1,4 +1,4 @@
-//! Reforms beside the law, in words.
+//! Reforms compared with the law, in words.
 
 use super::market::of_market;
 use super::sources::from_where;
@@ -10,13 +10,13 @@ use hadar_study::{BeforeLaw, Reformed, Reforms};
 use std::fmt::Write as _;
 
 /// What reforms are held beside the rule for.
-pub const BESIDE: &str = "This holds proposals beside the rule: it changes no certificate.";
+pub const BESIDE: &str = "These are proposals to change the rule: they change no certificate.";
 
-/// A reform beside the rule, as a page shows it.
+/// A reform compared with the rule, as a page shows it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ReformShown {
-    /// What it is called.
+    /// Name by which the reform is shown.
     pub name: String,
     /// What it changes, in a sentence.
     pub changes: String,
@@ -32,7 +32,7 @@ pub struct ReformShown {
 pub struct Change {
     /// By the rule as it is: `yes`, `yes, if`, `undecided` or `no`, with the least margin and its clause.
     pub before: String,
-    /// By the reform.
+    /// Verdict by the reform: `yes`, `yes, if`, `undecided` or `no`, with the least margin and its clause.
     pub after: String,
     /// Whether it is another verdict.
     pub changed: bool,
@@ -131,5 +131,5 @@ pub(super) const fn verdict(of: Verdict, unconditional: bool) -> &'static str {
 
 /// The title of a report about reforms.
 pub(crate) fn title_of_reforms(rule: Option<&str>) -> String {
-    rule.map_or_else(|| "Reforms beside the law".into(), |rule| format!("{rule}: reforms"))
+    rule.map_or_else(|| "Reforms compared with the law".into(), |rule| format!("{rule}: reforms"))
 }

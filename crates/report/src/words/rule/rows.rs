@@ -28,9 +28,9 @@ pub struct Shown {
     pub what_it_is: String,
     /// What the rule says of itself: a label and a text.
     pub about: Vec<(&'static str, String)>,
-    /// Which cameras meet it.
+    /// A sentence that says which cameras meet the rule.
     pub sentence: String,
-    /// Whether it is passed.
+    /// Whether the rule is passed: PASSED, WARNED or FAILED.
     pub result: Outcome,
     /// The same in a sentence.
     pub passed: String,
@@ -40,7 +40,7 @@ pub struct Shown {
     pub market: Option<String>,
     /// Names of the cameras, in the order of all cells.
     pub cameras: Vec<String>,
-    /// Clause by clause.
+    /// The answer to each clause by itself.
     pub clauses: Vec<ClauseShown>,
     /// All clauses together; empty of a rule with one.
     pub whole: Vec<Cell>,
@@ -54,15 +54,15 @@ pub struct Shown {
 pub struct ClauseShown {
     /// Its name, or its kind in words.
     pub name: String,
-    /// Its kind in words.
+    /// The kind of the clause, in words.
     pub kind: String,
-    /// Its wording.
+    /// The text of the clause in the rule.
     pub text: Option<String>,
-    /// Which cameras meet it.
+    /// A sentence that says which cameras meet the clause.
     pub sentence: String,
     /// What it demands, in a sentence that can be quoted.
     pub demanded: String,
-    /// Where and when the decision must stand.
+    /// Where and when the decision is due.
     pub stop: Option<String>,
     /// What else is to be said of it, a sentence each.
     pub remarks: Vec<String>,

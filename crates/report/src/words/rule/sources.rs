@@ -17,7 +17,7 @@ pub fn sources(rule: &Rule) -> String {
         (0..rule.cameras.len()).flat_map(|index| rule.camera_figures(index)).collect();
     let documented = figures.iter().filter(|figure| is_documented(rule, &figure.key)).count();
     let mut out = format!(
-        "{name}: {} figures, {documented} of documents, {} choices of its author, some beside a document.\n",
+        "{name}: {} figures, {documented} of documents, {} choices of its author, some of them with a document.\n",
         figures.len(),
         figures.len() - documented
     );

@@ -17,14 +17,14 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
     out.push_str(&sentence(answer));
     let _ = write!(
         out,
-        "\n\n{}a stand-in at {}, before people of {}; told from them at most {} of the time (d = {})\n\n",
+        "\n\n{}a surrogate target at {}, compared with people of {}; distinguished from them with a probability of at most {} (d = {})\n\n",
         answer.clause.as_ref().map_or_else(String::new, |clause| format!("clause {clause:?}: ")),
         units.temperature(answer.temperature_k),
         units.temperatures(answer.person_k),
         reliability(answer.distance),
         significant(answer.distance, 4)
     );
-    let head = ["camera", "person", "stand-in", "emissivity +-", "temperature +-", "proved"];
+    let head = ["camera", "person", "surrogate", "emissivity +-", "temperature +-", "proved"];
     let mut rows = vec![head.map(str::to_owned)];
     rows.extend(answer.rows.iter().map(|row| {
         [
@@ -45,14 +45,14 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
     }));
     out.push_str(&aligned(&rows, &[3, 4, 5]));
     let by = match answer.of_object {
-        true => "all pixels of the object together count in all bands and frames: shape and motion",
+        true => "all pixels of the object count together, in all bands and frames: shape and motion",
         false => "one pixel counts in all bands and frames: shape, motion and many pixels alike",
     };
     let _ = write!(
         out,
-        "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
-         as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  {}\n  \
-         by what {by} are other questions, and tell more\n",
+        "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the most different surrogate has the distance from every person\n  \
+         that the rule requires of cameras; proved: for all surrogates within the tolerances, in all scenes of the operating envelope\n  {}\n  \
+         counted here: {by} are other questions, and may reveal more\n",
         shapes(answer)
     );
     let others = answer.warnings.iter().filter(|warning| warning.code() != Code::NotInForce);
@@ -87,32 +87,32 @@ fn sentence(answer: &StandInAnswer) -> String {
     let shapes = if answer.shape.is_some() { "95 % of the shapes of " } else { "" };
     match (passes.first(), told.first()) {
         (None, _) if answer.shape.is_some() => {
-            "Of no stand-in do 95 % of the shapes surely pass for a person, even at its very temperature."
+            "For no surrogate target do 95 % of the shapes surely pass for a person, even at exactly the stated temperature."
                 .into()
         }
-        (None, _) => "Every stand-in is told from a person, even at its very temperature.".into(),
+        (None, _) => "Every surrogate target is distinguished from a person, even at exactly the stated temperature.".into(),
         (Some(_), None) if answer.without_errors => format!(
-            "{shapes}All {all} stand-ins pass for a person if spectra are exact and their temperatures are within the tolerances below; errors of \
-             the emissivities are not in it."
+            "{shapes}All {all} surrogate targets pass for a person if spectra are exact and their temperatures are within the tolerances below; errors of \
+             the emissivities are not included."
         ),
         (Some(_), None) => format!(
-            "No camera tells {shapes}any of these {all} stand-ins from a person, if their temperatures are within the tolerances below."
+            "No camera distinguishes {shapes}any of these {all} surrogate targets from a person, if their temperatures are within the tolerances below."
         ),
         (Some(_), Some(_)) => format!(
-            "{shapes}{passing} of {all} stand-ins pass for a person before their camera, within the tolerances below; the others are told{}.",
+            "{shapes}{passing} of {all} surrogate targets pass for a person with their camera, within the tolerances below; the others are distinguished{}.",
             if answer.shape.is_some() { ", or some of their shapes are" } else { "" }
         ),
     }
 }
 
 fn tolerance(kelvin: Option<f64>) -> String {
-    kelvin.map_or_else(|| "told".into(), |kelvin| format!("{} K", significant(kelvin, 3)))
+    kelvin.map_or_else(|| "distinguished".into(), |kelvin| format!("{} K", significant(kelvin, 3)))
 }
 
 /// Below the picture of the tolerances.
 pub(crate) fn below_a_line(distance: f64) -> String {
     format!(
-        "Below a line no test of one pixel tells it from a person more often than {}; open symbols: proved for all within.",
+        "Below a line no test of one pixel distinguishes the surrogate from a person with a probability above {}; open symbols: proved for all tolerances below.",
         reliability(distance)
     )
 }

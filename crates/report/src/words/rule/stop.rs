@@ -9,12 +9,12 @@ pub(super) fn decisions(stop: &StopResult, units: Units) -> String {
     let (slow, fast) = (stop.slowest, stop.fastest);
     let mut said = match slow.speed_m_s == fast.speed_m_s {
         true => format!(
-            "at {} the decision must stand {} ahead",
+            "at {} the decision is due {} ahead",
             units.speed(fast.speed_m_s),
             metres(fast.distance_m, units)
         ),
         false => format!(
-            "at {} to {} the decision must stand {} to {} ahead",
+            "at {} to {} the decision is due {} to {} ahead",
             units.speed(slow.speed_m_s),
             units.speed(fast.speed_m_s),
             metres(slow.distance_m, units),
@@ -42,7 +42,7 @@ pub(super) fn decisions(stop: &StopResult, units: Units) -> String {
             speed => format!("the target, which crosses at {}, is", units.speed(speed)),
         };
         let bearing = significant(crossing.bearing_rad.to_degrees(), 3);
-        said += &format!("; {way} up to {bearing} deg beside the axis until then");
+        said += &format!("; {way} up to {bearing} deg off the axis until then");
     }
     said
 }
@@ -70,7 +70,7 @@ pub(super) fn approach(approach: &ApproachResult, units: Units) -> String {
         None => String::new(),
     };
     format!(
-        "{needed}{fit}; the first is seen from {}; a pixel sees {} where the decision stands{outside}",
+        "{needed}{fit}; the first is seen from {}; a pixel sees {} where the decision is due{outside}",
         metres(approach.seen_from_m, units),
         units.length(approach.footprint_m)
     )

@@ -5,7 +5,7 @@ use super::market::of_market;
 use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
 use crate::text::columns::aligned;
-use crate::text::footing::{gaussian, of_scene, warnings};
+use crate::text::footing::{ASK_MORE, gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use crate::words::Say;
 use crate::words::probability::{demanded, reliability};
@@ -62,6 +62,9 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     for camera in &answer.cameras {
         out.push_str(&conditions::paragraph_of(&camera.name, &camera.conditions, camera.passes));
     }
+    if answer.cameras.iter().any(|camera| !camera.conditions.is_empty()) {
+        let _ = writeln!(out, "{ASK_MORE}\n");
+    }
     if !quotables.is_empty() {
         let _ = writeln!(out, "The rule in a sentence\n{}\n", quotables.join("\n"));
     }
@@ -102,11 +105,11 @@ pub(super) fn meets_all(camera: &CameraAnswer) -> String {
     }
 }
 
-/// A clause that tells materials apart: a table, then each camera.
+/// A clause that requires materials to be distinguished: a table, then each camera.
 fn of_apart(apart: &ApartAnswer, units: Units) -> String {
     let right = |camera: &CameraVerdict| reliability(camera.statistical_distance);
     let mut rows =
-        vec![["camera", "margin", "d at worst", "right at most", "meets the rule"].map(str::to_owned)];
+        vec![["camera", "margin", "d at worst", "correct at most", "meets the rule"].map(str::to_owned)];
     rows.extend(apart.cameras.iter().map(|camera| {
         [
             camera.name.clone(),
@@ -119,7 +122,7 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
     let mut out = aligned(&rows, &[1, 2, 3]);
     let _ = writeln!(
         out,
-        "  margin: least d over the envelope / {} demanded ({})\n",
+        "  margin: least d over the operating envelope / {} required ({})\n",
         significant(apart.requirement.distance, 4),
         demanded(apart.requirement.distance)
     );
@@ -177,9 +180,9 @@ pub(super) fn fails_by(camera: &CameraVerdict) -> String {
     let LimitingScene { target, alternative, .. } = &camera.limiting;
     let words = camera.fails_by.iter().map(|reason| match reason {
         Shortfall::Distance if camera.bands == 1 => {
-            format!("one band cannot tell {target} from {alternative}")
+            format!("one band cannot distinguish {target} from {alternative}")
         }
-        Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
+        Shortfall::Distance => format!("it cannot distinguish {target} from {alternative}"),
         other => in_words(&[*other]),
     });
     words.collect::<Vec<_>>().join("; ")
@@ -232,7 +235,7 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
         line("fails by", format!("{}{longest}", in_words(&spoiled)));
     }
     if let Some(fixes) = &camera.fixes {
-        line("would do", would_do(fixes, units));
+        line("solutions", would_do(fixes, units));
     }
     if let Some(blur) = camera.motion_blur_pixels {
         line("motion blur", format!("{} pixels at the least distance", significant(blur, 2)));
@@ -280,7 +283,7 @@ pub(crate) fn would_do(fixes: &Fixes, units: Units) -> String {
         .collect();
     if texts.is_empty() {
         let mut reasons = fixes.quantities.0.iter().filter_map(|(_, solution)| solution.reason.as_deref());
-        return format!("nothing alone: {}", reasons.next_back().unwrap_or("no value suffices"));
+        return format!("no quantity alone: {}", reasons.next_back().unwrap_or("no value suffices"));
     }
     format!("alone: {}", texts.join("; or "))
 }
@@ -294,9 +297,12 @@ fn one(solved: Quantity, solution: &Solution, units: Units) -> String {
 pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let found = if part.fraction > 0.0 {
         let part_of = share(part.fraction) + &error(part.standard_error);
-        format!("In {part_of} of the envelope no camera could do it")
+        format!("In {part_of} of the operating envelope no camera could meet it")
     } else {
-        format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
+        format!(
+            "In all of {} scenes drawn from the operating envelope some camera could meet it",
+            part.scenes
+        )
     };
     let mut lines = vec![found, part.definition.say()];
     if let Some(near) = &part.neighbourhood {

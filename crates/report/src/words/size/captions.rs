@@ -18,15 +18,15 @@ pub(crate) const INFORMATION: &str =
     "Information log₂ 2P; 1 bit is certainty. The camera's photons grow with its exposure.";
 
 /// Below the distance of an object over its readings.
-pub(crate) const OBJECT: &str = "More frames to the right. What pixels, rows, columns and emissivities have in common no number of frames averages away.";
+pub(crate) const OBJECT: &str = "More frames to the right. Errors that pixels, rows, columns and emissivities have in common do not average away with any number of frames.";
 
 /// Below the two spectra that look alike.
 pub(crate) fn nearest(alternative: &str, celsius: f64, lighting: &[f64], equal: bool) -> String {
     let lighting: Vec<String> = lighting.iter().map(|v| format!("{v:.3}")).collect();
     let lit =
         if lighting.is_empty() { String::new() } else { format!(" with lighting {}", lighting.join(", ")) };
-    let alike = if equal { " The two spectra are equal: no camera tells them apart." } else { "" };
-    format!("The nearest {alternative} is at {celsius:.2} °C{lit}.{alike}")
+    let alike = if equal { " The two spectra are equal: no camera distinguishes them." } else { "" };
+    format!("The closest confuser, {alternative}, is at {celsius:.2} °C{lit}.{alike}")
 }
 
 /// Below the photons over temperature and lighting, with the temperature of equilibrium where that is in the map.
@@ -44,9 +44,9 @@ pub(crate) fn photon_map(by: &str, equilibrium_c: Option<f64>) -> String {
 pub(crate) fn trade_off(curve: &TradeOff, camera: &str) -> String {
     let side = if curve.y.is_least() { "above" } else { "below" };
     let allowed = curve.points.iter().any(|point| point.within_limits.is_some());
-    let none = if allowed { "" } else { " Nothing shown keeps within all limits." };
+    let none = if allowed { "" } else { " No point shown is within all limits." };
     format!(
-        "All else as {camera} has it. There is signal enough {side} the curve; dotted and grey lines are limits beside shot \
+        "All other figures as of {camera}. The signal suffices {side} the curve; dotted and grey lines are limits other than shot \
          noise, of which λF alone forbids nothing.{none}"
     )
 }

@@ -12,7 +12,7 @@ use hadar_study::{PairResult, Sizing, Study};
 /// A number that is shown.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Row {
-    /// What it is called.
+    /// Name of the number as it is shown.
     pub label: &'static str,
     /// The number with its unit, with no more digits than are trusted.
     pub value: String,
@@ -27,13 +27,13 @@ pub struct Solved {
     pub label: &'static str,
     /// Whether there is such a value.
     pub found: bool,
-    /// What would do with its unit, or that nothing does.
+    /// The value that meets the requirement, with its unit, or that none does.
     pub value: String,
     /// What the camera has; empty where that is not known.
     pub now: String,
-    /// What is to be said of the value, behind a semicolon; may be empty.
+    /// Remark on the value, after a semicolon; may be empty.
     pub remark: String,
-    /// What stands against it.
+    /// Limits of the camera that the value would break, in words.
     pub caps: Vec<String>,
     /// Its key in the JSON.
     pub key: &'static str,
@@ -51,26 +51,27 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
         _ => "electronic noise of a band",
     };
     row(of_band, format!("{} counts", significant(camera.noise_counts, 4)), "camera.noise_counts");
-    row("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3), "camera.gamma_per_band");
+    row("gamma, electronic/photon noise", significant(camera.gamma_per_band, 3), "camera.gamma_per_band");
     let hardware = format!("{} m^2 s", significant(camera.hardware_m2_s, 4));
-    row("t A_p / ((1+gamma) F^2)", hardware, "camera.hardware_m2_s");
+    row("H = t A_p / ((1+gamma) F^2)", hardware, "camera.hardware_m2_s");
     let by_local = no_limit(study.scenario().requirement.by).is_some();
     if let Some(d) = pair.statistical_distance {
         let required = significant(result.verdict.required_distance, 4);
-        let label = if by_local { "statistical distance, local" } else { "statistical distance reached" };
+        let label = if by_local { "statistical distance, local" } else { "statistical distance d" };
         let d = pair.statistical_distance_bounds.map_or_else(|| significant(d, 3), |ends| between(ends, 3));
         row(label, format!("{d} (required {required})"), "verdict.statistical_distance");
     }
     if let (Some(d), Some(miss), Some(bits)) =
         (pair.statistical_distance, pair.miss_probability, pair.information_bits)
     {
-        let label = if by_local { "probability by it, no limit" } else { "detection probability at most" };
+        let label =
+            if by_local { "P by local distance (no limit)" } else { "P of a correct decision, at most" };
         let error = match miss {
             0.0 => "below 1e-300".to_owned(),
             miss => significant(miss, 3),
         };
         let few = pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian);
-        let law = if few { ", by the own law of counts so few" } else { "" };
+        let law = if few { ", by the law of small counts" } else { "" };
         row(label, format!("{} (error {error}{law})", probability(d, 4)), "pairs.detection_probability");
         row("information log2 2P", format!("{} bit", significant(bits, 3)), "pairs.information_bits");
     }
@@ -79,7 +80,7 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
         row("the limit, by the nearest distance", limit, "verdict.statistical_distance_nearest");
     }
     let least = format!("{} per sqrt(photon)", significant(camera.least_distance, 3));
-    row("least distance it resolves", least, "camera.least_distance");
+    row("smallest distance it resolves", least, "camera.least_distance");
     if let Some(footprint) = camera.footprint_m {
         row("pixel footprint at the target", study.units().length(footprint), "camera.footprint_m");
     }
@@ -100,23 +101,23 @@ pub fn of_object(result: &Sizing) -> Vec<Row> {
     let readings = object.pixels * f64::from(object.frames);
     let sides = [object.rows, object.columns].map(in_number).join(" x ");
     let frames = if object.frames > 1 { format!(", {} frames", object.frames) } else { String::new() };
-    row("pixels that it fills", format!("{} ({sides}{frames})", in_number(object.pixels)), "object.pixels");
+    row("pixels on the object", format!("{} ({sides}{frames})", in_number(object.pixels)), "object.pixels");
     let one = between(object.distance_of_one_bounds, 2);
     row("d of one pixel in one frame", one, "object.distance_of_one_bounds");
     row("d of all readings", between(object.distance_bounds, 2), "object.distance_bounds");
     let worth = format!("{} of {}", significant(object.effective_readings, 2), significant(readings, 3));
-    row("worth so many independent readings", worth, "object.effective_readings");
+    row("equivalent independent readings", worth, "object.effective_readings");
     match object.ceiling_bounds {
         Some(ceiling) => {
             let shares = object.ceiling_made_of.iter();
             let shares: Vec<String> =
                 shares.map(|one| format!("{} {}", one.label, share(one.share))).collect();
-            row("d with frames without end", between(ceiling, 2), "object.ceiling_bounds");
-            row("  what is left there", shares.join(", "), "object.ceiling_made_of");
+            row("d in the limit of many frames", between(ceiling, 2), "object.ceiling_bounds");
+            row("  noise that remains there", shares.join(", "), "object.ceiling_made_of");
         }
         None => row(
-            "d with frames without end",
-            "grows as the root of the frames".into(),
+            "d in the limit of many frames",
+            "grows as the square root of the number of frames".into(),
             "object.ceiling_bounds",
         ),
     }
@@ -124,8 +125,8 @@ pub fn of_object(result: &Sizing) -> Vec<Row> {
         row("frames that reach 90 % of that", fixed(frames, 0), "object.frames_worth");
     }
     let errors = match object.emissivity_error {
-        Some(error) => format!("{error} rms, the same in all pixels, are in these figures"),
-        None => "not in these figures (state [sensitivity])".into(),
+        Some(error) => format!("{error} rms, the same in all pixels, is included in these figures"),
+        None => "not included in these figures (state [sensitivity])".into(),
     };
     row("errors of the emissivities", errors, "object.emissivity_error");
     rows
@@ -179,16 +180,19 @@ fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> 
         (Some(value), _) => in_unit(solved, value, units),
         (None, Some(reason)) if solution.necessary.is_some() => {
             let necessary = in_unit(solved, solution.necessary.unwrap_or(f64::NAN), units);
-            format!("none: {reason} ({necessary} would tell the two apart)")
+            format!("none: {reason} ({necessary} would distinguish the two)")
         }
         (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
             format!("any: {reason}")
         }
         (None, Some(reason)) if solution.statistical_distance.is_nan() => format!("not solved: {reason}"),
         (None, Some(reason)) => {
-            format!("none suffices: {reason} (reaches d = {})", significant(solution.statistical_distance, 2))
+            format!(
+                "no value meets the requirement: {reason} (reaches d = {})",
+                significant(solution.statistical_distance, 2)
+            )
         }
-        (None, None) => "none suffices".into(),
+        (None, None) => "no value meets the requirement".into(),
     };
     // The noise of bands may differ: what is solved for is a factor of them all.
     let factor = match (solved, solution.value) {

@@ -83,7 +83,7 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
     let requirement = &result.requirement;
     let _ = writeln!(
         out,
-        "What it takes to tell {} from {} with d = {} (probability {}), by three readings",
+        "Required to distinguish {} from {} with d = {} (probability {}), by three distances",
         pair.target,
         pair.alternative,
         significant(requirement.distance, 4),
@@ -93,7 +93,7 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
         writeln!(out, "  {:<34} {:>10}  {:>18}  {:>14}", "reading", "distance", "photons", "H_req [m^2 s]");
     let (n, h) = (requirement.photons_by, requirement.hardware_by_m2_s);
     let rows = [
-        ("nearest", "nearest state (the limit)", pair.distance_nearest, n.nearest, h.nearest),
+        ("nearest", "nearest distance (the limit)", pair.distance_nearest, n.nearest, h.nearest),
         ("local", "local, calibrated (S27)", pair.distance_local, n.local, h.local),
         (
             "local-unknown-gain",
@@ -113,16 +113,16 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
     let apart = least.is_some_and(|least| enough.is_none_or(|enough| enough > least * (1.0 + ROUNDED)));
     if pair.proof == NearestProof::Searched && apart {
         let enough = match requirement.photons {
-            Some(enough) => format!("{} photons suffice by that", significant(enough, 3)),
-            None => "by that no number of photons is known to suffice".into(),
+            Some(enough) => format!("{} photons suffice by the proof", significant(enough, 3)),
+            None => "by the proof no number of photons is known to suffice".into(),
         };
         let lower = significant(pair.distance_nearest_lower, 3);
-        let _ = writeln!(out, "  The nearest is the best of a search; proved is {lower}: {enough}.");
+        let _ = writeln!(out, "  The nearest distance is the best of a search; {lower} is proved: {enough}.");
     }
     let state = &pair.nearest_state;
     let _ = writeln!(
         out,
-        "  * decides. Nearest state of {} by shot noise: {}{}.\n",
+        "  * decides. Closest confuser with shot noise alone: {} at {}{}.\n",
         pair.alternative,
         study.units().temperature(state.temperature_k),
         numbers(", lighting ", &state.lighting, 3)
@@ -136,8 +136,10 @@ pub(crate) fn solutions(result: &Sizing, units: Units) -> String {
         return String::new();
     }
     let head = match result.verdict.met {
-        Some(true) => "How far each figure may go, with the rest of the camera as it is",
-        _ => "What would meet the requirement, each with the rest of the camera as it is",
+        Some(true) => {
+            "Values up to which each figure meets the requirement, the rest of the camera unchanged"
+        }
+        _ => "Values that meet the requirement, one quantity at a time, the rest of the camera unchanged",
     };
     let mut out = format!("{head}\n");
     let solved = rows::solved(result, units);
@@ -167,7 +169,7 @@ fn sensitivity(result: &Sizing) -> String {
     if found.emissivity.distance == 0.0 {
         return String::new();
     }
-    let mut out = String::from("What the verdict hangs on\n");
+    let mut out = String::from("Sensitivity of the verdict\n");
     let levers = found.elasticities.0.iter().filter_map(|(lever, elasticity)| {
         let value = elasticity.as_ref()?.value;
         // What changes nothing is not worth a word.
@@ -193,7 +195,7 @@ fn sensitivity(result: &Sizing) -> String {
             line(&format!("emissivities wrong by {} rms", of.error), spread);
             line(&format!("  correlated over {} cm^-1", of.correlation_cm1), met);
         } else {
-            line("emissivities scatter as classes say", spread);
+            line("emissivities scatter as in their classes", spread);
             for class in &of.of_classes {
                 let how = match class.correlation_cm1 {
                     Some(length) => {
@@ -224,13 +226,13 @@ fn conclusion(result: &Sizing) -> String {
     let of = &found.emissivity;
     let drowned = of.distance_50 > DROWNED * of.distance;
     let what = match (of.distance >= result.requirement.distance, of.share_met) {
-        (true, met) if met >= SETTLED => "such errors leave it met",
-        (true, _) => "such errors can undo it; measure these emissivities before relying on it",
-        (false, met) if met <= 1.0 - SETTLED => "such errors do not make it met",
-        (false, _) => "within such errors it may be met or not; measure these emissivities first",
+        (true, met) if met >= SETTLED => "it remains met with such errors",
+        (true, _) => "with such errors it may not be met; measure these emissivities before relying on it",
+        (false, met) if met <= 1.0 - SETTLED => "it remains unmet with such errors",
+        (false, _) => "with such errors it may be met or not; measure these emissivities first",
     };
     let more = if drowned {
-        ", but look more different than the materials do: d is that of the entries, to be measured"
+        ", but the errors exceed the difference of the materials: d is that of the tabulated values, which must be measured"
     } else {
         ""
     };

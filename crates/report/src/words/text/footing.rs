@@ -14,6 +14,9 @@ use std::fmt::Write as _;
 pub(crate) const ASSUMPTIONS: &str = "Assumptions";
 pub(crate) const WARNINGS: &str = "Warnings";
 
+/// Last line of a block of codes: how to ask more.
+pub(crate) const ASK_MORE: &str = "  hadar explain CODE: what a code means and what to do";
+
 /// The same of a page.
 pub(crate) const RESTS_ON: &str = "What this rests on";
 
@@ -30,7 +33,7 @@ pub fn with_settings(answer: &str, settings: &[Setting]) -> String {
         return answer.to_owned();
     }
     let set: Vec<String> = settings.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
-    let line = format!("{ASSUMPTIONS}\n  in the place of the file's values: {}\n", set.join("; "));
+    let line = format!("{ASSUMPTIONS}\n  values that replace those of the file: {}\n", set.join("; "));
     let heading = format!("\n{ASSUMPTIONS}\n");
     match answer.split_once(&heading) {
         Some((before, after)) => format!("{before}\n{line}{after}"),
@@ -80,7 +83,7 @@ fn unknown(scenario: &Scenario) -> String {
 pub(crate) fn of_counts(study: &Study, pairs: &[PairResult]) -> &'static str {
     let few = |pair: &PairResult| pair.decided_by.is_some_and(|law| law != DecisionLaw::Gaussian);
     if pairs.iter().any(few) {
-        return "counts so few that their own law decides; two equally likely materials; its bounds are a limit, not a promise";
+        return "small counts, decided by their exact law; two equally likely materials; its bounds are a limit, not a promise";
     }
     gaussian(study)
 }
@@ -92,7 +95,7 @@ pub(crate) fn gaussian(study: &Study) -> &'static str {
             "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise"
         }
         DistanceKind::Local | DistanceKind::LocalUnknownGain => {
-            "counts large enough to be Gaussian; two equally likely materials; d is the paper's local reading, no limit"
+            "counts large enough to be Gaussian; two equally likely materials; d is the paper's local distance, which is not a limit"
         }
     }
 }
@@ -130,7 +133,7 @@ pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
     // As short as they were written, without the digits of a converted wavelength.
     let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
     let mut out = format!("{ASSUMPTIONS}\n");
-    let _ = writeln!(out, "  unknown besides the material: {unknown}");
+    let _ = writeln!(out, "  unknown in addition to the material: {unknown}");
     let _ = match study.bands().len() {
         1 => writeln!(out, "  1 band centred at {low} cm^-1"),
         count => writeln!(out, "  {count} bands centred from {low} to {high} cm^-1"),
@@ -156,7 +159,7 @@ pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
     if !skies.is_empty() {
         let _ = writeln!(
             out,
-            "  skies of the library are surroundings, no alternatives: left out {}",
+            "  skies of the library are surroundings, not alternatives: {} omitted",
             listed(skies)
         );
     }
@@ -176,6 +179,7 @@ pub(crate) fn warnings(warnings: &[Warning]) -> String {
         };
         let _ = writeln!(out, "  [{}] {}{rest}", code.name(), said[0].say());
     }
+    let _ = writeln!(out, "{ASK_MORE}");
     out
 }
 
@@ -186,7 +190,7 @@ mod tests {
     #[test]
     fn what_was_set_is_the_first_assumption() {
         let set = [Setting { key: "camera.exposure".into(), value: "5 ms".into(), by: "--set" }];
-        let line = "Assumptions\n  in the place of the file's values: camera.exposure = 5 ms\n";
+        let line = "Assumptions\n  values that replace those of the file: camera.exposure = 5 ms\n";
         for (text, expected) in [
             (
                 "No.\n\nAssumptions\n  air\nWarnings\n  [x] y\n",

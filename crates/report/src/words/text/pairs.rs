@@ -38,10 +38,10 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
         right("local", 9),
         right("S29", 9),
         right("photons required", 18),
-        right("nearest state", 24),
+        right("closest confuser", 24),
     ];
     if with_camera {
-        columns.extend([right("camera d", wide.max(10)), right("told apart", 10)]);
+        columns.extend([right("camera d", wide.max(10)), right("distinguished", 10)]);
         columns.extend(by_local.then_some(right("limit d", 9)));
     }
     let mut table = Columns::new(columns);

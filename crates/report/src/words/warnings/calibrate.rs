@@ -20,11 +20,11 @@ words! {
         },
     }
     LinesDiffer {
-        meaning: "Most lines of a cube differ from those beside them by more than noise: the structure of the \
+        meaning: "Most lines of a cube differ from their neighbours by more than noise: the structure of the \
             scene, or stripes of every line.",
         remedy: "Correct the cube by a uniform source, or give one of a scene that is even from line to line.",
         LinesDiffer { axis, bands, of, apart, noise } => format!(
-            "{axis} differ from those beside them by up to {} % of their level (rms; noise explains {} %) in {} of {of} bands: the scene's own \
+            "{axis} differ from their neighbours by up to {} % of their level (rms; noise explains {} %) in {} of {of} bands: the scene's own \
              structure or stripes of every one of them explain that alike, and nothing was corrected for it",
             significant(100.0 * apart, 2),
             significant(100.0 * noise, 2),
@@ -162,7 +162,7 @@ words! {
             the edge of a material.",
         remedy: "Look at these lines; correct them by a uniform source where they are stripes.",
         LinesBesideSteps { axis, lines } => format!(
-            "{} lie at a step from line to line that the bands beside do not have: lines striped side by side, or the edge of a material; \
+            "{} lie at a step from line to line that the neighbouring bands do not have: lines striped side by side, or the edge of a material; \
              nothing tells which, and they were left as they are",
             places(axis, lines)
         ),
@@ -172,7 +172,7 @@ words! {
             as they are.",
         remedy: "Set their samples to NaN, or leave the band out.",
         LinesDead { axis, lines } => format!(
-            "{} hold one value alone where the lines beside vary: nothing of the scene is in them, and they were left as they are",
+            "{} hold one value alone where the neighbouring lines vary: nothing of the scene is in them, and they were left as they are",
             places(axis, lines)
         ),
     }
@@ -208,32 +208,30 @@ words! {
         },
     }
     StripesOfFewBands {
-        meaning: "Stripes were taken out of a cube of too few bands to tell them from thin objects.",
+        meaning: "Stripes were taken out of a cube of too few bands to distinguish them from thin objects.",
         remedy: "Look at the picture of what was taken out.",
         StripesOfFewBands { bands } => format!(
-            "of {bands} band(s) none tells a stripe from a thin object that lies along a line: what was taken out may have been one"
+            "of {bands} band(s) none distinguishes a stripe from a thin object that lies along a line: what was taken out may have been one"
         ),
     }
     NoiseOutliers {
         meaning: "Differences of samples were left out of a noise since they are far larger than it.",
-        remedy: "Nothing if they are few; else give frames of a scene that stands still.",
+        remedy: "Nothing if they are few; else give frames of a scene that does not move.",
         NoiseOutliers { share } => format!(
             "{} % of the differences are beyond 6 deviations and were left out: frames of a scene that moved, bad pixels or edges",
             significant(100.0 * share, 2)
         ),
     }
     TextureInNoise {
-        meaning: "A single frame has texture in what neighbours differ by, and other bands had to tell it \
-            from noise.",
+        meaning: "A single frame has texture in what neighbours differ by, and other bands had to distinguish it from noise.",
         remedy: "Give two or more frames of the same scene, or one of an even surface.",
         TextureInNoise { share } => format!(
-            "texture was taken out of the noise of single bands, up to {} of it: as far as it is not alike in neighbouring bands, \
-             the noise is too large",
+            "texture was taken out of the noise of single bands, up to {} of it: where it is not alike in neighbouring bands, the noise is too large",
             significant(*share, 2)
         ),
     }
     BandsDifferInNoise {
-        meaning: "Bands of a cube scatter by noise models of their own.",
+        meaning: "Bands of a cube scatter by different noise models.",
         remedy: "Use the variance of each band (sigma.csv); give counts as the camera made them, before \
             bands were scaled.",
         BandsDifferInNoise { chi_square, limit } => format!(
@@ -257,10 +255,10 @@ words! {
         ),
     }
     PhotonsNotTold {
-        meaning: "The slope of variance over mean is not told from 0.",
+        meaning: "The slope of variance over mean is not distinguished from 0.",
         remedy: "Give a scene of darker and brighter parts, or more frames.",
         PhotonsNotTold { per_photon, sigma } => format!(
-            "noise that grows with light is not told from noise that does not: one photon is {} +- {} unit(s)",
+            "noise that grows with light is not distinguished from noise that does not: one photon is {} +- {} unit(s)",
             significant(*per_photon, 2),
             significant(*sigma, 2)
         ),

@@ -21,7 +21,7 @@ words! {
     }
     BandsSampled {
         meaning: "Wide bands of a grid or of rows are taken at their centres alone, which may miss what \
-            tells materials apart in them.",
+            distinguishes materials in them.",
         remedy: "Write bands.integrate = true, or the bands as ranges.",
         BandsSampled { width_cm1 } => format!(
             "bands up to {} cm^-1 wide are taken at their centres alone; integrated, a distance may be another",
@@ -89,7 +89,7 @@ words! {
         meaning: "The target does not fill its pixel.",
         remedy: "Keep a margin for targets between pixels, or magnify.",
         TargetSmallerThanPixel { fill } => format!(
-            "the target fills {} % of its pixel, as long as it stands in the middle of one; on the edge of two or \
+            "the target fills {} % of its pixel, if it is in the middle of one; on the edge of two or \
              four of them it is seen by each in part",
             significant(100.0 * fill, 2)
         ),

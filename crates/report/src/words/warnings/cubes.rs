@@ -23,7 +23,7 @@ words! {
     }
     BandOrderTaken {
         meaning: "The file of a cube does not say in which order it has its bands, and [bands] do not begin with the smallest wavenumber. A list (rows, filters, \
-            ranges) was taken to be in the order of the file; beside a grid the file's bands were taken in rising wavenumber.",
+            ranges) was taken to be in the order of the file; with a grid the file's bands were taken in rising wavenumber.",
         remedy: "Write the cube with its wavelengths, as an ENVI file, or put the list, or the bands, into that order.",
         BandOrderTaken { listed: true } => "the cube's file does not say where its bands are: they were taken in the order in which [bands] list them",
         BandOrderTaken { .. } => "the bands are written as wavelengths, but the cube's file does not say them: its first band was taken as that of the \
@@ -72,7 +72,7 @@ words! {
         },
     }
     RowsUneven {
-        meaning: "Rows of a cube stand for surroundings, and some of their pixels are not like the others: they are not in the mean.",
+        meaning: "Rows of a cube represent surroundings, and some of their pixels are unlike the others: they are not included in the mean.",
         remedy: "Nothing; or name rows that show one and the same thing.",
         RowsUneven { environment, pixels, of } => format!(
             "{pixels} of {of} pixels of the rows of environment[{environment}] are not like the others; they were left out of the mean"
@@ -148,9 +148,9 @@ words! {
         ),
     }
     OneCluster {
-        meaning: "One emissivity stands for all pixels, whatever they are.",
+        meaning: "One emissivity is used for all pixels, whatever they are.",
         remedy: "Write clusters.count = [1, 8], unless the cube shows one material.",
-        OneCluster => "one emissivity stands for all pixels, whatever they are made of",
+        OneCluster => "one emissivity is used for all pixels, whatever they are made of",
     }
     ClustersWithoutPixels {
         meaning: "Clusters were left without a pixel: the others explain all of them better.",
@@ -160,12 +160,12 @@ words! {
         },
     }
     MagnitudeHardlyTold {
-        meaning: "The magnitude of an emissivity is hardly told from the temperatures of its pixels: the \
+        meaning: "The magnitude of an emissivity is hardly distinguished from the temperatures of its pixels: the \
             prior holds it.",
         remedy: "State unknown.lighting_total, fewer surroundings, or [emissivity] as well as you know it; \
             look under a sky with lines, at pixels of different lighting.",
         MagnitudeHardlyTold { clusters, sigma } => format!(
-            "the magnitude of {} is hardly told from the temperatures (mean emissivity +- {} at most): what was said of \
+            "the magnitude of {} is hardly distinguished from the temperatures (mean emissivity +- {} at most): what was said of \
              emissivities beforehand holds it",
             clusters.join(", "),
             significant(*sigma, 2)
@@ -185,7 +185,7 @@ words! {
     }
     MirrorNotExcluded {
         meaning: "Several surroundings light a pixel with nothing said of their total: what mirrors them is \
-            not told from what is as warm.",
+            not distinguished from what is as warm.",
         remedy: "State unknown.lighting_total, or name fewer surroundings.",
         MirrorNotExcluded { surroundings } => format!(
             "{surroundings} surroundings light a pixel as much as they like: a mirror of them looks as well as a warm surface does, so that \

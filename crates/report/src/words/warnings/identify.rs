@@ -6,16 +6,16 @@ use hadar::words::{fixed, significant};
 
 words! {
     Identical {
-        meaning: "The two materials have equal emissivities in every band: no camera tells them apart.",
+        meaning: "The two materials have equal emissivities in every band: no camera distinguishes them.",
         remedy: "Choose bands in which they differ.",
         Identical => "the two emissivities are equal in every band",
     }
     Placeholders {
         meaning: "Both materials are entered as one number for all wavenumbers, so that nothing is known of \
-            what tells them apart.",
+            what distinguishes them.",
         remedy: "Give a measured spectrum of at least one of them.",
         Placeholders { target, alternative, emissivities } => format!(
-            "{target} and {alternative} are each entered as one number ({} and {}): that they can or cannot be told apart \
+            "{target} and {alternative} are each entered as one number ({} and {}): that they can or cannot be distinguished \
              says nothing of real surfaces",
             emissivities[0], emissivities[1]
         ),
@@ -32,11 +32,11 @@ words! {
         Blind => "a change of the unknowns looks exactly like the change of material",
     }
     NearestAtEdge {
-        meaning: "The state in which the alternative is most similar stands at the end of a range that the \
-            scenario set.",
-        remedy: "Check that the range is what can occur: the answer hangs on it.",
+        meaning: "The state in which the alternative is most similar to the target is at the end of a range that the \
+            scenario sets.",
+        remedy: "Check that the range covers what can occur: the answer depends on it.",
         NearestAtEdge { parameters, objects } => format!(
-            "the nearest state stands at the edge of its range ({}); the range decides the answer",
+            "the closest confuser is at the edge of its range ({}); the range decides the answer",
             listed(parameters, *objects)
         ),
     }
@@ -74,8 +74,7 @@ words! {
         ),
     }
     NearestSearch {
-        meaning: "The nearest state was searched and could not be proved to be the nearest: its distance \
-            may be too large.",
+        meaning: "The closest confuser was searched and not proved to be the closest: its distance may be too large.",
         remedy: "Rely on what is proved (distance_nearest_lower), or make an unknown known.",
         NearestSearch { distance, lower, priors } => {
             let why = if *priors { ", which leaves priors out," } else { "" };
@@ -100,7 +99,7 @@ words! {
         FewDigits { distance, .. } => format!("of the {distance} rounding leaves nothing: it may have any value"),
     }
     Bunching {
-        meaning: "Photons per mode are so many that bunching raises the noise noticeably.",
+        meaning: "The number of photons per mode is high enough for bunching to raise the noise noticeably.",
         remedy: "Set camera.photon_bunching = true to include it.",
         Bunching { occupancy, wavenumber_cm1, included } => {
             let what = if *included {
@@ -112,8 +111,8 @@ words! {
         },
     }
     EnvelopeNotSearched {
-        meaning: "The scenario has an envelope, and this answer is for its one scene.",
-        remedy: "Ask `hadar rule` for the worst scene of the envelope.",
+        meaning: "The scenario has an operating envelope, and this answer is for its one scene.",
+        remedy: "Ask `hadar rule` for the worst scene of the operating envelope.",
         EnvelopeNotSearched => "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
     }
     MatrixPriors {

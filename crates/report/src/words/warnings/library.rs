@@ -30,7 +30,7 @@ words! {
     }
     ClassReplacesPlaceholder {
         meaning: "A class of the scenario has the name of a material of the library that is entered as one \
-            number, and stands in its place.",
+            number, and replaces it.",
         remedy: "Nothing; or call the class otherwise.",
         ClassReplacesPlaceholder { class } => format!(
             "`{class}` is the class of this scenario, not the material of the library that is entered as one number"
@@ -38,7 +38,7 @@ words! {
     }
     SolvedForOnePair {
         meaning: "Figures of the camera, elasticities and pictures are those of the pair of members that is \
-            hardest to tell apart before the camera as it is.",
+            hardest to distinguish before the camera as it is.",
         remedy: "Ask again with the figure that was solved for: the verdict is then that of all pairs.",
         SolvedForOnePair { target, alternative } => format!(
             "what each figure may be is solved for {target} against {alternative}, the hardest pair before the camera as it is; before \
@@ -46,10 +46,10 @@ words! {
         ),
     }
     WorstMembers {
-        meaning: "Of classes only the pair of members that is hardest to tell apart is simulated.",
+        meaning: "Of classes only the pair of members that is hardest to distinguish is simulated.",
         remedy: "Name other members to simulate them.",
         WorstMembers { target, alternative } => format!(
-            "classes stand by the pair of members that is hardest to tell apart, {target} and {alternative}; the others are not \
+            "classes are represented by the pair of members that is hardest to distinguish, {target} and {alternative}; the others are not \
              drawn"
         ),
     }

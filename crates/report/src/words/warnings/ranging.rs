@@ -13,8 +13,7 @@ words! {
         ),
     }
     NoiseOfDemanded {
-        meaning: "Measured counts have noise of their own, which looks like texture and makes bounds too \
-            good.",
+        meaning: "Measured counts contain noise, which looks like texture and makes bounds too optimistic.",
         remedy: "Give expected counts, or averages of many frames.",
         NoiseOfDemanded { floor_per_px2, demanded_per_px2 } => format!(
             "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} demanded: give \
@@ -67,10 +66,10 @@ words! {
         ),
     }
     FewBands {
-        meaning: "There are too few bands to tell emission from scattered light.",
+        meaning: "There are too few bands to distinguish emission from scattered light.",
         remedy: "Give three bands or more.",
-        FewBands { bands: 2 } => "two bands cannot tell temperature, strength of the emission and scattered light apart",
-        FewBands { .. } => "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated",
+        FewBands { bands: 2 } => "two bands cannot distinguish temperature, strength of the emission and scattered light",
+        FewBands { .. } => "one band cannot distinguish emission from scattered light: nothing is left where the temperature is estimated",
     }
     PatternOfEachPixel {
         meaning: "Row and column noise of the camera is taken as another one in every pixel: what a whole column of a \

@@ -16,9 +16,9 @@ words! {
         EmissivityErrorsLeftOut => "errors of the emissivities, [sensitivity], are not in it: all spectra are taken to be exact",
     }
     NotProved {
-        meaning: "That no scene of the envelope is below the requirement was searched for, not proved.",
-        remedy: "Narrow the envelope, so that the search can prove it.",
-        NotProved => "that no scene of the envelope is below the requirement was searched, not proved",
+        meaning: "That no scene of the operating envelope is below the requirement was searched for, not proved.",
+        remedy: "Narrow the operating envelope, so that the search can prove it.",
+        NotProved => "that no scene of the operating envelope is below the requirement was searched, not proved",
     }
     BrightestNoise {
         meaning: "Noise that depends on the scene is taken where it is largest, so that the distance is a \

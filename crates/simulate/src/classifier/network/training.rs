@@ -27,7 +27,7 @@ const STREAM: u64 = 1 << 63;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
-    /// Epochs gone through.
+    /// Number of passes over the training examples.
     pub epochs: usize,
     /// The epoch after which the weights were as they are now; 0 if nothing lowered the validation loss.
     pub best_epoch: usize,

@@ -10,13 +10,13 @@ use serde::Serialize;
 /// A value of the response, counts per photon s⁻¹ m⁻² sr⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ResponseRow {
-    /// Its wavenumber, cm⁻¹.
+    /// Wavenumber of the value, cm⁻¹.
     pub wavenumber_cm1: f64,
-    /// R.
+    /// Response R at this wavenumber, counts per photon s⁻¹ m⁻² sr⁻¹.
     pub response: f64,
-    /// Its deviation.
+    /// Standard deviation of the response, in its unit.
     pub sigma: f64,
-    /// The deviation known beforehand.
+    /// Standard deviation of the response before any reading, in its unit.
     pub sigma_beforehand: f64,
     /// The typical curve, scaled to the readings.
     pub typical: f64,
@@ -27,7 +27,7 @@ pub struct ResponseRow {
 /// A filter that is left out.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LeftOutFilter {
-    /// Its name.
+    /// Name of the filter that is left out.
     pub filter: String,
     /// Its band of the cubes, from 0.
     pub band: usize,
@@ -38,7 +38,7 @@ pub struct LeftOutFilter {
 /// Radiances of a scene behind the filters, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Serialize)]
 pub struct FilterRadiances {
-    /// Rows, columns and filters.
+    /// Numbers of rows, columns and filters of the scene.
     pub shape: Shape,
     /// Mean radiance of every sample over its filter and the response.
     #[serde(skip)]
@@ -53,13 +53,13 @@ pub struct FilterRadiances {
 /// What was found.
 #[derive(Debug, Clone, Serialize)]
 pub struct ResponseFound {
-    /// The question.
+    /// The question as it was asked, defaults filled in.
     pub scenario: ResponseScenario,
     /// Names of the filters; those left out are not among them.
     pub filters: Vec<String>,
     /// Filters that are left out of all cubes, with why.
     pub left_out: Vec<LeftOutFilter>,
-    /// The response.
+    /// The response that was found, by wavenumber.
     pub response: Vec<ResponseRow>,
     /// Covariance of its values, row after row.
     #[serde(skip)]
@@ -69,15 +69,15 @@ pub struct ResponseFound {
     pub kernels: Vec<f64>,
     /// Directions known to a tenth of the peak by the readings alone.
     pub determined: usize,
-    /// Singular values above rounding.
+    /// Number of singular values of the problem above rounding.
     pub rank: usize,
-    /// Effective number with smoothness.
+    /// Effective number of values that the readings determine with smoothness.
     pub effective: f64,
     /// Deviation of every direction, peak of the typical curve 1; none where nothing tells it.
     pub sigma_directions: Vec<Option<f64>>,
     /// Offsets K_q + ξ at the centre, counts.
     pub offsets: Vec<f64>,
-    /// Their deviations, counts.
+    /// Standard deviations of the offsets, counts.
     pub offset_sigmas: Vec<f64>,
     /// χ² of the readings over its degrees of freedom; none where the unknowns fit any readings.
     pub chi_square_reduced: Option<f64>,
@@ -90,11 +90,11 @@ pub struct ResponseFound {
     /// Relative transmittance η of every pixel; none where the cubes are all centre.
     #[serde(skip)]
     pub eta: Option<Vignette>,
-    /// Least and largest η.
+    /// Least and largest relative transmittance η of the pixels.
     pub eta_range: Option<[f64; 2]>,
     /// Deviation of η in a pixel.
     pub eta_sigma: Option<f64>,
-    /// The scene.
+    /// The calibrated scene; none where no scene was given.
     pub scene: Option<FilterRadiances>,
     /// What was done and what was spared.
     pub stats: Work,

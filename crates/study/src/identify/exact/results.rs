@@ -4,17 +4,17 @@ use crate::Warning;
 use hadar::identifiability::lattice::LatticeDetection;
 use hadar_simulate::sequential::{Interval, Plan};
 
-/// The simulated decision of one pair beside its limits.
+/// The simulated decision of one pair compared with its limits.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ExactPair {
-    /// The alternative.
+    /// Name of the alternative of this pair.
     pub alternative: String,
-    /// Photons of the target.
+    /// Expected photons of the target in all bands.
     pub photons: f64,
-    /// Statistical distance to the nearest state.
+    /// Statistical distance to the closest confuser.
     pub statistical_distance_nearest: f64,
-    /// Local statistical distance.
+    /// Statistical distance d by the local distance.
     pub statistical_distance_local: f64,
     /// Φ of the nearest distance: the limit of the balanced accuracy at large N.
     pub limit: f64,
@@ -24,15 +24,15 @@ pub struct ExactPair {
     pub two_sided: f64,
     /// Rigorous bounds on the error between the two states, by Bhattacharyya, Chernoff and others.
     pub error_lower: f64,
-    /// See `error_lower`.
+    /// Upper bound of the probability of error; `error_lower` is the lower one.
     pub error_upper: f64,
     /// Simulated share of right decisions, averaged over the two states.
     pub balanced: f64,
-    /// Its confidence interval.
+    /// Confidence interval of the balanced share of right decisions, 0 to 1.
     pub balanced_interval: Interval,
     /// Share of right decisions with the target true, and with the alternative true.
     pub classes: [f64; 2],
-    /// Trials of both classes.
+    /// Number of trials of both materials together.
     pub trials: u64,
     /// Fits that did not converge.
     pub unconverged: u64,
@@ -47,14 +47,14 @@ pub struct ExactPair {
 pub struct ExactLibrary {
     /// Share of trials in which the target is recognised among all alternatives.
     pub probability: f64,
-    /// Its confidence interval.
+    /// Confidence interval of that share, 0 to 1.
     pub interval: Interval,
     /// Share of decisions for each material, the target first.
     pub decisions: Vec<(String, f64)>,
     /// Union bound of a test that knows all states, the alternatives in their nearest: 1 less the sum of the pairs'
     /// upper bounds on missing the target. No bound of `probability`.
     pub union_bound_known_states: f64,
-    /// Trials.
+    /// Number of trials that were drawn.
     pub trials: u64,
 }
 
@@ -62,7 +62,7 @@ pub struct ExactLibrary {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Exact {
-    /// Law of counting.
+    /// Law by which the counts are distributed.
     pub statistics: &'static str,
     /// Where counts are drawn by the Gaussian law: how far its distribution function is from that of photons with
     /// electronic noise, at most.
@@ -70,7 +70,7 @@ pub struct Exact {
     pub normal_error: Option<f64>,
     /// Random generator, with its version.
     pub generator: &'static str,
-    /// Seed.
+    /// Seed from which the counts were drawn.
     pub seed: u64,
     /// Confidence level of the intervals.
     pub level: f64,

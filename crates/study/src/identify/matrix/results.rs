@@ -17,15 +17,15 @@ pub type Rows = Vec<Vec<Option<f64>>>;
 pub struct Matrix {
     /// Names of the materials, the order of rows and columns.
     pub materials: Vec<String>,
-    /// Which distance decides.
+    /// Name of the distance that decides: nearest or local.
     pub by: &'static str,
-    /// Nearest distance per √photon.
+    /// Nearest distance of every target (row) from every material (column), per √photon.
     pub distance_nearest: Rows,
     /// What is proved of it: no state of the alternative is nearer.
     pub distance_nearest_lower: Rows,
     /// Its estimated relative error by rounding.
     pub relative_error_nearest: Rows,
-    /// Local distance per √photon.
+    /// Local distance of every target (row) from every material (column), per √photon.
     pub distance_local: Rows,
     /// Estimated bound on its relative rounding error.
     pub relative_error: Rows,
@@ -39,7 +39,7 @@ pub struct Matrix {
     pub statistical_distance: Option<Rows>,
     /// What is proved of it, whatever rounding did to it.
     pub statistical_distance_lower: Option<Rows>,
-    /// Statistical distance demanded.
+    /// Statistical distance d that is required for a pair.
     pub required_distance: f64,
     /// Every material as a target.
     pub targets: Vec<TargetVerdict>,
@@ -58,9 +58,9 @@ pub struct Matrix {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct TargetVerdict {
-    /// The material.
+    /// Name of the material that is the target.
     pub material: String,
-    /// The one hardest to tell it from.
+    /// The one hardest to distinguish it from.
     pub limiting: String,
     /// Its distance per √photon, by the distance that decides.
     pub distance_minimum: f64,
@@ -68,7 +68,7 @@ pub struct TargetVerdict {
     pub statistical_distance_minimum: Option<f64>,
     /// What is proved of it.
     pub statistical_distance_minimum_lower: Option<f64>,
-    /// Whether the camera tells the material from every other one.
+    /// Whether the camera distinguishes the material from every other one.
     pub identifiable: Option<bool>,
 }
 
@@ -90,17 +90,17 @@ impl Matrix {
     }
 }
 
-/// Pairs that can be told apart, those that cannot, and the groups that these make.
+/// Pairs that can be distinguished, those that cannot, and the groups that these make.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Apart {
-    /// Pairs told apart, either of them the target.
+    /// Pairs distinguished, either of them the target.
     pub told_apart: Vec<[String; 2]>,
-    /// Pairs that are not.
+    /// Pairs of materials that the camera does not distinguish.
     pub not_told_apart: Vec<[String; 2]>,
-    /// Disjoint groups of which no two members are told apart.
+    /// Disjoint groups of which no two members are distinguished.
     pub clusters: Vec<Vec<String>>,
-    /// Groups that hang together by pairs that are not told apart, if only by a chain of them.
+    /// Groups that hang together by pairs that are not distinguished, if only by a chain of them.
     pub chains: Vec<Vec<String>>,
 }
 
@@ -110,7 +110,7 @@ pub struct Apart {
 pub struct Check {
     /// The scenario with its defaults filled in.
     pub scenario: Scenario,
-    /// Whether the camera tells the target from every alternative.
+    /// Whether the camera distinguishes the target from every alternative.
     pub identifiable: bool,
     /// The first alternative found that it does not; there may be more.
     pub not_told_from: Option<String>,

@@ -33,7 +33,7 @@ pub struct EmissivityErrors {
     pub error: f64,
     /// Length over which errors are correlated, cm⁻¹.
     pub correlation_cm1: f64,
-    /// Pairs that were drawn.
+    /// Number of pairs of emissivities that were drawn.
     pub draws: usize,
     /// Statistical distance with the emissivities as they are.
     pub distance: f64,

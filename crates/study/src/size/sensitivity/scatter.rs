@@ -19,13 +19,13 @@ pub(crate) enum Scatter<'s> {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct ScatterOf {
-    /// The class.
+    /// Name of the class of materials.
     pub class: String,
     /// Root mean square over the bands.
     pub error: f64,
     /// Length over which errors are correlated, cm⁻¹; `None` for the sample covariance of the class.
     pub correlation_cm1: Option<f64>,
-    /// Spectra of the class.
+    /// Number of spectra in the class.
     pub spectra: usize,
 }
 
