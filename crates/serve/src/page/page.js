@@ -263,7 +263,8 @@ async function fetched(path, name, kind) {
 }
 
 function take(scenario) {
-  at("example").value = named.examples.findIndex((one) => one.text === scenario);
+  const example = named.examples.findIndex((one) => one.text === scenario);
+  at("example").value = example < 0 ? "" : example;
   clearTimeout(typing);
   pass();
   text = scenario;

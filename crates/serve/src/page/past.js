@@ -38,7 +38,10 @@ async function restored() {
 
 async function open(otherwise) {
   const scenario = history.state?.text ?? await restored();
-  if (history.state) current = history.state.n;
+  if (history.state) {
+    current = history.state.n;
+    showPast();
+  }
   if (scenario === undefined) failed("This link is broken or cut off; ask for it again, or begin again below.");
   else take(scenario ?? otherwise);
 }
