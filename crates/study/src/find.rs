@@ -234,8 +234,7 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
 /// A choice as the main job judges it.
 fn put_to_size(choice: &mut Choice, library: &Library) -> Result<Put> {
     let study = Study::new(&choice.scenario, library)?;
-    let sizing =
-        study.size_with(SizeAsked { solutions: false, sensitivity: false, emissivity_errors: true })?;
+    let sizing = study.size_with(SizeAsked { solutions: false, sensitivity: false, emissivity_errors: true })?;
     let (lower, upper) = (sizing.verdict.lower, sizing.verdict.upper);
     choice.lower = lower.unwrap_or(choice.lower);
     choice.upper = upper.unwrap_or(choice.upper);
@@ -252,8 +251,7 @@ fn near_miss(missed: &[Choice], library: &Library) -> Result<Option<NearMiss>> {
     let Some(choice) = nearest else { return Ok(None) };
     let mut choice = choice.clone();
     let study = Study::new(&choice.scenario, library)?;
-    let sizing =
-        study.size_with(SizeAsked { solutions: true, sensitivity: false, emissivity_errors: false })?;
+    let sizing = study.size_with(SizeAsked { solutions: true, sensitivity: false, emissivity_errors: false })?;
     choice.limiting.clone_from(&sizing.limiting);
     choice.upper = sizing.verdict.upper.unwrap_or(choice.upper);
     choice.lower = sizing.verdict.lower.unwrap_or(choice.lower);

@@ -88,6 +88,9 @@ function changesOf(state, before) {
   return said.length > CHANGES ? [...said.slice(0, CHANGES), `and ${said.length - CHANGES} more`] : said;
 }
 
+// A path may break behind its dots.
+const broken = (said) => said.split(/(?<=[a-z\]]\.)/).flatMap((part) => [part, document.createElement("wbr")]);
+
 function showPast() {
   at("undo").setAttribute("aria-disabled", String(current <= 0));
   at("redo").setAttribute("aria-disabled", String(current >= past.length - 1));
@@ -103,7 +106,7 @@ function showPast() {
   });
   at("answer-heads").replaceChildren(element("tr", {}, element("td"), ...heads));
   const line = (label, cells) => element("tr", {}, element("th", { scope: "row" }, label), ...cells);
-  const lists = shown.map(({ state, n }) => element("td", {}, ...changesOf(state, before(n)).map((one) => element("div", {}, one))));
+  const lists = shown.map(({ state, n }) => element("td", {}, ...changesOf(state, before(n)).map((one) => element("div", {}, ...broken(one)))));
   const rows = [line("What changed", lists), line("Verdict", shown.map(({ state }) => cell(state.answer.sentence)))];
   const labels = new Set(shown.flatMap(({ state }) => state.answer.numbers.map((one) => one.label)));
   for (const label of labels) {
