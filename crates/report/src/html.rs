@@ -1,4 +1,5 @@
-//! A report as one page: the answer, pictures, tables, what it rests on, warnings with what to do, the question, who made it of what.
+//! A report as one page: the verdict, its conditions, two pictures, the answer as tables, warnings with what to do, who made it of what; all
+//! other pictures, the tables of its files and the question are folded, and not printed.
 //!
 //! One file without script, and without anything that is loaded from elsewhere, so that it can be mailed, archived and printed as it
 //! is. Every picture has its title as its name, every table a caption and heads of rows and columns; order and headings are those
@@ -6,6 +7,7 @@
 
 mod answer;
 pub(crate) mod element;
+mod printed;
 mod table;
 
 use self::element::{escape, table, wide};
@@ -49,22 +51,30 @@ pub(crate) struct Page<'a> {
 pub(crate) fn page(page: &Page<'_>) -> String {
     let answer = answer::Answer::of(page.answer);
     let title = escape(page.title.unwrap_or(words::TITLE));
-    let mut sections =
-        vec![("first", words::FIRST, page.first.to_owned()), ("answer", "Answer", lines(answer.details))];
-    let pictures: String =
-        page.drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
-    sections.push(("pictures", "Pictures", pictures));
+    let mut sections = vec![
+        Section::open("first", words::FIRST, page.first.to_owned()),
+        Section::open("conditions", CONDITIONS, printed::html(&answer.conditions)),
+        Section::open("assumptions", RESTS_ON, list(&answer.assumptions)),
+    ];
+    let (mut drawn, mut more) = (String::new(), String::new());
+    let shown = most_telling(&page.drawings);
+    for (i, drawing) in page.drawings.iter().enumerate() {
+        let out = if shown.contains(&i) { &mut drawn } else { &mut more };
+        out.push_str(&figure(i + 1, drawing));
+    }
+    sections.push(Section::open("pictures", "Pictures", drawn));
+    sections.push(Section::open("answer", "Answer", printed::html(&answer.details)));
+    sections.push(Section::open("warnings", "Warnings", warnings(page.warnings)));
+    sections.push(Section::folded("more-pictures", MORE_PICTURES, more));
     let tables: String = page.tables.iter().map(|(name, rows)| table::html(name, rows)).collect();
-    sections.push(("tables", "Tables", tables));
-    sections.push(("assumptions", RESTS_ON, list(&answer.assumptions)));
-    sections.push(("warnings", "Warnings", warnings(page.warnings)));
+    sections.push(Section::folded("tables", "Tables", tables));
     let asked = page.asked.map_or_else(String::new, |(name, text)| {
         let given = words::ASKED_AGAIN;
         format!("<p><code>{name}</code>: {given}</p>\n{}", verbatim(name, &escape(text.trim_end())))
     });
-    sections.push(("question", "The question", asked));
-    sections.push(("provenance", "Provenance", provenance(page.provenance)));
-    sections.retain(|(_, _, content)| !content.is_empty());
+    sections.push(Section::folded("question", "The question", asked));
+    sections.push(Section::open("provenance", "Provenance", provenance(page.provenance)));
+    sections.retain(|section| !section.content.is_empty());
 
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -73,16 +83,66 @@ pub(crate) fn page(page: &Page<'_>) -> String {
          <header>\n<h1>{title}</h1>\n<p class=\"verdict\">{}</p>\n<nav aria-label=\"Contents\">\n<ul>\n",
         escape(answer.verdict)
     );
-    for (id, heading, _) in &sections {
+    for Section { id, heading, .. } in &sections {
         let _ = writeln!(out, "<li><a href=\"#{id}\">{heading}</a></li>");
     }
     out.push_str("</ul>\n</nav>\n</header>\n<main>\n");
-    for (id, heading, content) in &sections {
-        let _ = writeln!(out, "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">");
-        let _ = writeln!(out, "<h2 id=\"{id}-heading\">{heading}</h2>\n{content}</section>");
+    for Section { id, heading, content, is_folded } in &sections {
+        // Followed to its name, what is folded opens.
+        let heading = format!("<h2 id=\"{id}-heading\">{heading}</h2>");
+        let (class, begin, end) = match is_folded {
+            true => (
+                " class=\"folded\"",
+                format!("<details>\n<summary>{heading}</summary>\n<div id=\"{id}\">"),
+                "</div>\n</details>\n",
+            ),
+            false => ("", heading, ""),
+        };
+        let own = if *is_folded { format!("{id}-section") } else { (*id).to_owned() };
+        let _ = writeln!(out, "<section id=\"{own}\"{class} aria-labelledby=\"{id}-heading\">");
+        let _ = writeln!(out, "{begin}\n{content}{end}</section>");
     }
     out.push_str("</main>\n</body>\n</html>\n");
     out
+}
+
+/// The heading of what a yes holds only if, and of pictures that are folded.
+const CONDITIONS: &str = "Conditions";
+const MORE_PICTURES: &str = "More pictures";
+
+/// A part of the page under its heading; what is folded is not printed.
+struct Section {
+    id: &'static str,
+    heading: &'static str,
+    content: String,
+    is_folded: bool,
+}
+
+impl Section {
+    fn open(id: &'static str, heading: &'static str, content: String) -> Self {
+        Self { id, heading, content, is_folded: false }
+    }
+
+    fn folded(id: &'static str, heading: &'static str, content: String) -> Self {
+        Self { is_folded: true, ..Self::open(id, heading, content) }
+    }
+}
+
+/// Pictures that are shown before one asks for more.
+const SHOWN: usize = 2;
+/// Beginnings of the names of those that answer a question by themselves, the most telling first.
+const TELLING: [&str; 5] = ["identifiability", "trade_off", "bounds_map", "distances", "map_verdict"];
+
+/// Which pictures are shown at once: those that tell most, else the first.
+fn most_telling(drawings: &[Drawing<'_>]) -> Vec<usize> {
+    let rank = |i: &usize| {
+        let name = drawings.get(*i).map_or("", |drawing| drawing.name);
+        TELLING.iter().position(|telling| name.starts_with(telling)).unwrap_or(TELLING.len())
+    };
+    let mut order: Vec<usize> = (0..drawings.len()).collect();
+    order.sort_by_key(rank);
+    order.truncate(SHOWN);
+    order
 }
 
 /// A picture within the page, named by its own title.
@@ -110,18 +170,6 @@ fn figure(number: usize, drawing: &Drawing<'_>) -> String {
 /// Text as it stands in a file.
 fn verbatim(name: &str, text: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"group\" aria-label=\"{name}\">{text}</pre>\n")
-}
-
-/// Text as it is printed; a line too long for the page goes on indented, one of columns only where there is room for them.
-fn lines(text: &str) -> String {
-    if text.is_empty() {
-        return String::new();
-    }
-    let line = |line: &str| {
-        let class = if line.trim().contains("  ") { "line" } else { "line prose" };
-        format!("<span class=\"{class}\">{}</span>", escape(line))
-    };
-    verbatim("Answer", &text.lines().map(line).collect::<String>())
 }
 
 fn list(items: &[String]) -> String {
@@ -164,7 +212,12 @@ fn provenance(made: &Provenance) -> String {
         };
         let head = ("input", "<th scope=\"col\">SHA-256</th>");
         let hashes = table(" class=\"hashes\"", words::INPUTS, head, made.inputs.iter().map(row));
-        out.push_str(&wide("Inputs", &hashes));
+        let _ = write!(
+            out,
+            "<details>\n<summary>{}</summary>\n{}</details>\n",
+            words::INPUTS,
+            wide("Inputs", &hashes)
+        );
     }
     out + &format!("<p>{}</p>\n", words::WRITTEN)
 }

@@ -99,9 +99,10 @@ class Page:
                 raise AssertionError(f"after {seconds} s still not: {expression}")
             time.sleep(0.02)
 
-    def key(self, name, code, number):
+    def key(self, name, code, number, modifiers=0):
         for kind in ["keyDown", "keyUp"]:
-            self.call("Input.dispatchKeyEvent", type=kind, key=name, code=code, windowsVirtualKeyCode=number)
+            self.call("Input.dispatchKeyEvent", type=kind, key=name, code=code, windowsVirtualKeyCode=number,
+                      modifiers=modifiers)
 
     def picture(self, path, whole=False):
         shot = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)

@@ -1,7 +1,9 @@
 //! The answer to a scenario: that of `hadar size`, with what a page shows of it one by one.
 
 use crate::edit::{self, Edit};
+use crate::examples::{self, Example};
 use crate::form::{self, Form};
+use crate::route;
 use crate::said::{Said, Told};
 use crate::size_limit::{self, Command};
 use hadar::demand::{Reason, Thing, Work};
@@ -149,6 +151,9 @@ impl Engine {
             scenario: &'a str,
             materials: Vec<Named<'a>>,
             cameras: Vec<Named<'a>>,
+            examples: Vec<Example>,
+            /// How long an answer may take.
+            longest_s: u64,
             library_warnings: &'a [String],
         }
         let of_material = |material| {
@@ -165,6 +170,8 @@ impl Engine {
             scenario: &self.begin,
             materials: self.library.iter().map(of_material).chain(classes).collect(),
             cameras: self.presets()?.map(of_camera).collect(),
+            examples: examples::all()?,
+            longest_s: self.limits.time.unwrap_or(route::longest("/ask").0).as_secs(),
             library_warnings: self.library.warnings(),
         })
     }

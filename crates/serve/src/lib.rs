@@ -15,6 +15,7 @@
 //! | `route` | which question is asked where |
 //! | `engine` | the answer to a scenario |
 //! | `rules` | the answer to a rule |
+//! | `examples` | scenarios that the page offers to begin from |
 //! | `packs` | rules that the page offers |
 //! | `said` | warnings, conditions and mistakes as they are shown |
 //! | `size_limit` | what is larger than a page computes |
@@ -27,6 +28,7 @@
 
 mod edit;
 mod engine;
+mod examples;
 mod form;
 mod guard;
 mod http;

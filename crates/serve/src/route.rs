@@ -60,6 +60,8 @@ pub(crate) fn get(path: &str, engine: &Engine) -> Reply {
         "/" => Reply::of(HTML, include_str!("page/index.html")),
         "/page.css" => Reply::of(STYLE, include_str!("page/page.css")),
         "/shared.js" => Reply::of(SCRIPT, include_str!("page/shared.js")),
+        "/form.js" => Reply::of(SCRIPT, include_str!("page/form.js")),
+        "/past.js" => Reply::of(SCRIPT, include_str!("page/past.js")),
         "/page.js" => Reply::of(SCRIPT, include_str!("page/page.js")),
         "/start" => Reply::answered(JSON, engine.start()),
         "/rules" => Reply::of(HTML, include_str!("page/rules.html")),

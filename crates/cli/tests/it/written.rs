@@ -338,8 +338,16 @@ fn the_page_is_one_file_that_anyone_can_read() {
             all("section").iter().map(|section| section.attributes["id"].as_str()).collect();
         assert_eq!(sections.last(), Some(&"provenance"), "{sections:?}");
         if arguments[0] == "size" {
-            let expected =
-                ["answer", "pictures", "tables", "assumptions", "warnings", "question", "provenance"];
+            let expected = [
+                "assumptions",
+                "pictures",
+                "answer",
+                "warnings",
+                "more-pictures-section",
+                "tables-section",
+                "question-section",
+                "provenance",
+            ];
             assert_eq!(sections, expected);
             // What the warning means and what to do, which no text says.
             assert!(text.contains("What to do:"));

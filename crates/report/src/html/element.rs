@@ -14,7 +14,11 @@ pub(super) fn table(
     (first, others): (&str, &str),
     rows: impl Iterator<Item = (String, String)>,
 ) -> String {
-    let rows = rows.map(|(first, others)| format!("<tr><th scope=\"row\">{first}</th>{others}</tr>\n"));
+    let row = |(first, others): (String, String)| match first.as_str() {
+        "" => format!("<tr><td></td>{others}</tr>\n"),
+        _ => format!("<tr><th scope=\"row\">{first}</th>{others}</tr>\n"),
+    };
+    let rows = rows.map(row);
     format!(
         "<table{attributes}>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">{first}</th>{others}</tr></thead>\n<tbody>\n\
          {}</tbody>\n</table>\n",

@@ -1,12 +1,10 @@
-//! A table of a page. One too wide for paper is set in several, each with the first column; of a long one the beginning.
+//! The table of a file, folded until it is asked for; of a long one the beginning.
 
 use super::element::{self, escape, wide};
 use crate::table::Table;
 use crate::text::significant;
 use crate::words::page;
 
-/// Most columns beside the first.
-const COLUMNS: usize = 6;
 /// Most columns that are set at all.
 const WIDEST: usize = 30;
 /// Most rows.
@@ -32,24 +30,20 @@ pub(super) fn html(name: &str, table: &Table) -> String {
     if header.len() > WIDEST {
         return format!("<p>{}</p>\n", page::too_wide(&escape(name), header.len()));
     }
-    let parts = others.len().div_ceil(COLUMNS).max(1);
-    let mut out = String::new();
-    for part in 0..parts {
-        let columns = part * COLUMNS + 1..(part * COLUMNS + 1 + COLUMNS).min(header.len());
-        let shown = page::shown(part + 1, parts, ROWS, rows.len());
-        let caption = format!("{} ({}){shown}", escape(&title(name)), escape(name));
-        let heads: String = columns
-            .clone()
-            .map(|i| format!("<th scope=\"col\"{}>{}</th>", classes[i], head(&header[i])))
-            .collect();
-        let cells = |row: &Vec<String>| {
-            let cell = |i: usize| format!("<td{}>{}</td>", classes[i], escape(&short(text(row, i))));
-            (escape(&short(text(row, 0))), columns.clone().map(cell).collect())
-        };
-        let rows = rows.iter().take(ROWS).map(cells);
-        out.push_str(&wide(&caption, &element::table("", &caption, (&head(first), &heads), rows)));
-    }
-    out
+    let shown = page::shown(1, 1, ROWS, rows.len());
+    let caption = format!("{} ({}){shown}", escape(&title(name)), escape(name));
+    let heads: String = others
+        .iter()
+        .zip(classes.iter().skip(1))
+        .map(|(name, class)| format!("<th scope=\"col\"{class}>{}</th>", head(name)))
+        .collect();
+    let cells = |row: &Vec<String>| {
+        let cell = |(i, class): (usize, &&str)| format!("<td{class}>{}</td>", escape(&short(text(row, i))));
+        (escape(&short(text(row, 0))), classes.iter().enumerate().skip(1).map(cell).collect())
+    };
+    let rows = rows.iter().take(ROWS).map(cells);
+    let table = element::table("", &caption, (&head(first), &heads), rows);
+    format!("<details>\n<summary>{caption}</summary>\n{}</details>\n", wide(&caption, &table))
 }
 
 /// `noise_budget.csv` as it is spoken.

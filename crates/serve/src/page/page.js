@@ -4,25 +4,23 @@
 const STEPS = 200;
 const REST_MS = 250;
 const PATIENCE_MS = 300;
-const OWN_CAMERA =
-  'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n' +
-  'netd_f_number = 1.0\nnetd_pixel = "12 um"\nnoise_exposure = "10 ms"\n';
-
 let text = "";
 let begin = "";
-let named = { materials: [], cameras: [] };
+let named = { materials: [], cameras: [], examples: [], longest_s: 60 };
 let tradeOff = null;
 // What waits to be asked: changes of the form, a text that was typed, all of the answer.
 let changes = [];
 let typed = false;
 let whole = true;
 let busy = false;
+let controller = null;
+let clock = 0;
 let revision = 0;
 let resting = 0;
 let typing = 0;
 let refocus = null;
-let signature = "";
-const ranges = new Map();
+// The field that is wrong, and the line.
+let mistake = null;
 
 // Asking: one question at a time, the newest state next.
 
@@ -60,6 +58,28 @@ function pass() {
   document.title = "hadar";
 }
 
+// A question that takes longer than a moment shows how long it has taken of the time that it is given, and can be stopped.
+function working(on) {
+  clearInterval(clock);
+  if (!on) {
+    at("working").hidden = true;
+    return;
+  }
+  const begun = Date.now();
+  clock = setInterval(() => {
+    const seconds = (Date.now() - begun) / 1000;
+    if (seconds < 1) return;
+    at("working").hidden = false;
+    at("progress").max = named.longest_s;
+    at("progress").value = seconds;
+    at("clock").textContent = `${Math.round(seconds)} s of at most ${named.longest_s} s`;
+  }, 250);
+}
+
+function stopAsking() {
+  controller?.abort();
+}
+
 async function ask() {
   if (busy) return;
   busy = true;
@@ -70,8 +90,11 @@ async function ask() {
     changes = [];
     typed = whole = false;
     let trouble = null;
+    controller = new AbortController();
+    working(true);
+    at("again").hidden = true;
     try {
-      const reply = await post("/ask", question);
+      const reply = await post("/ask", question, AbortSignal.any([controller.signal, AbortSignal.timeout(LONGEST_MS)]));
       if (!reply.ok) trouble = `The program says: ${await reply.text()}`;
       else {
         const answered = await reply.json();
@@ -79,16 +102,22 @@ async function ask() {
         if (asked === revision) show(answered, question);
       }
     } catch {
-      trouble = "The program does not answer. Start `hadar serve` again, then change something here.";
+      trouble = controller.signal.aborted
+        ? "Stopped. What you changed is asked with your next change, or by the button below."
+        : "The program does not answer. Start `hadar serve` again, then change something here.";
     }
+    const isStopped = controller.signal.aborted;
+    working(false);
     clearTimeout(waiting);
     clearTimeout(resting);
     usable();
     if (trouble) {
       // Nothing is lost: it is asked again with the next change.
       if (asked === revision) changes = [...question.edits, ...changes];
-      typed = true;
-      failed(trouble);
+      typed = whole = true;
+      failed(trouble, null, isStopped ? "Stopped: there is no answer to what you changed." : undefined);
+      at("again").hidden = false;
+      if (isStopped) at("again").focus();
       break;
     }
     if (!question.full) resting = setTimeout(() => { whole = true; ask(); }, REST_MS);
@@ -96,18 +125,61 @@ async function ask() {
   busy = false;
 }
 
-function failed(message, place = null) {
+function failed(message, place = null, sentence = "No answer: the scenario cannot be computed as it stands.") {
   at("answer").hidden = true;
   document.title = "hadar";
-  at("sentence").textContent = "No answer: the scenario cannot be computed as it stands.";
+  at("sentence").textContent = sentence;
   at("sentence").className = "";
-  at("error").textContent = message;
+  unmark();
+  at("error-text").textContent = message;
   at("error").hidden = false;
-  document.querySelectorAll("[aria-invalid]").forEach((old) => old.removeAttribute("aria-invalid"));
-  if (!place) return;
-  const field = place.key && document.querySelector(`[data-path="${CSS.escape(place.key)}"]`);
-  if (field) field.setAttribute("aria-invalid", "true");
-  if (place.line) at("scenario").setAttribute("aria-invalid", "true");
+  const wrong = place && marked(message, place);
+  at("to-error").hidden = !wrong;
+  if (!wrong) return;
+  at("to-error").textContent = wrong === at("scenario") ? `Show line ${place.line}` : "Show the field";
+  // Whoever types is not interrupted.
+  const active = document.activeElement;
+  if (!active || active === document.body || !active.matches("input, select, textarea")) toError();
+}
+
+function unmark() {
+  document.querySelectorAll("[aria-invalid]").forEach((old) => {
+    old.removeAttribute("aria-invalid");
+    if (old !== at("scenario")) old.removeAttribute("aria-describedby");
+  });
+  document.querySelectorAll(".fault").forEach((old) => old.remove());
+  at("scenario").setAttribute("aria-describedby", "scenario-says");
+  at("error").hidden = true;
+  mistake = null;
+}
+
+// Marks what is wrong and says why beside it; returns it.
+function marked(message, { key, line }) {
+  const path = key && CSS.escape(key);
+  const field = key && document.querySelector(`[data-path="${path}"], [data-section="${path}"] select`);
+  if (line) {
+    at("scenario").setAttribute("aria-invalid", "true");
+    at("scenario").setAttribute("aria-describedby", "scenario-says error-text");
+  }
+  if (field) {
+    const fault = element("p", { className: "fault", id: `fault:${key}` }, message);
+    (field.closest(".field, .more") ?? field).append(fault);
+    field.setAttribute("aria-invalid", "true");
+    field.setAttribute("aria-describedby", fault.id);
+  }
+  mistake = field || line ? { field: field || at("scenario"), line } : null;
+  return mistake?.field;
+}
+
+// To the field that is wrong, or to the line of the text.
+function toError() {
+  if (!mistake) return;
+  const { field, line } = mistake;
+  if (at("more").contains(field)) at("more").open = true;
+  field.focus();
+  if (field !== at("scenario")) return;
+  const before = text.split("\n").slice(0, line - 1).join("\n").length + (line > 1 ? 1 : 0);
+  field.setSelectionRange(before, before + (text.split("\n")[line - 1] ?? "").length);
 }
 
 // Showing an answer.
@@ -118,10 +190,9 @@ function show({ scenario, form, answer, error }, { scenario: before, edits, full
   text = scenario;
   if (at("scenario").value !== text) at("scenario").value = text;
   if (form) showForm(form);
-  if (full || error) history.replaceState(null, "", link());
+  if (full || error) keep(text, form, answer);
   if (error) return failed(error.message, error);
-  document.querySelectorAll("[aria-invalid]").forEach((old) => old.removeAttribute("aria-invalid"));
-  at("error").hidden = true;
+  unmark();
   at("answer").hidden = false;
   at("answer").classList.remove("passing");
   if (at("sentence").textContent !== answer.sentence) at("sentence").textContent = answer.sentence;
@@ -181,242 +252,7 @@ const NAMES = {
   speed_m_s: "speed over exposure",
 };
 
-// The form.
-
-function showForm(form) {
-  const shape = JSON.stringify([
-    form.sections.map((section) => [
-      section.path, section.absent.map((one) => one.path),
-      section.fields.map((field) => [field.path, field.kind, field.choices, field.items.length, !!field.slider]),
-    ]),
-    form.absent.map((one) => one.path),
-  ]);
-  if (shape === signature) {
-    const fields = form.sections.flatMap((section) => section.fields);
-    fields.forEach(refresh);
-    const picked = at("pick:camera");
-    if (picked) chosen(picked, fields.find((field) => field.path === "camera.preset")?.value ?? "");
-    return;
-  }
-  signature = shape;
-  const focused = document.activeElement?.id;
-  const sections = form.sections.map(sectionElement);
-  at("form").replaceChildren(...sections, adder("Add to the scenario", form.absent));
-  if (focused) at(focused)?.focus();
-}
-
-const idOf = (path, what) => `${what}:${path}`;
-
-function sectionElement(section) {
-  const name = section.path === "" ? "Title" : counted(section.path);
-  const legend = element("legend", {}, section.word ? means(section.word, name, section.meaning) : name);
-  const parts = [legend];
-  if (section.meaning) parts.push(element("p", {}, section.meaning));
-  if (section.path === "camera") parts.push(cameraPicker(section));
-  parts.push(...section.fields.map(fieldElement));
-  const more = section.absent.length > 0 ? adder(`Add to ${name}`, section.absent) : element("div", { className: "more" });
-  if (section.removable) {
-    const attributes = { id: idOf(section.path, "take") };
-    more.append(button(`Remove ${name}`, () => restructure({ do: "remove", key: section.path }), attributes));
-  }
-  return element("fieldset", { "data-section": section.path }, ...parts, more);
-}
-
-function cameraPicker(section) {
-  const id = idOf(section.path, "pick");
-  const preset = section.fields.find((field) => field.name === "preset")?.value ?? "";
-  const options = [element("option", { value: "" }, "figures of its own")];
-  options.push(...named.cameras.map((camera) => element("option", { value: camera.name, title: camera.about }, camera.name)));
-  const select = element("select", { id }, ...options);
-  chosen(select, preset);
-  const take = button("Take", () => {
-    const toml = select.value === "" ? OWN_CAMERA : `preset = ${JSON.stringify(select.value)}\n`;
-    restructure({ do: "table", key: section.path, toml });
-  });
-  const pick = element("div", { className: "pick" }, select, take);
-  return element("div", { className: "field" }, element("label", { htmlFor: id }, "a known camera"), pick);
-}
-
-// Shows a value, which may be none of the known ones.
-function chosen(select, value) {
-  if (![...select.options].some((option) => option.value === value)) select.prepend(element("option", { value }, value));
-  select.value = value;
-}
-
-function adder(label, absent) {
-  const id = idOf(label, "add");
-  const options = absent.map((one) => element("option", { value: one.path, title: one.meaning }, one.name));
-  const select = element("select", { id }, element("option", { value: "" }, "…"), ...options);
-  const add = button("Add", () => select.value && restructure({ do: "add", key: select.value }), { "aria-label": label });
-  return element("div", { className: "more" }, element("label", { htmlFor: id }, label), select, add);
-}
-
-// A field as it is read out: many have the same name.
-const spoken = (field) => [...field.path.split(".").slice(0, -1).map(counted), field.name].join(", ");
-const counted = (part) => part.replace(/\[(\d+)\]/, (_, index) => ` ${Number(index) + 1}`);
-
-function fieldElement(field) {
-  const id = idOf(field.path, "field");
-  const control = controlOf(field, id);
-  const about = element("span", {}, means(field.word, "?", field.meaning));
-  about.firstChild.className = "means";
-  about.firstChild.setAttribute("aria-label", `what ${spoken(field)} means`);
-  if (field.removable) {
-    const attributes = { className: "small", "aria-label": `remove ${spoken(field)}` };
-    about.append(" ", button("×", () => restructure({ do: "remove", key: field.path }), attributes));
-  }
-  const label = element("label", { htmlFor: id, title: field.meaning }, field.name);
-  const parts = [label, control, about];
-  if (field.kind === "materials") parts.push(chips(field));
-  const range = rangeOf(field);
-  if (range) parts.push(sliderElement(field, range));
-  return element("div", { className: "field" }, ...parts);
-}
-
-function controlOf(field, id) {
-  const set = (value) => change({ do: "set", key: field.path, value });
-  const choose = (choices) => {
-    const select = element("select", { id, "data-path": field.path, "aria-label": spoken(field) }, ...choices.map((one) => element("option", { value: one }, one)));
-    chosen(select, field.value);
-    select.addEventListener("change", () => set(select.value));
-    return select;
-  };
-  const materials = named.materials.map((one) => one.name);
-  if (field.kind === "choice") return choose(field.choices);
-  if (field.kind === "flag") return choose(["true", "false"]);
-  if (field.kind === "material") return choose(materials);
-  if (field.kind === "materials") {
-    const others = materials.filter((name) => !field.items.includes(name));
-    const options = others.map((name) => element("option", { value: name }, name));
-    const select = element("select", { id, "data-path": field.path, "aria-label": spoken(field) }, element("option", { value: "" }, "one more…"), ...options);
-    const list = () => JSON.stringify([...field.items, select.value]);
-    const add = () => select.value && restructure({ do: "set", key: field.path, value: list() });
-    return element("div", { className: "pick" }, select, button("Add", add, { "aria-label": `add to ${spoken(field)}` }));
-  }
-  const input = element("input", { id, type: "text", value: field.value, "data-path": field.path, "aria-label": spoken(field), spellcheck: false });
-  // What is typed counts as it stands, after a moment: no verdict of another value stays beside it.
-  input.addEventListener("input", () => {
-    pass();
-    clearTimeout(typing);
-    typing = setTimeout(() => set(input.value), REST_MS);
-  });
-  input.addEventListener("change", () => { clearTimeout(typing); set(input.value); });
-  return input;
-}
-
-function chips(field) {
-  const chip = (name, index) => {
-    const rest = () => JSON.stringify(field.items.filter((_, other) => other !== index));
-    const drop = () => restructure({ do: "set", key: field.path, value: rest() });
-    return button(`${name} ×`, drop, { className: "small", "aria-label": `remove ${name}` });
-  };
-  return element("div", { className: "items" }, ...field.items.map(chip));
-}
-
-// A slider keeps its range while the number stays within it.
-function rangeOf(field) {
-  if (!field.slider) return null;
-  const kept = ranges.get(field.path);
-  const { number, unit } = field.slider;
-  const held = document.activeElement === at(idOf(field.path, "slider"));
-  if (kept && kept.unit === unit && (held || (number >= kept.low && number <= kept.high))) return { ...kept, number };
-  ranges.set(field.path, field.slider);
-  return field.slider;
-}
-
-const towards = {
-  linear: [(x) => x, (x) => x],
-  log: [Math.log, Math.exp],
-  nines: [(x) => -Math.log10(1 - x), (x) => 1 - 10 ** -x],
-};
-
-function positionOf(range) {
-  const [there] = towards[range.scale];
-  const [low, high] = [there(range.low), there(range.high)];
-  return Math.round((STEPS * (there(range.number) - low)) / (high - low));
-}
-
-function numberAt(range, position) {
-  const [there, back] = towards[range.scale];
-  const [low, high] = [there(range.low), there(range.high)];
-  const number = back(low + ((high - low) * position) / STEPS);
-  // Rounding leaves no end of the range.
-  const rounded = (digits) => Math.min(Math.max(Number(digits), range.low), range.high);
-  if (range.whole) return String(rounded(Math.round(number)));
-  if (range.scale === "nines") {
-    const places = Math.ceil(-Math.log10(1 - number)) + 1;
-    return String(rounded(number.toFixed(places)));
-  }
-  if (range.scale === "linear") return String(rounded(number.toFixed(range.high - range.low > 2 ? 1 : 3)));
-  return String(rounded(number.toPrecision(3)));
-}
-
-const written = (range, number) => (range.unit ? `${number} ${range.unit}` : number);
-
-function sliderElement(field, range) {
-  const id = idOf(field.path, "slider");
-  const slider = element("input", {
-    id, type: "range", min: 0, max: STEPS, step: 1, value: positionOf(range), "aria-label": `${spoken(field)}, slider`,
-    "aria-valuetext": field.value,
-  });
-  slider.addEventListener("input", () => {
-    const value = written(ranges.get(field.path), numberAt(ranges.get(field.path), slider.valueAsNumber));
-    at(idOf(field.path, "field")).value = value;
-    slider.setAttribute("aria-valuetext", value);
-    change({ do: "set", key: field.path, value });
-  });
-  return slider;
-}
-
-// The same fields with other values; what is being used is left alone.
-function refresh(field) {
-  const control = at(idOf(field.path, "field"));
-  if (!control) return;
-  const slider = at(idOf(field.path, "slider"));
-  const moving = document.activeElement === slider;
-  if (field.kind === "materials") control.closest(".field").replaceWith(fieldElement(field));
-  else if (document.activeElement !== control && !moving) {
-    if (control.tagName === "SELECT") chosen(control, field.value);
-    else control.value = field.value;
-  }
-  const range = rangeOf(field);
-  if (slider && range && !moving) {
-    slider.value = positionOf(range);
-    slider.setAttribute("aria-valuetext", field.value);
-  }
-}
-
-// Files and links.
-
-const encoded = (string) => {
-  const bytes = new TextEncoder().encode(string);
-  let binary = "";
-  bytes.forEach((byte) => { binary += String.fromCharCode(byte); });
-  return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
-};
-const decoded = (string) => {
-  const binary = atob(string.replaceAll("-", "+").replaceAll("_", "/"));
-  return new TextDecoder("utf-8", { fatal: true }).decode(Uint8Array.from(binary, (char) => char.charCodeAt(0)));
-};
-// With the number of letters, by which one that was cut off is told.
-const link = () => { const letters = encoded(text); return `#s=${letters.length}.${letters}`; };
-
-// The scenario of the address; null where it has none, undefined where it is broken.
-function restored() {
-  if (location.hash.length < 2) return null;
-  const found = /^#s=(\d+)\.([\w-]*)$/.exec(location.hash);
-  try {
-    return found && Number(found[1]) === found[2].length ? decoded(found[2]) : undefined;
-  } catch {
-    return undefined;
-  }
-}
-
-function open(otherwise) {
-  const scenario = restored();
-  if (scenario === undefined) failed("This link is broken or cut off; ask for it again, or begin again below.");
-  else take(scenario ?? otherwise);
-}
+// Files, examples, links.
 
 async function fetched(path, name, kind) {
   at("done").textContent = "One moment.";
@@ -427,7 +263,8 @@ async function fetched(path, name, kind) {
 }
 
 function take(scenario) {
-  document.activeElement?.blur();
+  const example = named.examples.findIndex((one) => one.text === scenario);
+  at("example").value = example < 0 ? "" : example;
   clearTimeout(typing);
   pass();
   text = scenario;
@@ -452,9 +289,17 @@ at("save-scenario").addEventListener("click", () => save("scenario.toml", "text/
 at("save-report").addEventListener("click", () => fetched("/report", "report.html", "text/html"));
 at("save-json").addEventListener("click", () => fetched("/json", "hadar.json", "application/json"));
 at("print").addEventListener("click", () => print());
+at("stop").addEventListener("click", stopAsking);
+at("again").addEventListener("click", () => ask());
+at("to-error").addEventListener("click", toError);
+at("skip").addEventListener("click", (event) => { event.preventDefault(); at("verdict").focus(); at("verdict").scrollIntoView(); });
+at("example").addEventListener("change", () => {
+  const example = named.examples[Number(at("example").value)];
+  if (example) take(example.text);
+});
 at("reset").addEventListener("click", () => take(begin));
 at("link").addEventListener("click", async () => {
-  history.replaceState(null, "", link());
+  await keeping;
   try {
     await navigator.clipboard.writeText(location.href);
     at("done").textContent = "The link is in your clipboard.";
@@ -463,7 +308,6 @@ at("link").addEventListener("click", async () => {
   }
 });
 addEventListener("beforeprint", () => { at("printed").textContent = at("scenario").value; });
-addEventListener("hashchange", () => open(text));
 
 (async () => {
   try {
@@ -471,6 +315,8 @@ addEventListener("hashchange", () => open(text));
     begin = start.scenario;
     named = start;
     at("version").textContent = start.version;
+    const options = start.examples.map((one, index) => element("option", { value: index }, one.title));
+    at("example").replaceChildren(element("option", { value: "" }, "choose an example…"), ...options);
   } catch {
     return failed("The program does not answer. Start `hadar serve` again, then load this page anew.");
   }

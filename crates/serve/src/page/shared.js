@@ -36,7 +36,7 @@ function pictureOf([name, svg]) {
   const title = parsed.querySelector("title")?.textContent ?? name;
   parsed.setAttribute("role", "img");
   parsed.setAttribute("aria-label", title);
-  return element("figure", { className: "picture" }, document.importNode(parsed, true));
+  return element("figure", { className: "picture", tabIndex: 0, role: "group", "aria-label": title }, document.importNode(parsed, true));
 }
 
 function save(name, kind, content) {
@@ -45,3 +45,32 @@ function save(name, kind, content) {
   setTimeout(() => URL.revokeObjectURL(url), 10000);
   at("done").textContent = `${name} is in your downloads.`;
 }
+
+// What a word means, beside it: the page of the word in a box that Esc closes. Where there are no such boxes the page itself opens.
+async function explained(link) {
+  const box = at("help") ?? element("div", { id: "help", popover: "auto", role: "dialog", tabIndex: -1, "aria-label": "What the word means" });
+  const reply = await fetch(link.href).catch(() => null);
+  const found = reply?.ok && new DOMParser().parseFromString(await reply.text(), "text/html").querySelector("main");
+  if (!found) return;
+  found.querySelector("p:last-child")?.remove();
+  const word = element("p", {}, element("strong", {}, found.querySelector("h1")?.textContent ?? ""));
+  found.querySelector("h1")?.remove();
+  found.querySelectorAll("h2").forEach((head) => head.replaceWith(element("p", {}, element("strong", {}, head.textContent))));
+  const close = button("Close", () => box.hidePopover(), { className: "small" });
+  box.replaceChildren(word, ...found.childNodes, close);
+  if (!box.isConnected) document.body.append(box);
+  const place = link.getBoundingClientRect();
+  box.showPopover();
+  box.style.left = `${Math.max(8, Math.min(place.left, innerWidth - box.offsetWidth - 8))}px`;
+  box.style.top = `${Math.max(8, Math.min(place.bottom + 6, innerHeight - box.offsetHeight - 8))}px`;
+  close.focus();
+  box.addEventListener("toggle", () => link.isConnected && link.focus(), { once: true });
+}
+
+document.addEventListener("click", (event) => {
+  const link = event.target.closest?.("a[href^='/explain/']");
+  const isPlain = !(event.ctrlKey || event.metaKey || event.shiftKey);
+  if (!link || !isPlain || !HTMLElement.prototype.showPopover) return;
+  event.preventDefault();
+  explained(link);
+});

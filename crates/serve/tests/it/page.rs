@@ -125,7 +125,16 @@ fn strangers_are_refused() {
 
 #[test]
 fn there_is_nothing_but_the_page() {
-    for path in ["/", "/page.js", "/page.css", "/start", "/explain/camera.netd", "/explain/diffraction"] {
+    for path in [
+        "/",
+        "/page.js",
+        "/form.js",
+        "/past.js",
+        "/page.css",
+        "/start",
+        "/explain/camera.netd",
+        "/explain/diffraction",
+    ] {
         assert_eq!(get(path).0, 200, "{path}");
     }
     for path in [
