@@ -73,7 +73,8 @@ impl Direct {
         for ((label, y), top) in labels.iter().zip(apart(&boxes, frame.top, frame.bottom)) {
             draw_entry(scene, &label.key, &label.lines, (left, top));
             let middle = top + 0.5 * LINE;
-            let ends_there = label.at.is_some_and(|at| at.0 >= AT_FRAME) && beside == 0.0;
+            let is_line = !matches!(label.key, Key::Symbol { .. } | Key::Area { .. });
+            let ends_there = is_line && label.at.is_some_and(|at| at.0 >= AT_FRAME) && beside == 0.0;
             if ends_there && (middle - y).abs() > MOVED {
                 let to: Point = (left - 2.0, middle);
                 scene.line((frame.right + 2.0, *y), to, 0.8, GREY);

@@ -120,9 +120,11 @@ impl Placer {
         self.beside(scene, at, text, &[10.0, 20.0, 38.0, 62.0]);
     }
 
-    /// Labels a point of an image from some way off, so that what is there stays in view.
-    pub(super) fn away(&mut self, scene: &mut Scene, at: Point, text: &str) {
-        self.beside(scene, at, text, &[30.0, 45.0, 62.0]);
+    /// Labels points of an image from some way off, so that what is there stays in view.
+    pub(super) fn away(&mut self, scene: &mut Scene, points: &[(Point, String)]) {
+        let around = |(x, y): Point| Rect { left: x, right: x, top: y, bottom: y }.grown(PADDING);
+        self.taken.extend(points.iter().map(|(at, _)| around(*at)));
+        points.iter().for_each(|(at, text)| self.beside(scene, *at, text, &[30.0, 45.0, 62.0]));
     }
 
     fn beside(&mut self, scene: &mut Scene, (x, y): Point, text: &str, gaps: &[f64]) {

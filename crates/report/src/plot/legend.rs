@@ -95,7 +95,7 @@ impl Legend {
             }
         }
         // Many entries share rows; a few may have a row each.
-        let columns = if entries.len() > 4 { 3.0 } else { 1.0 };
+        let columns = if entries.len() > 4 && width > 3.0 * COLUMN { 3.0 } else { 1.0 };
         Self { entries: broken(width / columns - KEY - 4.0 * GAP), more, side: Side::Below }
     }
 

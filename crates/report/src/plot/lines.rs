@@ -256,6 +256,10 @@ fn draw_panel(scene: &mut Scene, part: &Part, x: &Horizontal, y: &Vertical, area
         panel.markers.iter().filter_map(|marker| Some((place(marker.x, marker.y)?, marker.label.as_str())));
     let markers: Vec<(Point, &str)> = markers.filter(|(at, _)| area.grown(0.01).contains(*at)).collect();
     placer.points(scene, &markers);
+    // What is in the ring stays in view.
+    for (centre, _) in &markers {
+        scene.marks.push(Mark::Disc { centre: *centre, radius: 1.6, colour: INK });
+    }
     for (rule, (px, py)) in &rules {
         match rule {
             Rule::Horizontal { label, .. } => placer.along(scene, *py, label, GREY),

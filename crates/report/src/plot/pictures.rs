@@ -365,12 +365,16 @@ fn draw(
 fn draw_labels(scene: &mut Scene, picture: &Picture, area: &Rect) {
     let mut placer = Placer::new(*area);
     let (rows, columns) = (picture.rows() as f64, picture.columns as f64);
-    for (row, column, words) in &picture.labels {
+    let place = |(row, column, words): &'_ (usize, usize, String)| {
         let at = area.at((*column as f64 + 0.5) / columns, 1.0 - (*row as f64 + 0.5) / rows);
-        scene.marks.push(Mark::Disc { centre: at, radius: 2.6, colour: WHITE });
-        scene.marks.push(Mark::Disc { centre: at, radius: 1.7, colour: INK });
-        placer.away(scene, at, words);
+        (at, words.clone())
+    };
+    let labels: Vec<(Point, String)> = picture.labels.iter().map(place).collect();
+    for (at, _) in &labels {
+        scene.marks.push(Mark::Disc { centre: *at, radius: 2.6, colour: WHITE });
+        scene.marks.push(Mark::Disc { centre: *at, radius: 1.7, colour: INK });
     }
+    placer.away(scene, &labels);
 }
 
 /// Draws a painted picture, with a bar if it has one.

@@ -74,7 +74,7 @@ fn typeset(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut before = "";
     for token in text.split_inclusive([' ', ',', ';', '(', ')']) {
-        let word = token.trim_end_matches([' ', ',', ';', '(', ')']);
+        let word = token.trim_end_matches([' ', ',', ';', '(', ')', '.', ':']);
         let is_number = |word: &str| word.parse::<f64>().is_ok();
         match word {
             "degC" => out.push_str("°C"),
@@ -202,7 +202,7 @@ mod tests {
         for (typed, printed) in [
             ("S (photons s^-1 m^-2)", "S (photons s⁻¹ m⁻²)"),
             ("1e7 photons, 5.4e6 of them, 1e-4 per K", "10⁷ photons, 5.4×10⁶ of them, 10⁻⁴ per K"),
-            ("exposed for 20 us at 37 degC, 12 um, for us", "exposed for 20 µs at 37 °C, 12 µm, for us"),
+            ("200 us. 20 us at 37 degC: 12 um, for us.", "200 µs. 20 µs at 37 °C: 12 µm, for us."),
             ("10^x ^ 2^ e7 1e basalt@1e7 1.e7.2", "10^x ^ 2^ e7 1e basalt@1e7 1.e7.2"),
         ] {
             assert_eq!(clean(typed), printed);
