@@ -21,18 +21,27 @@ use hadar_report::table::{self, Table, number, optional};
 /// Errors are drawn down to this: exact to the last bit.
 const FLOOR: f64 = 0.25 * ROUNDED;
 
+/// A longer name of the error is not written along its axis, letters.
+const LONGEST: usize = 40;
+
 /// Error against time of every method, with the Pareto front and the default.
 #[must_use]
 pub fn plot(chart: &Chart) -> Plot {
+    // What the error is of needs the room of a subtitle.
+    let (short, long) = match chart.error.char_indices().nth(LONGEST) {
+        Some(_) => ("error", format!(" Error: {}.", chart.error)),
+        None => (chart.error, String::new()),
+    };
     let mut figure = LineFigure::new(
-        chart.title,
+        format!("{}: what accuracy costs how much time?", chart.title),
         Axis::log(format!("time of {} (s), one thread", chart.timed)),
-        Axis::log(format!("error: {}", chart.error)),
+        Axis::log(short),
     )
     .subtitle(
         format!(
-            "Along a line: {}. Full symbols: the Pareto front{}, nothing is both faster and better. Reference: {}. Errors below {} \
+            "{}Along a line: {}. Full symbols: the Pareto front{}, nothing is both faster and better. Reference: {}. Errors below {} \
              are drawn there: exact to the last bit.",
+            if long.is_empty() { String::new() } else { format!("{} ", long.trim()) },
             chart.effort,
             if chart.questions().len() > 1 { " of each question" } else { "" },
             chart.reference,

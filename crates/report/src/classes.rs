@@ -1,7 +1,7 @@
 //! What the members of classes say together: table, picture.
 
 use crate::figures::Plot;
-use crate::plot::{Axis, Figure, Matrix};
+use crate::plot::{Axis, Figure, Matrix, NamedSeries, NamedValues};
 use crate::table::{Table, number, optional};
 use crate::text::significant;
 use crate::words::classes::LIGHTEST;
@@ -44,7 +44,98 @@ pub fn pictures(answers: &[ClassAnswer]) -> Vec<Plot> {
     drawn.enumerate().map(|(i, answer)| picture(answer, (answers.len() > 1).then_some(i + 1))).collect()
 }
 
+/// Most series side by side; more members on both sides are a matrix.
+const SERIES: usize = 4;
+
 fn picture(answer: &ClassAnswer, place: Option<usize>) -> Plot {
+    let sides = [&answer.target.members, &answer.alternative.members].map(|names| Group::of(names));
+    let figure = if sides.iter().any(|groups| groups.len() <= SERIES) {
+        dots(answer, &sides).into()
+    } else {
+        Figure::from(matrix(answer))
+    };
+    // Two alternatives may have the same name.
+    let name = place.map_or_else(
+        || "class_pairs".to_owned(),
+        |place| format!("class_pairs_{place}_{}", answer.alternative.name),
+    );
+    Plot { name: name.into(), figure, table: table(std::slice::from_ref(answer)) }
+}
+
+/// Members of one material: samples, whose numbers say nothing to a reader.
+struct Group {
+    name: String,
+    members: Vec<usize>,
+}
+
+impl Group {
+    fn of(members: &[String]) -> Vec<Self> {
+        let mut groups: Vec<Self> = Vec::new();
+        for (i, member) in members.iter().enumerate() {
+            let own = member.split_once('/').map_or(member.as_str(), |(_, own)| own);
+            let name = own.split_once('@').map_or(own, |(name, _)| name);
+            match groups.iter_mut().find(|group| group.name == name) {
+                Some(group) => group.members.push(i),
+                None => groups.push(Self { name: name.to_owned(), members: vec![i] }),
+            }
+        }
+        groups
+    }
+
+    fn said(&self) -> String {
+        match self.members.len() {
+            1 => self.name.clone(),
+            samples => format!("{} ({samples} samples)", self.name),
+        }
+    }
+}
+
+/// The axis of distances.
+fn axis(answer: &ClassAnswer) -> Axis {
+    Axis::log(if answer.statistical { "statistical distance d" } else { "distance (per √photon)" })
+}
+
+fn title(answer: &ClassAnswer) -> String {
+    format!("Which {} is hardest to distinguish from which {}?", answer.target.name, answer.alternative.name)
+}
+
+/// The side of more materials as rows, the other one as symbols: of samples of one material the nearest.
+fn dots(answer: &ClassAnswer, sides: &[Vec<Group>; 2]) -> NamedValues {
+    let [targets, alternatives] = sides;
+    let turned = targets.len() > alternatives.len();
+    let (rows, series) = if turned { (targets, alternatives) } else { (alternatives, targets) };
+    let distance = |row: &Group, of: &Group| {
+        let pairs = row.members.iter().flat_map(|r| of.members.iter().map(move |s| (*r, *s)));
+        let exact = pairs.filter_map(|(r, s)| {
+            let (a, b) = if turned { (r, s) } else { (s, r) };
+            answer.distances.pair(a, b)?.distance
+        });
+        exact.fold(f64::NAN, f64::min)
+    };
+    // The nearest first.
+    let nearest = |row: &Group| series.iter().map(|of| distance(row, of)).fold(f64::INFINITY, f64::min);
+    let mut rows: Vec<&Group> = rows.iter().collect();
+    rows.sort_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+    let names = rows.iter().map(|row| row.said()).collect();
+    let mut figure = NamedValues::new(title(answer), names, axis(answer))
+        .no_value("farther than those that decide; how far is not computed");
+    if sides.iter().flatten().any(|group| group.members.len() > 1) {
+        figure =
+            figure.subtitle("Of several samples of one material the nearest. All pairs are in the table.");
+    }
+    for of in series {
+        figure =
+            figure.series(NamedSeries::new(of.said(), rows.iter().map(|row| distance(row, of)).collect()));
+    }
+    match answer.required {
+        Some(required) => figure
+            .threshold(required, format!("required: {}", significant(required, 3)))
+            .below("not distinguished"),
+        None => figure,
+    }
+}
+
+fn matrix(answer: &ClassAnswer) -> Matrix {
     let (rows, columns) = (&answer.target.members, &answer.alternative.members);
     let values: Vec<f64> = (0..rows.len())
         .flat_map(|a| (0..columns.len()).map(move |b| (a, b)))
@@ -55,8 +146,6 @@ fn picture(answer: &ClassAnswer, place: Option<usize>) -> Plot {
         .collect();
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(0.0, f64::max);
-    let axis = if answer.statistical { "statistical distance d" } else { "distance (per √photon)" };
-    let beyond = answer.pairs > answer.searched;
     let short = |names: &[String]| -> Vec<String> {
         names
             .iter()
@@ -64,22 +153,17 @@ fn picture(answer: &ClassAnswer, place: Option<usize>) -> Plot {
             .collect()
     };
     let mut figure = Matrix::new(
-        format!("Every {} against every {}", answer.target.name, answer.alternative.name),
+        title(answer),
         (format!("{}, the target", answer.target.name), short(rows)),
         (format!("{}, the alternative", answer.alternative.name), short(columns)),
-        (Axis::log(axis).range(least, if most > 1.01 * least { most } else { 2.0 * least }), values),
+        (axis(answer).range(least, if most > 1.01 * least { most } else { 2.0 * least }), values),
     );
-    if beyond {
+    if answer.pairs > answer.searched {
         figure = figure.subtitle(LIGHTEST);
     }
     if let Some(required) = answer.required {
         let label = format!("not told apart: d below {}", significant(required, 3));
         figure = figure.threshold(required, label);
     }
-    // Two alternatives may have the same name.
-    let name = place.map_or_else(
-        || "class_pairs".to_owned(),
-        |place| format!("class_pairs_{place}_{}", answer.alternative.name),
-    );
-    Plot { name: name.into(), figure: Figure::from(figure), table: table(std::slice::from_ref(answer)) }
+    figure
 }

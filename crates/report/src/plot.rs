@@ -4,7 +4,7 @@
 //! once (text measured with the embedded font, so that nothing is clipped or overlaps) into a list of
 //! marks, which two painters draw. White background, one font
 //! (DejaVu Sans), colours that the colour-blind can tell apart (Okabe and Ito, *Color Universal
-//! Design*, 2008), legends outside the data.
+//! Design*, 2008), labels beside the ends of the curves, else legends outside the data.
 //!
 //! A number that cannot be drawn (NaN, infinite, zero or below on a logarithmic axis) is a gap in a
 //! curve and a cell without value in a map, never an error. Beside a name it is an arrow at the edge of the
@@ -24,6 +24,7 @@ mod axis;
 mod canvas;
 mod colour;
 mod contour;
+mod direct;
 mod dots;
 mod encode;
 mod figure;

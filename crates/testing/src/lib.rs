@@ -1,5 +1,7 @@
 //! What the tests of several packages share: the repository's files and those beside it, and properties whose failures
-//! come back.
+//! come back, and how colours look to the colour-blind.
+
+pub mod vision;
 
 #[cfg(feature = "proptest")]
 use proptest::test_runner::{Config, RngSeed};

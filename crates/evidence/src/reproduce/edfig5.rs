@@ -104,6 +104,10 @@ fn looks(found: &Compared, order: Order) -> Result<Option<Plot>> {
         brightness: brightness(texture, columns),
         hue_deg: hues.clone(),
     };
+    // Hue alone names no material to all eyes.
+    let truth = yard.expected.views.first().map(|view| view.material.as_slice()).unwrap_or_default();
+    let materials: Vec<Option<usize>> =
+        truth.iter().map(|m| Some(usize::from(*m)).filter(|_| *m != u16::MAX)).collect();
     let painted = |key: &str, title: &str, vision: &Vision| {
         let mut picture = Picture::painted(
             title,
@@ -112,6 +116,9 @@ fn looks(found: &Compared, order: Order) -> Result<Option<Plot>> {
             Painted { pixels: vision.pixels(), ramp: None },
         );
         picture.values.clone_from(&vision.brightness);
+        if key != "pseudo_tex_brightness" {
+            picture = picture.name_areas(&materials, &yard.expected.materials);
+        }
         (key.to_owned(), picture)
     };
     let pictures = vec![
@@ -150,7 +157,12 @@ fn looks(found: &Compared, order: Order) -> Result<Option<Plot>> {
         ),
     ];
     let subtitle = "Left camera, 200 us, 54 bands. Grey: nothing told. Hues of materials and of segments are not the same.";
-    Ok(picture_plot("looks", "One heat cube in five ways", subtitle.to_owned(), pictures))
+    Ok(picture_plot(
+        "looks",
+        "What does each way of showing one heat cube keep?",
+        subtitle.to_owned(),
+        pictures,
+    ))
 }
 
 /// Information of windows.
@@ -164,7 +176,12 @@ fn maps(found: &Compared) -> Option<Plot> {
         let values = window_sums(j, shape, HALF).iter().map(|j| j.clamp(ends[0], ends[1])).collect();
         (
             key.to_owned(),
-            Picture::new(title, Axis::log("J (pixel⁻²)").range(ends[0], ends[1]), columns, values),
+            Picture::new(
+                title,
+                Axis::log("Fisher information J (pixel⁻²)").range(ends[0], ends[1]),
+                columns,
+                values,
+            ),
         )
     };
     let pictures = vec![
@@ -178,7 +195,12 @@ fn maps(found: &Compared) -> Option<Plot> {
     let subtitle = format!(
         "Of windows of {SIDE} × {SIDE} pixels, from the expected counts. Beyond the scale: its ends."
     );
-    picture_plot("information", "Fisher information of a window's place along x", subtitle, pictures)
+    picture_plot(
+        "information",
+        "Which image has most information on where a window is along x?",
+        subtitle,
+        pictures,
+    )
 }
 
 fn find<'a>(found: &'a Compared, name: &str) -> Option<&'a Row> {

@@ -46,15 +46,18 @@ pub(super) fn all_bands(order: Order, progress: Progress<'_>) -> Result<Made> {
     let mut lines = robot(&result);
     if let [rival] = rival {
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;
-        bundle.add_table("noise_curves.csv", curves(&noise))?;
-        let title = "Person or robot, 536 bands: no classifier beats the limit".to_owned();
-        let plot = SimulationCurves { title, noise: Some(&noise), other: None, name: "fig3b" };
-        bundle.add_plots(&[figures::classifiers(&result, &plot)])?;
+        let title = "Does any classifier beat the limit? Person or robot, 536 bands".to_owned();
+        // The detector's noise has a picture of its own: the experiments are by shot noise alone.
+        let plot = SimulationCurves { title, name: "fig3b", ..SimulationCurves::default() };
+        let title = "What does the detector's noise cost? Limits, 536 bands";
+        let limits = figures::noise_limits(&noise, title, curves(&noise));
+        bundle.add_plots(&[figures::classifiers(&result, &plot), limits])?;
         lines.extend(floor("Fig. 3b", &noise));
     }
     lines.extend(shortfalls("Fig. 3b", &result));
     let caption = "Information of each classifier against the normalised photon number";
-    Ok((bundle, lines, Figures { pictures: vec![("fig3b.png", caption)], text: String::new() }))
+    let pictures = vec![("fig3b.png", caption), ("noise_curves.png", "Limits under each kind of noise")];
+    Ok((bundle, lines, Figures { pictures, text: String::new() }))
 }
 
 /// Fig. S7.
@@ -69,7 +72,7 @@ pub(super) fn three_bands(order: Order, progress: Progress<'_>) -> Result<Made> 
     if let [rival] = study.alternatives() {
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;
         bundle.add_table("noise_curves.csv", curves(&noise))?;
-        let title = "Person or robot, three bands: trained classifiers come to the limit".to_owned();
+        let title = "Do trained classifiers come to the limit? Person or robot, three bands".to_owned();
         let other = Some((&noisy, "Points on the right, along the lower curve: with mixed noise."));
         let plot = SimulationCurves { title, noise: Some(&noise), other, name: "figs7" };
         bundle.add_plots(&[figures::classifiers(&result, &plot)])?;

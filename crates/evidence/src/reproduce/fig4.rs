@@ -12,7 +12,8 @@ use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::statistics::Statistics;
 use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;
-use hadar_report::plot::{Axis, Picture};
+use hadar_report::figures::Plot;
+use hadar_report::plot::{Axis, Figure, Picture};
 use hadar_report::range;
 use hadar_report::table::{Table, markdown, number};
 use hadar_scenario::RangeScenario;
@@ -41,10 +42,11 @@ pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
     bundle.add_table("bounds.csv", range::bounds(&paper))?;
     bundle.add("night_scenario.toml", night.scenario.to_toml());
     bundle.add_table("night_bounds.csv", range::bounds(&night))?;
-    let mut plots: Vec<_> = [range::views(&paper), range::bound_maps(&paper), range::matched_maps(&paper)]
-        .into_iter()
-        .flatten()
-        .collect();
+    let mut plots: Vec<_> =
+        [titled(range::views(&paper)), range::bound_maps(&paper), range::matched_maps(&paper)]
+            .into_iter()
+            .flatten()
+            .collect();
     plots.extend(range::lines(&paper));
     bundle.add("dim_scenario.toml", dim.scenario.to_toml());
     for mut plot in range::lines(&dim) {
@@ -85,6 +87,16 @@ pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
         ("night_bounds_map.png", "Bounds of depth by signal under a cold sky, in 54 bands"),
     ];
     Ok((bundle, ledger(&paper, &night, &dim, &locking), Figures { pictures, text }))
+}
+
+/// The views with the answer above them.
+fn titled(views: Option<Plot>) -> Option<Plot> {
+    let mut plot = views?;
+    if let Figure::Pictures(figure) = &mut plot.figure {
+        figure.title =
+            "On the road the thermal image has no texture; the scattered signal is full of it".into();
+    }
+    Some(plot)
 }
 
 /// The same street seen more coarsely, so that many of them are quickly drawn.

@@ -80,7 +80,12 @@ pub(super) fn make(order: Order) -> Result<Made> {
             let subtitle = format!(
                 "{exposure}. Windows of {SIDE} × {SIDE}, correlation with a parabola. No value: sky, what one camera alone sees, no match."
             );
-            let plot = picture_plot("errors", "Error of the disparity by block matching", subtitle, pictures);
+            let plot = picture_plot(
+                "errors",
+                "Where does block matching fail? Error of the disparity",
+                subtitle,
+                pictures,
+            );
             bundle.add_plots(&plot.into_iter().collect::<Vec<_>>())?;
         }
     }
@@ -128,7 +133,7 @@ fn against_noise(rows: &[Row]) -> Plot {
         }
     });
     let mut figure = LineFigure::new(
-        "Ranging on each kind of image over the exposure",
+        "On which image does ranging work best, and from which exposure on?",
         Axis::log("exposure (s)"),
         Axis::linear("pixels within one pixel of disparity (%)").range(0.0, 100.0),
     )

@@ -84,7 +84,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
             "candidates.png",
             "Cost of every candidate for a pixel of rough aluminium, with and without scattered light",
         ),
-        ("temperatures.png", "Temperature error of each method over the emissivity, the material known"),
+        ("temperatures.png", "Temperature error of each method over the reflectivity, the material known"),
         ("inverse_trade_off.png", "Errors of the inverse functions over the width of the bands"),
     ];
     Ok((bundle, lines, Figures { pictures, text }))
@@ -158,21 +158,32 @@ fn temperatures(street: &Street, pixels: &[Pixel], off: &[Vec<f64>], bounds: &[f
         let first = [street.names[*m].to_owned(), number(*mean)];
         table.push(first.into_iter().chain(errors).chain([number(of(*m, bounds))]).collect());
     }
-    let x: Vec<f64> = order.iter().map(|(_, mean)| *mean).collect();
+    // Most materials are nearly black: what they reflect sets them apart.
+    let x: Vec<f64> = order.iter().map(|(_, mean)| 1.0 - *mean).collect();
     let y = |values: &[f64]| order.iter().map(|(m, _)| of(*m, values)).collect::<Vec<f64>>();
     let mut figure = LineFigure::new(
-        "Temperature by each method, the material known",
-        Axis::linear("mean emissivity of the material"),
+        "Which method reads the temperature, the material known?",
+        Axis::log("mean reflectivity of the material, 1 − emissivity"),
         Axis::log("temperature error, rms (K)"),
     )
     .subtitle(format!(
         "{PIXELS} pixels under sky and ground of any share, 270 to 310 K, {PHOTONS:.0e} photons each."
     ));
     for (i, (method, off)) in Method::ALL.iter().zip(off).enumerate() {
-        figure = figure.series(Series::points(method.name(), x.clone(), y(off)).colour(i));
+        figure = figure.series(Series::points(in_words(*method), x.clone(), y(off)).colour(i));
     }
     figure = figure.series(Series::points("Cramér–Rao bound", x.clone(), y(bounds)).open().colour(6));
     Plot { name: "temperatures".into(), figure: figure.into(), table }
+}
+
+/// What a method is.
+fn in_words(method: Method) -> &'static str {
+    match method {
+        Method::Ml => "maximum likelihood, with scattered light (TeX)",
+        Method::AnalyticInverse => "inverse functions (S46, S47)",
+        Method::Te => "maximum likelihood, without scattered light (TE)",
+        Method::GreyBody => "grey body",
+    }
 }
 
 fn lines(typical: &[Costs], worth: &[Worth], bounds: &[f64]) -> Vec<Line> {

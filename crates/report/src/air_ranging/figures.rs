@@ -95,8 +95,9 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
     let signed = of(curve, |point| point.bias_without_sky_m);
     let bound = of(curve, |point| point.sigma_m);
     let table = Table::of_columns([("distance_m", &x), ("bias_without_sky_m", &signed), ("sigma_m", &bound)]);
+    let bound_shown = bound.clone();
     let mut figure = LineFigure::new(
-        "What a model loses that leaves out the sky",
+        "What does a model lose that leaves out the sky?",
         distance(),
         Axis::log("error of the distance (m)"),
     )
@@ -104,12 +105,25 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
     .series(Series::line("off, without sky", x.clone(), own).style(Style::Marked).colour(1))
     .series(Series::line("bound, with sky", x.clone(), bound).colour(0))
     .series(Series::line("the distance itself", x.clone(), x.clone()).style(Style::Dotted).colour(6));
+    // The end of a search is no estimate: where there is none is shown, not a value.
     if edge.iter().any(|value| value.is_finite()) {
-        figure = figure
-            .series(Series::points("ends at the shortest or longest distance", x, edge).colour(1).open());
+        let known = |values: &[f64]| values.iter().copied().filter(|v| v.is_finite()).collect::<Vec<f64>>();
+        let drawn = [known(&bound_shown), known(&x)].concat();
+        let low = drawn.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = drawn.iter().copied().fold(0.0, f64::max);
+        let level = |end: f64| edge.iter().map(|e| if e.is_finite() { end } else { f64::NAN }).collect();
+        figure = figure.band(Band::new(
+            "no distance found without sky: the search ends at its shortest or longest",
+            x,
+            level(low),
+            level(high),
+        ));
     }
     Some(Plot { name: "bias_without_sky".into(), figure: figure.into(), table })
 }
+
+/// Shares below this are not drawn, percent.
+const LEAST_SHARE: f64 = 1e-3;
 
 /// What each band tells of the distance, with what the air does there.
 #[must_use]
@@ -142,9 +156,12 @@ pub fn information(result: &AirRanging) -> Plot {
         ],
     );
     let figure = LineFigure::new(
-        format!("What each band tells of {} m", significant(result.at.distance_m, 3)),
+        format!(
+            "Which bands hold the information on a distance of {} m?",
+            significant(result.at.distance_m, 3)
+        ),
         wavenumber_axis(&x),
-        Axis::linear("share of the information (%)"),
+        Axis::log("share of the information (%)").range(LEAST_SHARE, 100.0),
     )
     .subtitle(one_reading(result))
     .series(
@@ -154,7 +171,7 @@ pub fn information(result: &AirRanging) -> Plot {
     )
     .series(Series::line(label("as asked", result.at.sigma_m), x.clone(), own).colour(0))
     .lower(
-        Panel::new(Axis::linear("transmittance").range(0.0, 1.0))
+        Panel::new(Axis::linear("transmittance of the air"))
             .series(Series::line("transmittance of the air", x, tau).colour(4)),
     );
     Plot { name: "information_by_band".into(), figure: figure.into(), table }

@@ -20,8 +20,12 @@ use std::io::Write;
 const PALEST: f64 = 0.25;
 /// Brightness of the darkest texture; the paper has 0.
 pub const DARKEST: f64 = 0.3;
-/// Saturation and brightness of what shows the material alone.
-const PLAIN: [f64; 2] = [0.8, 0.9];
+/// Saturation and brightness of what shows a material alone, in the order of the library. Where hues look alike to the colour-blind the
+/// one is dark or pale: of the first eight materials and white no two are closer than 15 of CIEDE2000 to any eyes.
+const PLAIN: [[f64; 2]; 8] =
+    [[1.0, 1.0], [0.8, 0.55], [0.8, 0.25], [0.6, 0.45], [0.4, 0.95], [1.0, 0.75], [1.0, 0.25], [1.0, 1.0]];
+/// What is undecided, beside them.
+const UNDECIDED: Rgb = (255, 255, 255);
 /// Share of the textures that are darker than the scale, and brighter.
 const BEYOND: f64 = 0.005;
 /// Materials in the legend.
@@ -177,6 +181,12 @@ pub fn saturation(temperature_k: f64, [low, high]: [f64; 2]) -> f64 {
     PALEST + (1.0 - PALEST) * ((temperature_k - low) / (high - low)).clamp(0.0, 1.0)
 }
 
+/// The colour of a material alone.
+fn plain(hues_deg: &[f64], place: usize) -> Rgb {
+    let [saturation, brightness] = PLAIN.get(place % PLAIN.len()).copied().unwrap_or([1.0; 2]);
+    hues_deg.get(place).map_or(UNDECIDED, |hue| rgb(*hue, saturation, brightness))
+}
+
 /// A colour of hue (degrees), saturation and brightness.
 fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> Rgb {
     let part = |n: f64| {
@@ -197,9 +207,11 @@ pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
     let take = |all: &[f32], is_shown: fn(f32) -> bool| -> Vec<f64> {
         all.iter().map(|x| if is_shown(*x) { f64::from(*x) } else { f64::NAN }).collect()
     };
-    let plain =
-        |hue: &Option<f64>| rgb(hue.unwrap_or(0.0), if hue.is_some() { PLAIN[0] } else { 0.0 }, PLAIN[1]);
-    let materials: Vec<Rgb> = vision.hue_deg.iter().map(plain).collect();
+    let plain = |place: Option<usize>| place.map_or(UNDECIDED, |place| plain(&asked.hues_deg, place));
+    let areas: Vec<Option<usize>> = (0..pixels.maps.material.len())
+        .map(|i| pixels.maps.material.get(i).filter(|_| pixels.maps.is_decided(i)).map(|m| usize::from(*m)))
+        .collect();
+    let materials: Vec<Rgb> = areas.iter().map(|area| plain(*area)).collect();
     let [low, high] = asked.temperature_k;
     let ramp_hue = result
         .found
@@ -217,7 +229,8 @@ pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
             Axis::linear("temperature (K)").range(low, high),
             wide,
             Painted { pixels: vision.pixels(), ramp: Some(ramp) },
-        ),
+        )
+        .name_areas(&areas, &result.materials),
         Picture::new(
             "Thermal image, all bands together",
             Axis::linear(format!("radiance {unit}")),
@@ -229,7 +242,8 @@ pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
             Axis::linear(""),
             wide,
             Painted { pixels: materials, ramp: None },
-        ),
+        )
+        .name_areas(&areas, &result.materials),
         Picture::new(
             "Texture: what the surfaces see around them",
             Axis::log(format!("incident radiance {unit}")),
@@ -250,11 +264,10 @@ pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
     let mut keys: Vec<(Rgb, String)> = Vec::new();
     for row in result.found.iter().filter(|row| row.decided > 0).take(LISTED) {
         let place = result.materials.iter().position(|name| *name == row.material);
-        let hue = place.and_then(|place| asked.hues_deg.get(place).copied());
-        keys.push((plain(&hue), row.material.clone()));
+        keys.push((plain(place), row.material.clone()));
     }
     if result.decided < result.pixels {
-        keys.push((plain(&None), "undecided, or not told".to_owned()));
+        keys.push((plain(None), "undecided".to_owned()));
     }
     let at = |values: &[f64], i: usize| optional(values.get(i).copied());
     let rows: Vec<(usize, &[usize; 3])> = places.iter().enumerate().collect();
@@ -270,16 +283,33 @@ pub(super) fn plot(brush: &Brush<'_>, pixels: &Block, shown: Shown) -> Plot {
             ("thermal_photons_s1_m2_sr1", &|(i, _)| at(&thermal, *i)),
         ],
     );
-    let figure = Pictures::new("Material, temperature and texture of the heat cube", pictures)
-        .subtitle(brightness_said(LIMIT, 0.5 * (DARKEST + 1.0)))
-        .no_value("nothing is told, or no light")
-        .keys(keys);
+    let figure =
+        Pictures::new("Which materials, temperatures and textures does the heat cube hold?", pictures)
+            .subtitle(brightness_said(LIMIT, 0.5 * (DARKEST + 1.0)))
+            .no_value("nothing is told, or no light")
+            .keys(keys);
     Plot { name: "tex_vision".into(), figure: figure.into(), table }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hadar_study::decompose::hues_deg;
+    use hadar_testing::vision::closest;
+
+    /// Materials of any names, and those that the paper has given hues of their own, by eyes of four kinds.
+    #[test]
+    fn materials_are_told_apart_by_the_colour_blind() {
+        let distance = |names: &[String]| {
+            let hues = hues_deg(names, |_| None);
+            let colours = names.iter().enumerate().map(|(i, name)| (name.clone(), plain(&hues, i)));
+            closest(&colours.chain([("undecided".to_owned(), UNDECIDED)]).collect::<Vec<_>>())
+        };
+        let eight: Vec<String> = (0..8).map(|i| format!("m{i}")).collect();
+        let found = distance(&eight);
+        println!("TeX vision: {found:?}");
+        assert!(found.distance >= 15.0, "{found:?}");
+    }
 
     /// Corners of the colour solid, and its axis.
     #[test]

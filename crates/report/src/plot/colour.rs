@@ -3,6 +3,14 @@
 //! Curves: Okabe and Ito, *Color Universal Design* (2008), without its yellow, which is lost on white.
 //! Quantities: viridis of S. van der Walt and N. Smith (matplotlib, released under CC0), perceptually
 //! uniform and readable in grey; its published table at twenty equal steps, linear in sRGB between them.
+//! Signed quantities: `RdBu` of C. Brewer (colorbrewer2.org), blue below zero, white at it, red above.
+//!
+//! What the colour-blind see of them is computed in the tests ([`vision`]).
+
+#[cfg(test)]
+mod vision;
+
+use super::axis::{Ruler, Scale};
 
 /// Red, green and blue.
 type Rgb = (u8, u8, u8);
@@ -32,6 +40,8 @@ pub(super) const GRID: Colour = Colour::hex(0xE4E6E8);
 pub(super) const FINE_GRID: Colour = Colour::hex(0xF2F3F4);
 pub(super) const SHADE: Colour = Colour::hex(0xECEDEF);
 pub(super) const NO_VALUE: Colour = Colour::hex(0xD6D6D6);
+/// No value beside the white of a signed quantity.
+pub(super) const NO_SIGNED_VALUE: Colour = Colour::hex(0x9A9A9A);
 
 /// Blue, vermillion, bluish green, reddish purple, orange, sky blue, black.
 const PALETTE: [Colour; 7] = [
@@ -64,12 +74,31 @@ const VIRIDIS: [u32; 20] = [
     0x1F968B, 0x20A387, 0x29AF7F, 0x3CBB75, 0x55C667, 0x73D055, 0x95D840, 0xB8DE29, 0xDCE319, 0xFDE725,
 ];
 
+const SIGNED: [u32; 11] = [
+    0x053061, 0x2166AC, 0x4393C3, 0x92C5DE, 0xD1E5F0, 0xF7F7F7, 0xFDDBC7, 0xF4A582, 0xD6604D, 0xB2182B,
+    0x67001F,
+];
+
 /// Colour of a quantity at `fraction` of its scale; the ends beyond it.
 pub(super) fn quantity(fraction: f64) -> Colour {
-    let position = fraction.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+    along(&VIRIDIS, fraction)
+}
+
+/// Colours of a scale: those of a signed quantity where its two ends differ by their sign alone.
+pub(super) fn map(ruler: &Ruler) -> fn(f64) -> Colour {
+    if is_signed(ruler) { |fraction| along(&SIGNED, fraction) } else { quantity }
+}
+
+/// Whether the two ends of a scale differ by their sign alone.
+pub(super) fn is_signed(ruler: &Ruler) -> bool {
+    ruler.scale == Scale::Linear && ruler.first == -ruler.last
+}
+
+fn along(table: &[u32], fraction: f64) -> Colour {
+    let position = fraction.clamp(0.0, 1.0) * (table.len() - 1) as f64;
     let step = position as usize;
     let weight = position - step as f64;
-    let at = |i: usize| VIRIDIS.get(i).or(VIRIDIS.last()).map_or(INK, |&code| Colour::hex(code)).rgb;
+    let at = |i: usize| table.get(i).or(table.last()).map_or(INK, |&code| Colour::hex(code)).rgb;
     let (a, b) = (at(step), at(step + 1));
     let mix = |a: u8, b: u8| (f64::from(a) + weight * (f64::from(b) - f64::from(a))).round() as u8;
     Colour { rgb: (mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2)), opacity: 1.0 }

@@ -49,7 +49,10 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
     let height = rows.pitch * figure.names.len().max(1) as f64;
     let twice = if height > LABELS_TWICE { x.room_for_labels() } else { 0.0 };
     let line = threshold(figure, &ruler);
-    let room = if line.is_some_and(|(_, label)| !label.is_empty()) { label::SIZE + 6.0 } else { 0.0 };
+    let words = line.map_or("", |(_, label)| label);
+    let words = text::wrap(words, label::SIZE, frame::WIDTH - 2.0 * EDGE);
+    let leading = label::SIZE * text::LEADING;
+    let room = if words.is_empty() { 0.0 } else { leading * words.len() as f64 + 3.0 };
     let top = after + x.room_above() + twice + room + 6.0;
     let area = Rect { left, right, top, bottom: top + height };
 
@@ -65,17 +68,17 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
         }
     }
     let taken = line.map(|(part, _)| area.at(part, 0.0).0);
-    if let Some((part, words)) = line {
+    if let Some((part, _)) = line {
         let (at, _) = area.at(part, 0.0);
         let up = if x.room_above() > 0.0 || words.is_empty() { area.top } else { area.top - twice - 3.0 };
         for points in geometry::dash(&[(at, area.bottom), (at, up)], &[5.0, 3.0]) {
             scene.marks.push(Mark::Stroke { points, width: 1.2, colour: INK });
         }
         let base = area.top - x.room_above() - twice - 6.0;
-        if let Some(line) = text::wrap_at_most(words, label::SIZE, frame::WIDTH - 2.0 * EDGE, 1).first() {
+        for (line, below) in words.iter().zip((0..words.len()).rev()) {
             let half = 0.5 * text::width(line, label::SIZE);
             let middle = at.min(frame::WIDTH - EDGE - half).max(EDGE + half);
-            scene.text((middle, base), line, label::SIZE, INK, Anchor::Middle);
+            scene.text((middle, base - leading * below as f64), line, label::SIZE, INK, Anchor::Middle);
         }
     }
     scene.outline(area, 0.9, INK);

@@ -16,13 +16,15 @@ const TITLE: f64 = 16.0;
 const SUBTITLE: f64 = 11.5;
 pub(super) const AXIS_TITLE: f64 = 12.5;
 pub(super) const EDGE: f64 = 12.0;
+/// Most lines of an axis title.
+const MOST_LINES: usize = 6;
 /// From the frame to the tick labels.
 const LABEL_GAP: f64 = 8.0;
 
 /// Draws title and subtitle; returns where they end.
 pub(super) fn heading(scene: &mut Scene, title: &str, subtitle: &str) -> f64 {
     let mut y = EDGE;
-    for (words, size, colour, most) in [(title, TITLE, INK, 3), (subtitle, SUBTITLE, GREY, 6)] {
+    for (words, size, colour, most) in [(title, TITLE, INK, 4), (subtitle, SUBTITLE, GREY, 6)] {
         for line in text::wrap_at_most(words, size, scene.width - 2.0 * EDGE, most) {
             y += size * LEADING;
             scene.text((EDGE, y - 0.3 * size), &line, size, colour, Anchor::Start);
@@ -274,10 +276,10 @@ impl Horizontal {
 
 /// An axis title in lines; one that is too long breaks before its unit.
 fn broken_title(title: &str, limit: f64) -> Vec<String> {
-    let whole = text::wrap_at_most(title, AXIS_TITLE, limit, 3);
+    let whole = text::wrap_at_most(title, AXIS_TITLE, limit, MOST_LINES);
     match title.split_once(" (") {
         Some((name, unit)) if whole.len() > 1 => {
-            text::wrap_at_most(&format!("{name}\n({unit}"), AXIS_TITLE, limit, 3)
+            text::wrap_at_most(&format!("{name}\n({unit}"), AXIS_TITLE, limit, MOST_LINES)
         }
         _ => whole,
     }

@@ -9,12 +9,16 @@ use super::frame::{self, AXIS_TITLE, EDGE, TICK, Vertical};
 use super::heat;
 use super::legend::{self, Entry, Key, Legend};
 use super::matrix::Matrix;
-use super::names::{NARROW, Names, SHARE};
+use super::names::{self, NARROW, Names, SHARE};
 use super::scene::{Anchor, Mark, Rect, Scene};
 use super::text;
 use super::ticks;
 use hadar::Result;
 
+/// Longest line of the title of the columns.
+const ACROSS: f64 = frame::WIDTH - 2.0 * EDGE;
+/// Room for the title of the rows, however few.
+const SHORTEST_TITLE: f64 = 120.0;
 const BAR: f64 = 18.0;
 const BAR_GAP: f64 = 18.0;
 /// Tallest colour bar, and the shortest that still holds a scale.
@@ -43,7 +47,7 @@ pub(super) fn scene(matrix: &Matrix) -> Result<Scene> {
     let grid = Grid::new(matrix, colours(matrix));
 
     let mut scene = Scene::new(&matrix.title, frame::WIDTH);
-    let title = title_room(&matrix.column_title);
+    let title = title_room(&matrix.column_title, ACROSS);
     let heading = frame::heading(&mut scene, &matrix.title, &matrix.subtitle) + 4.0;
     let top = snapped(heading + title + (grid.columns.room + NAME_GAP).max(14.0), f64::ceil);
     // Nothing separates the last cells from the frame.
@@ -51,14 +55,15 @@ pub(super) fn scene(matrix: &Matrix) -> Result<Scene> {
     let (width, height) = (along(grid.cell.0, matrix.columns.len()), along(grid.cell.1, matrix.rows.len()));
     let area = Rect { left: grid.left, right: grid.left + width, top, bottom: top + height };
 
-    if let Some(line) = text::wrap_at_most(&matrix.column_title, AXIS_TITLE, width.max(120.0), 1).first() {
-        let at = (0.5 * (area.left + area.right), heading + AXIS_TITLE);
-        scene.text(at, line, AXIS_TITLE, INK, Anchor::Middle);
+    for (i, line) in text::wrap(&matrix.column_title, AXIS_TITLE, ACROSS).iter().enumerate() {
+        let half = 0.5 * text::width(line, AXIS_TITLE);
+        let middle = (0.5 * (area.left + area.right)).min(frame::WIDTH - EDGE - half).max(EDGE + half);
+        let y = heading + AXIS_TITLE * (1.0 + i as f64 * text::LEADING);
+        scene.text((middle, y), line, AXIS_TITLE, INK, Anchor::Middle);
     }
-    let height = area.height().max(120.0);
-    if let Some(line) = text::wrap_at_most(&matrix.row_title, AXIS_TITLE, height, 1).first() {
-        let at = (EDGE + 0.8 * AXIS_TITLE, 0.5 * (area.top + area.bottom));
-        scene.turned(at, line, AXIS_TITLE, INK, Anchor::Middle);
+    for (i, line) in text::wrap(&matrix.row_title, AXIS_TITLE, grid.upwards).iter().enumerate() {
+        let x = EDGE + AXIS_TITLE * (0.8 + i as f64 * text::LEADING);
+        scene.turned((x, 0.5 * (area.top + area.bottom)), line, AXIS_TITLE, INK, Anchor::Middle);
     }
     grid.draw_names(&mut scene, &area);
     let entries = grid.draw_cells(&mut scene, matrix, &area);
@@ -68,7 +73,7 @@ pub(super) fn scene(matrix: &Matrix) -> Result<Scene> {
     let bar_left = area.right + BAR_GAP;
     let bar = Rect { left: bar_left, right: bar_left + BAR, top, bottom: top + grid.bar_height };
     let fractions = known().filter_map(|value| grid.bar.ruler.fraction(value));
-    heat::draw_bar(&mut scene, fractions, &grid.bar, &bar, &super::colour::quantity);
+    heat::draw_bar(&mut scene, fractions, &grid.bar, &bar, &colour::map(&grid.bar.ruler));
     if let Some(part) = matrix.threshold.as_ref().and_then(|t| grid.bar.ruler.fraction(t.value))
         && (0.0..=1.0).contains(&part)
     {
@@ -97,9 +102,10 @@ pub(super) fn is_image(matrix: &Matrix) -> bool {
     many && matrix.check().is_ok() && Grid::new(matrix, colours(matrix)).gap == 0.0
 }
 
-/// Room that the title of a side needs.
-fn title_room(title: &str) -> f64 {
-    if text::clean(title).is_empty() { 0.0 } else { AXIS_TITLE * text::LEADING + 5.0 }
+/// Room that the title of a side needs in lines of this length.
+fn title_room(title: &str, limit: f64) -> f64 {
+    let lines = text::wrap(title, AXIS_TITLE, limit).len() as f64;
+    if lines == 0.0 { 0.0 } else { AXIS_TITLE * text::LEADING * lines + 5.0 }
 }
 
 /// To a whole pixel of the PNG.
@@ -118,14 +124,15 @@ struct Grid {
     cell: (f64, f64),
     /// What separates two cells.
     gap: f64,
+    /// Longest line of the title of the rows.
+    upwards: f64,
 }
 
 impl Grid {
     fn new(matrix: &Matrix, colours: Ruler) -> Self {
         let (rows, columns) = (matrix.rows.len().max(1) as f64, matrix.columns.len().max(1) as f64);
-        let title = title_room(&matrix.row_title);
         let mut pitch = 20.0;
-        let mut grid = Self::with(matrix, colours, (pitch, pitch), title);
+        let mut grid = Self::with(matrix, colours, (pitch, pitch));
         // Smaller letters leave more room for the cells, larger cells take larger letters.
         for _ in 0..6 {
             let right = frame::WIDTH - grid.bar.room() - BAR - BAR_GAP;
@@ -134,25 +141,27 @@ impl Grid {
             // A single row is not a thread.
             let high = high.max((BAR_HEIGHT.start / rows).min(HIGHEST));
             let cell = (snapped(pitch, f64::floor), snapped(high, f64::floor));
-            grid = Self::with(matrix, colours, cell, title);
+            grid = Self::with(matrix, colours, cell);
         }
         // Whatever the last round has changed, the cells must end before the colour bar.
         let right = frame::WIDTH - grid.bar.room() - BAR - BAR_GAP;
         let widest = snapped((right - grid.left) / columns, f64::floor).max(1.0 / PIXELS);
         grid.cell.0 = grid.cell.0.min(widest);
-        grid.columns = Names::new(&matrix.columns, grid.cell.0, NARROW, Some(grid.cell.0));
+        grid.columns = Names::new(&matrix.columns, grid.cell.0, names::WIDE, Some(grid.cell.0));
         grid
     }
 
-    fn with(matrix: &Matrix, colours: Ruler, cell: (f64, f64), title: f64) -> Self {
+    fn with(matrix: &Matrix, colours: Ruler, cell: (f64, f64)) -> Self {
         let rows = Names::new(&matrix.rows, cell.1, NARROW, None);
-        let columns = Names::new(&matrix.columns, cell.0, NARROW, Some(cell.0));
+        let columns = Names::new(&matrix.columns, cell.0, names::WIDE, Some(cell.0));
         let height = cell.1 * matrix.rows.len() as f64;
         let bar_height = height.clamp(BAR_HEIGHT.start, BAR_HEIGHT.end);
         let bar = Vertical::new(&matrix.colour, colours, bar_height);
+        let upwards = height.max(SHORTEST_TITLE);
+        let title = title_room(&matrix.row_title, upwards);
         let left = snapped(EDGE + title + rows.room + NAME_GAP + 2.0, f64::ceil);
         let gap = if cell.0.min(cell.1) < FINE { 0.0 } else { 1.0 / PIXELS };
-        Self { rows, columns, bar, bar_height, left, cell, gap }
+        Self { rows, columns, bar, bar_height, left, cell, gap, upwards }
     }
 
     fn draw_names(&self, scene: &mut Scene, area: &Rect) {
@@ -190,7 +199,7 @@ impl Grid {
         if self.gap == 0.0 {
             let mut pixels = vec![WHITE.rgb; matrix.values.len()];
             for (row, column, value) in matrix.cells() {
-                let known = || heat::shade(fraction(ruler, value));
+                let known = || heat::shade(ruler, fraction(ruler, value));
                 let colour = if value.is_finite() { known() } else { NO_VALUE };
                 pixels[row * matrix.columns.len() + column] = colour.rgb;
             }
@@ -198,7 +207,7 @@ impl Grid {
             let entry = |colour, label| Entry { key: Key::Area { colour }, label };
             let below = matrix.threshold.as_ref().map(|threshold| {
                 let label = format!("{}, below the line on the scale", threshold.meaning);
-                entry(heat::shade(0.5 * fraction(ruler, threshold.value)), label)
+                entry(heat::shade(ruler, 0.5 * fraction(ruler, threshold.value)), label)
             });
             let unknown = (missing > 0).then(|| entry(NO_VALUE, matrix.no_value.clone()));
             return below.into_iter().chain(unknown).collect();
@@ -216,7 +225,8 @@ impl Grid {
                 continue;
             }
             let part = fraction(ruler, value);
-            let (colour, ink) = (colour::quantity(part), ink_on(part));
+            let colour = colour::map(ruler)(part);
+            let ink = ink_on(ruler, part);
             scene.fill(place, colour);
             if numbers {
                 let (x, y) = place.at(0.5, 0.5);
@@ -247,9 +257,10 @@ fn fraction(ruler: &Ruler, value: f64) -> f64 {
     ruler.fraction(value).unwrap_or(lowest).clamp(0.0, 1.0)
 }
 
-/// What is seen on the colour at this part of the scale.
-fn ink_on(part: f64) -> Colour {
-    if part < LIGHT { WHITE } else { INK }
+/// What is seen on the colour at this part of a scale.
+fn ink_on(ruler: &Ruler, part: f64) -> Colour {
+    let is_light = if colour::is_signed(ruler) { (0.2..0.8).contains(&part) } else { part >= LIGHT };
+    if is_light { INK } else { WHITE }
 }
 
 /// Lines between groups, a little longer than the cells.
@@ -283,15 +294,16 @@ mod tests {
         let values = (0..1_000_000).map(|i| f64::from(i % 1000)).collect();
         let colour = Axis::linear("d").range(0.0, 999.0);
         let matrix = Matrix::new("many", ("target", names.clone()), ("alternative", names), (colour, values));
-        let drawn = scene(&matrix.threshold(10.0, "too near")).unwrap();
+        let sample = matrix.threshold(10.0, "too near");
+        let drawn = scene(&sample).unwrap();
         let mut images = drawn.marks.iter().filter_map(|mark| match mark {
             Mark::Image { columns, pixels, .. } => Some((*columns, pixels)),
             _ => None,
         });
         let (columns, pixels) = images.next().unwrap();
         assert_eq!((columns, pixels.len()), (1000, 1_000_000));
-        assert_eq!(pixels[5], heat::shade(5.0 / 999.0).rgb);
-        assert_eq!(pixels[999_005], heat::shade(5.0 / 999.0).rgb);
+        assert_eq!(pixels[5], heat::shade(&colours(&sample), 5.0 / 999.0).rgb);
+        assert_eq!(pixels[999_005], heat::shade(&colours(&sample), 5.0 / 999.0).rgb);
         assert_eq!(pixels[1001], WHITE.rgb, "a name beside itself");
         assert!(drawn.marks.len() < 5000, "{}", drawn.marks.len());
     }

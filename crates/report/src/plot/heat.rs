@@ -3,10 +3,11 @@
 use super::axis::{Axis, Ruler, transform};
 use super::colour::{self, Colour, GREY, INK, NO_VALUE, WHITE};
 use super::contour;
+use super::figure::Marker;
 use super::frame::{self, Horizontal, Vertical};
 use super::geometry;
 use super::heatmap::{HeatMap, edges};
-use super::label::{Placer, RIM};
+use super::label::Placer;
 use super::legend::{self, Entry, Key, Legend};
 use super::scene::{Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
@@ -37,18 +38,20 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
     let top = frame::heading(&mut scene, &map.title, &map.subtitle) + x.room_above().max(factor) + 14.0;
     let area = Rect { left, right, top, bottom: top + HEIGHT };
 
-    let missing = draw_cells(&mut scene, &Lattice::new(map, &colours), &x, &y, area);
+    let shades = |part| shade(&colours, part);
+    let missing = draw_cells(&mut scene, &Lattice::new(map, &colours), &shades, [&x.ruler, &y.ruler], area);
     let mut placer = Placer::new(area);
-    draw_contours(&mut scene, &mut placer, map, &x, &y, &area);
+    let contours = draw_contours(&mut scene, &mut placer, map, &x, &y, &area);
     scene.outline(area, 0.9, INK);
     x.draw_ticks(&mut scene, &area);
     x.draw_secondary(&mut scene, &area);
     y.draw_left(&mut scene, &area, if x.room_above() > 0.0 { 14.0 } else { 0.0 });
-    for marker in &map.markers {
-        let at = x.ruler.fraction(marker.x).zip(y.ruler.fraction(marker.y)).map(|(x, y)| area.at(x, y));
-        let Some(at) = at.filter(|at| area.grown(0.01).contains(*at)) else { continue };
-        draw_ring(&mut scene, at);
-        placer.point(&mut scene, at, &marker.label);
+    let place = |marker: &Marker| Some(area.at(x.ruler.fraction(marker.x)?, y.ruler.fraction(marker.y)?));
+    let markers = map.markers.iter().filter_map(|marker| Some((place(marker)?, marker.label.as_str())));
+    let markers: Vec<(Point, &str)> = markers.filter(|(at, _)| area.grown(0.01).contains(*at)).collect();
+    placer.points(&mut scene, &markers);
+    for (line, text) in &contours {
+        placer.on_line(&mut scene, line, text);
     }
     let values = map.values.iter().copied();
     let beside = Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area };
@@ -57,7 +60,7 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
         values.filter_map(|value| bar.ruler.fraction(value)),
         &bar,
         &beside,
-        &colour::quantity,
+        &colour::map(&bar.ruler),
     );
     let mut entries = Vec::new();
     for (i, (value, label)) in map.marks.iter().enumerate() {
@@ -142,18 +145,18 @@ fn between((edges, centres): &(Vec<f64>, Vec<f64>), at: f64) -> Option<(usize, f
 fn draw_cells(
     scene: &mut Scene,
     lattice: &Lattice<'_>,
-    x: &Horizontal,
-    y: &Vertical,
+    shades: &dyn Fn(f64) -> Colour,
+    [x, y]: [&Ruler; 2],
     area: Rect,
 ) -> Option<Key> {
     let (width, height) = ((area.width() * FINE) as usize, (area.height() * FINE) as usize);
     let along = |ruler: &Ruler, part: f64| ruler.first + part * (ruler.last - ruler.first);
     let mut pixels = Vec::with_capacity(width * height);
     for row in 0..height {
-        let at_y = along(&y.ruler, 1.0 - (row as f64 + 0.5) / height as f64);
+        let at_y = along(y, 1.0 - (row as f64 + 0.5) / height as f64);
         for column in 0..width {
-            let at_x = along(&x.ruler, (column as f64 + 0.5) / width as f64);
-            pixels.push(lattice.at(at_x, at_y).map_or(NO_VALUE, shade).rgb);
+            let at_x = along(x, (column as f64 + 0.5) / width as f64);
+            pixels.push(lattice.at(at_x, at_y).map_or(NO_VALUE, shades).rgb);
         }
     }
     scene.marks.push(Mark::Image { area, columns: width, pixels });
@@ -168,13 +171,13 @@ fn draw_cells(
 
 impl Lattice<'_> {
     /// Places of the cells without value, as far as they are in view.
-    fn cells_without_value(&self, x: &Horizontal, y: &Vertical, frame: &Rect) -> Vec<Rect> {
+    fn cells_without_value(&self, x: &Ruler, y: &Ruler, frame: &Rect) -> Vec<Rect> {
         let width = self.map.columns.len();
         let missing = self.parts.iter().enumerate().filter(|(_, part)| part.is_none());
         let place = |at: usize| {
             let (row, column) = (at / width, at % width);
-            let across = |i: usize| Some(frame.at(x.ruler.place(*self.columns.0.get(i)?), 0.0).0);
-            let up = |i: usize| Some(frame.at(0.0, y.ruler.place(*self.rows.0.get(i)?)).1);
+            let across = |i: usize| Some(frame.at(x.place(*self.columns.0.get(i)?), 0.0).0);
+            let up = |i: usize| Some(frame.at(0.0, y.place(*self.rows.0.get(i)?)).1);
             let (a, b, c, d) = (across(column)?, across(column + 1)?, up(row)?, up(row + 1)?);
             let cell = Rect {
                 left: a.min(b).max(frame.left),
@@ -188,11 +191,12 @@ impl Lattice<'_> {
     }
 }
 
-/// Colour at a part of the scale, in the steps that a palette holds.
-pub(super) fn shade(part: f64) -> Colour {
-    colour::quantity((part.clamp(0.0, 1.0) * SHADES).round() / SHADES)
+/// Colour at a part of a scale, in the steps that a palette holds.
+pub(super) fn shade(scale: &Ruler, part: f64) -> Colour {
+    colour::map(scale)((part.clamp(0.0, 1.0) * SHADES).round() / SHADES)
 }
 
+/// Draws the contour lines; returns the longest of each level, with its label.
 fn draw_contours(
     scene: &mut Scene,
     placer: &mut Placer,
@@ -200,7 +204,7 @@ fn draw_contours(
     x: &Horizontal,
     y: &Vertical,
     area: &Rect,
-) {
+) -> Vec<(Vec<Point>, String)> {
     let centre = |i: &f64, ruler: &Ruler| ruler.fraction(*i).unwrap_or(0.0);
     let columns: Vec<f64> = map.columns.iter().map(|c| area.at(centre(c, &x.ruler), 0.0).0).collect();
     let rows: Vec<f64> = map.rows.iter().map(|r| area.at(0.0, centre(r, &y.ruler)).1).collect();
@@ -223,9 +227,7 @@ fn draw_contours(
         }
         labels.push((longest, ticks::label(*level)));
     }
-    for (line, text) in labels {
-        placer.on_line(scene, &line, &text);
-    }
+    labels
 }
 
 /// The colour bar with its scale, and tips where there are fractions beyond it.
@@ -258,15 +260,6 @@ pub(super) fn draw_bar(
         scene.marks.push(Mark::Area { x, upper: vec![base; 3], lower, colour: colour_of(0.0) });
     }
     axis.draw_right(scene, bar);
-}
-
-/// A ring that is seen on any colour and leaves the cell in it open to view.
-fn draw_ring(scene: &mut Scene, (x, y): Point) {
-    let round = |i: u32| std::f64::consts::TAU * f64::from(i) / 48.0;
-    let points: Vec<Point> = (0..=48).map(|i| (x + RIM * round(i).cos(), y + RIM * round(i).sin())).collect();
-    for (width, colour) in [(4.0, WHITE), (1.8, INK)] {
-        scene.marks.push(Mark::Stroke { points: points.clone(), width, colour });
-    }
 }
 
 #[cfg(test)]

@@ -2,13 +2,18 @@
 
 use super::colour::{Colour, INK, WHITE};
 use super::scene::{Anchor, Point, Rect, Scene};
+use super::symbol::draw_ring;
 use super::text;
 
 pub(super) const SIZE: f64 = 11.0;
 const PADDING: f64 = 2.5;
 const LONGEST: f64 = 210.0;
-/// Radius of the symbol of a marker.
-pub(super) const RIM: f64 = 6.5;
+const MOST_LINES: usize = 8;
+/// Radius of the ring of a marker, and of what it takes.
+const RING: f64 = 6.5;
+const RIM: f64 = 8.0;
+/// Contour labels keep so far from other labels.
+const CLEAR: f64 = 9.0;
 
 /// Lines of a label and the room they need.
 #[derive(Debug, Clone)]
@@ -20,7 +25,7 @@ pub(super) struct Label {
 
 impl Label {
     pub(super) fn new(text: &str) -> Option<Self> {
-        let lines = text::wrap_at_most(text, SIZE, LONGEST, 4);
+        let lines = text::wrap_at_most(text, SIZE, LONGEST, MOST_LINES);
         let width = lines.iter().map(|line| text::width(line, SIZE)).fold(0.0, f64::max) + 2.0 * PADDING;
         let height = lines.len() as f64 * SIZE * text::LEADING + PADDING;
         (!lines.is_empty()).then_some(Self { lines, width, height })
@@ -100,12 +105,33 @@ impl Placer {
         }
     }
 
+    /// Draws rings around points and labels them; no label is over a ring.
+    pub(super) fn points(&mut self, scene: &mut Scene, points: &[(Point, &str)]) {
+        for (at, _) in points {
+            draw_ring(scene, *at, RING);
+            let around = Rect { left: at.0, right: at.0, top: at.1, bottom: at.1 };
+            self.taken.push(around.grown(RIM));
+        }
+        points.iter().for_each(|(at, text)| self.point(scene, *at, text));
+    }
+
     /// Labels a point.
-    pub(super) fn point(&mut self, scene: &mut Scene, (x, y): Point, text: &str) {
+    fn point(&mut self, scene: &mut Scene, at: Point, text: &str) {
+        self.beside(scene, at, text, &[10.0, 20.0, 38.0, 62.0]);
+    }
+
+    /// Labels points of an image from some way off, so that what is there stays in view.
+    pub(super) fn away(&mut self, scene: &mut Scene, points: &[(Point, String)]) {
+        let around = |(x, y): Point| Rect { left: x, right: x, top: y, bottom: y }.grown(PADDING);
+        self.taken.extend(points.iter().map(|(at, _)| around(*at)));
+        points.iter().for_each(|(at, text)| self.beside(scene, *at, text, &[30.0, 45.0, 62.0]));
+    }
+
+    fn beside(&mut self, scene: &mut Scene, (x, y): Point, text: &str, gaps: &[f64]) {
         let Some(label) = Label::new(text) else { return };
         let (w, h) = (label.width, label.height);
         let mut places = Vec::new();
-        for gap in [10.0, 20.0, 38.0, 62.0] {
+        for &gap in gaps {
             let diagonal = 0.7 * gap;
             places.extend([
                 label.at(x + gap, y - 0.5 * h),
@@ -118,7 +144,6 @@ impl Placer {
                 label.at(x - 0.5 * w, y + gap),
             ]);
         }
-        self.taken.push(Rect { left: x, top: y, right: x, bottom: y }.grown(RIM));
         let Some(area) = self.best(places) else { return };
         let near = (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom));
         let distance = (near.0 - x).hypot(near.1 - y);
@@ -145,9 +170,13 @@ impl Placer {
 
     /// Labels a vertical line, the text reading upwards beside it.
     pub(super) fn upwards(&mut self, scene: &mut Scene, x: f64, text: &str, colour: Colour) {
-        let longest = self.frame.height() - 12.0;
-        let Some(line) = text::wrap_at_most(text, SIZE, longest, 1).pop() else { return };
-        let (w, h) = (SIZE * text::LEADING + PADDING, text::width(&line, SIZE) + 2.0 * PADDING);
+        let lines = text::wrap_at_most(text, SIZE, self.frame.height() - 12.0, MOST_LINES);
+        let longest = lines.iter().map(|line| text::width(line, SIZE)).fold(0.0, f64::max);
+        let leading = SIZE * text::LEADING;
+        let (w, h) = (lines.len() as f64 * leading + PADDING, longest + 2.0 * PADDING);
+        if lines.is_empty() {
+            return;
+        }
         let room = (self.frame.height() - h).max(0.0);
         let places = [0.01, 0.99, 0.5].into_iter().flat_map(|part| {
             let top = self.frame.top + part * room;
@@ -156,8 +185,10 @@ impl Placer {
         let places: Vec<_> = places.collect();
         if let Some(area) = self.best(places) {
             scene.fill(area, WHITE.opacity(0.8));
-            let at = (area.left + SIZE + 0.5 * PADDING, area.bottom - PADDING);
-            scene.turned(at, &line, SIZE, colour, Anchor::Start);
+            for (i, line) in lines.iter().enumerate() {
+                let at = (area.left + SIZE + 0.5 * PADDING + i as f64 * leading, area.bottom - PADDING);
+                scene.turned(at, line, SIZE, colour, Anchor::Start);
+            }
         }
     }
 
@@ -170,7 +201,7 @@ impl Placer {
             let area = label.at(x - 0.5 * label.width, y - 0.5 * label.height);
             let inside = self.frame.grown(-6.0);
             let fits = inside.contains((area.left, area.top)) && inside.contains((area.right, area.bottom));
-            if fits && !self.taken.iter().any(|taken| taken.overlaps(&area.grown(4.0))) {
+            if fits && !self.taken.iter().any(|taken| taken.overlaps(&area.grown(CLEAR))) {
                 self.taken.push(area);
                 label.draw(scene, area, INK);
                 return;

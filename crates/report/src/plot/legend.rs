@@ -9,11 +9,14 @@ use super::text;
 const SIZE: f64 = 11.5;
 const KEY: f64 = 26.0;
 const GAP: f64 = 6.0;
-const LINE: f64 = 15.0;
+pub(super) const LINE: f64 = 15.0;
 /// Widest text of an entry in the column at the right.
 const COLUMN: f64 = 190.0;
 /// Most entries that are drawn; the rest is counted.
 const MOST: usize = 120;
+
+/// Most lines of an entry.
+const MOST_LINES: usize = 8;
 
 /// Widths and colours of a line that is seen on any colour.
 pub(super) const CASED: [(f64, Colour); 2] = [(2.8, INK), (1.2, WHITE)];
@@ -53,7 +56,7 @@ pub(super) enum Key {
 }
 
 /// A legend entry before it has a place.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
     pub(super) key: Key,
     pub(super) label: String,
@@ -82,7 +85,7 @@ impl Legend {
         let more = entries.len().saturating_sub(MOST);
         entries.truncate(MOST);
         let broken = |limit: f64| -> Vec<(Key, Vec<String>)> {
-            let lines = |entry: &Entry| text::wrap_at_most(&entry.label, SIZE, limit, 5);
+            let lines = |entry: &Entry| broken(&entry.label, limit, MOST_LINES);
             entries.iter().map(|entry| (entry.key.clone(), lines(entry))).collect()
         };
         if entries.len() > 4 {
@@ -92,7 +95,7 @@ impl Legend {
             }
         }
         // Many entries share rows; a few may have a row each.
-        let columns = if entries.len() > 4 { 3.0 } else { 1.0 };
+        let columns = if entries.len() > 4 && width > 3.0 * COLUMN { 3.0 } else { 1.0 };
         Self { entries: broken(width / columns - KEY - 4.0 * GAP), more, side: Side::Below }
     }
 
@@ -102,7 +105,7 @@ impl Legend {
 
     /// Width that the legend takes away at the right of the plot.
     pub(super) fn width(&self) -> f64 {
-        let text = self.entries.iter().map(entry_width).fold(0.0, f64::max);
+        let text = self.entries.iter().map(|(_, lines)| entry_width(lines)).fold(0.0, f64::max);
         if self.side == Side::Right && !self.entries.is_empty() { text + 2.0 * GAP } else { 0.0 }
     }
 
@@ -116,7 +119,7 @@ impl Legend {
         if self.side == Side::Right {
             let mut y = top;
             for (key, lines) in &self.entries {
-                entry(scene, key, lines, (left, y));
+                draw_entry(scene, key, lines, (left, y));
                 y += LINE * lines.len().max(1) as f64;
             }
             self.remark(scene, (left, y));
@@ -133,7 +136,7 @@ impl Legend {
         for row in self.entries.chunks(widths.len()) {
             let mut x = left;
             for ((key, lines), width) in row.iter().zip(&widths) {
-                entry(scene, key, lines, (x, y));
+                draw_entry(scene, key, lines, (x, y));
                 x += width;
             }
             y += LINE * row.iter().map(|(_, lines)| lines.len()).max().unwrap_or(1) as f64;
@@ -149,7 +152,8 @@ impl Legend {
     fn columns(&self, room: f64) -> Vec<f64> {
         let widths = |count: usize| -> Vec<f64> {
             let widest = |column: usize| {
-                self.entries.iter().skip(column).step_by(count).map(entry_width).fold(0.0, f64::max)
+                let of_column = self.entries.iter().skip(column).step_by(count);
+                of_column.map(|(_, lines)| entry_width(lines)).fold(0.0, f64::max)
             };
             (0..count).map(|column| widest(column) + 4.0 * GAP).collect()
         };
@@ -166,11 +170,18 @@ impl Legend {
     }
 }
 
-fn entry_width((_, lines): &(Key, Vec<String>)) -> f64 {
+/// The lines of an entry.
+pub(super) fn broken(label: &str, limit: f64, most: usize) -> Vec<String> {
+    text::wrap_at_most(label, SIZE, limit, most)
+}
+
+/// Width of an entry with its key.
+pub(super) fn entry_width(lines: &[String]) -> f64 {
     KEY + GAP + lines.iter().map(|line| text::width(line, SIZE)).fold(0.0, f64::max)
 }
 
-fn entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
+/// Draws an entry whose upper left corner is given.
+pub(super) fn draw_entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
     let middle = top + 0.5 * LINE;
     let area = Rect { left: left + 4.0, top: middle - 5.0, right: left + KEY - 2.0, bottom: middle + 5.0 };
     match key {
@@ -185,7 +196,11 @@ fn entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
             }
             symbol.draw(scene, (left + 0.5 * KEY, middle), 3.2);
         }
-        Key::Area { colour } => scene.fill(area, *colour),
+        Key::Area { colour } => {
+            scene.fill(area, *colour);
+            // White is a colour too.
+            scene.outline(area, 0.5, GREY);
+        }
         Key::Cased => {
             for (width, colour) in CASED {
                 scene.line((left, middle), (left + KEY, middle), width, colour);

@@ -1,7 +1,8 @@
 //! Lays out a figure of curves.
 
 use super::axis::{Axis, Ruler, Scale};
-use super::colour::{self, Colour, GREY, INK, WHITE};
+use super::colour::{self, Colour, GREY, INK};
+use super::direct::{Direct, End};
 use super::figure::{Band, LineFigure, Panel, Rule, Series, Style};
 use super::frame::{self, Horizontal, Vertical};
 use super::geometry;
@@ -9,6 +10,7 @@ use super::label::Placer;
 use super::legend::{Entry, Key, Legend};
 use super::scene::{Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
+use super::text;
 use hadar::Result;
 
 const HEIGHT: f64 = 345.0;
@@ -44,12 +46,18 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
     }
     parts.iter().try_for_each(|part| part.panel.check())?;
 
-    let entries = entries(&parts);
+    let x_ruler = x_ruler(&figure.x, &parts);
+    let ends = ends(&parts, &x_ruler);
+    let heights: Vec<f64> = parts.iter().map(|part| part.height).collect();
+    let direct = Direct::new(ends.clone(), &heights);
+    let entries: Vec<Entry> = match direct {
+        Some(_) => Vec::new(),
+        None => ends.into_iter().map(|end| end.entry).collect(),
+    };
     if let [only] = parts.as_mut_slice() {
         let column = Legend::new(entries.clone(), frame::WIDTH, HIGHEST).column_height();
         only.height = only.height.max(column);
     }
-    let x_ruler = x_ruler(&figure.x, &parts);
     let axes: Vec<(&Part, Vertical)> = parts
         .iter()
         .map(|part| (part, Vertical::new(&part.panel.y, y_ruler(part.panel, &x_ruler), part.height)))
@@ -59,7 +67,8 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
     // The last label may stick out, unless a legend stands there anyway.
     let trial = Horizontal::new(&figure.x, x_ruler, frame::WIDTH - left - 24.0);
     let beside = axes.iter().map(|(_, y)| y.room_right()).fold(0.0, f64::max);
-    let right = frame::WIDTH - trial.room().max(24.0).max(beside + 12.0) - legend.width();
+    let labels = direct.as_ref().map_or(0.0, Direct::width);
+    let right = frame::WIDTH - trial.room().max(24.0).max(beside + 12.0) - legend.width() - labels;
     let x = Horizontal::new(&figure.x, x_ruler, right - left);
 
     let mut scene = Scene::new(&figure.title, frame::WIDTH);
@@ -79,6 +88,9 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
             x.draw_secondary(&mut scene, &area);
         }
         y.draw_secondary(&mut scene, &area);
+        if let Some(direct) = &direct {
+            direct.draw(&mut scene, i, &area, beside);
+        }
         y.draw_left(&mut scene, &area, if i == 0 && x.room_above() > 0.0 { 14.0 } else { 0.0 });
     }
     legend.draw_right(&mut scene, (right + beside + 16.0, top));
@@ -160,32 +172,42 @@ fn symbol(index: usize, series: &Series) -> Symbol {
     Symbol { shape: Shape::series(index), colour, open: series.open }
 }
 
-/// Curves first, then bands; what appears in several panels under one name is listed once.
-fn entries(parts: &[Part]) -> Vec<Entry> {
-    let series = parts.iter().flat_map(|part| {
-        part.panel.series.iter().enumerate().map(|(i, series)| {
+/// Curves first, then bands; what appears in several panels under one name is listed once, in the first.
+fn ends(parts: &[Part], x: &Ruler) -> Vec<End> {
+    let mut ends: Vec<End> = Vec::new();
+    for (panel, part) in parts.iter().enumerate() {
+        let y = y_ruler(part.panel, x);
+        // Where the curve is at the last position in view.
+        let last = |points: &mut dyn Iterator<Item = (f64, f64)>| {
+            let placed = points.filter_map(|(at, value)| Some((x.fraction(at)?, y.fraction(value)?)));
+            let seen = placed.filter(|(at, _)| (-1e-9..=1.0 + 1e-9).contains(at));
+            seen.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let series = part.panel.series.iter().enumerate().map(|(i, series)| {
             let (colour, dash) = series_look(part.colours_from + i, series);
+            let symbol = symbol(part.colours_from + i, series);
             let key = match series.style {
-                Style::Points => Key::Symbol { symbol: symbol(part.colours_from + i, series), ground: None },
-                Style::Marked => Key::Marked { symbol: symbol(part.colours_from + i, series), dash },
+                Style::Points => Key::Symbol { symbol, ground: None },
+                Style::Marked => Key::Marked { symbol, dash },
                 _ => Key::Line { colour, dash },
             };
-            Entry { key, label: series.label.clone() }
-        })
-    });
-    let bands = parts.iter().flat_map(|Part { panel, .. }| {
-        panel
-            .bands
-            .iter()
-            .map(|band| Entry { key: Key::Area { colour: band_colour(band) }, label: band.label.clone() })
-    });
-    let mut entries: Vec<Entry> = Vec::new();
-    for entry in series.chain(bands) {
-        if !entries.iter().any(|listed| listed.label == entry.label && listed.key == entry.key) {
-            entries.push(entry);
+            let at = last(&mut series.x.iter().copied().zip(series.y.iter().copied()));
+            End { panel, at, entry: Entry { key, label: series.label.clone() } }
+        });
+        let bands = part.panel.bands.iter().map(|band| {
+            let middles = band.low.iter().zip(&band.high).map(|(low, high)| 0.5 * (low + high));
+            let key = Key::Area { colour: band_colour(band) };
+            let at = last(&mut band.x.iter().copied().zip(middles));
+            End { panel, at, entry: Entry { key, label: band.label.clone() } }
+        });
+        for end in series.chain(bands) {
+            let same = |listed: &End| listed.entry == end.entry;
+            if !text::clean(&end.entry.label).is_empty() && !ends.iter().any(same) {
+                ends.push(end);
+            }
         }
     }
-    entries
+    ends
 }
 
 fn draw_panel(scene: &mut Scene, part: &Part, x: &Horizontal, y: &Vertical, area: Rect) {
@@ -230,12 +252,13 @@ fn draw_panel(scene: &mut Scene, part: &Part, x: &Horizontal, y: &Vertical, area
     }
     scene.outline(area, 0.9, INK);
     x.draw_ticks(scene, &area);
-    for marker in &panel.markers {
-        let Some(at) = place(marker.x, marker.y).filter(|at| area.grown(0.01).contains(*at)) else {
-            continue;
-        };
-        draw_marker(scene, at);
-        placer.point(scene, at, &marker.label);
+    let markers =
+        panel.markers.iter().filter_map(|marker| Some((place(marker.x, marker.y)?, marker.label.as_str())));
+    let markers: Vec<(Point, &str)> = markers.filter(|(at, _)| area.grown(0.01).contains(*at)).collect();
+    placer.points(scene, &markers);
+    // What is in the ring stays in view.
+    for (centre, _) in &markers {
+        scene.marks.push(Mark::Disc { centre: *centre, radius: 1.6, colour: INK });
     }
     for (rule, (px, py)) in &rules {
         match rule {
@@ -289,11 +312,5 @@ fn draw_band(scene: &mut Scene, band: &Band, place: &impl Fn(f64, f64) -> Option
         if x.len() > 1 {
             scene.marks.push(Mark::Area { x, upper, lower, colour: band_colour(band) });
         }
-    }
-}
-
-fn draw_marker(scene: &mut Scene, centre: Point) {
-    for (radius, colour) in [(6.0, WHITE), (5.0, INK), (3.6, WHITE), (1.8, INK)] {
-        scene.marks.push(Mark::Disc { centre, radius, colour });
     }
 }

@@ -1,8 +1,8 @@
 //! Names along one side of a figure.
 //!
 //! The letters follow from the distance of the names. A long name takes several lines where there is room for them, and
-//! is cut in the middle where there is not. Where even the smallest letters would touch, only every second (third, …) name
-//! is printed.
+//! all names have smaller letters where there is not; only where even the smallest do not fit is it cut in the middle. Where they
+//! would touch, only every second (third, …) name is printed.
 
 use super::frame::TICK;
 use super::text;
@@ -39,9 +39,17 @@ impl Names {
         let size = (SHARE * pitch).min(TICK);
         let stride = (SMALLEST / size).ceil().max(1.0) as usize;
         let size = (size * stride as f64).min(TICK);
-        let most = (pitch / (size * text::LEADING)).floor().max(1.0) as usize;
+        // The room of a name is that of those that are left out, too.
+        let pitch = pitch * stride as f64;
+        let most = |size: f64| ((pitch / (size * text::LEADING)).floor().max(1.0) as usize).min(MOST);
+        let fits = |name: &String, size: f64| text::wrap(name, size, longest).len() <= most(size);
+        let smaller = std::iter::successors(Some(size), |size| Some(0.93 * size));
+        let size = smaller
+            .take_while(|size| *size >= SMALLEST)
+            .find(|size| names.iter().all(|name| fits(name, *size)))
+            .unwrap_or(size.min(SMALLEST.max(0.6 * size)));
         let broken = |name: &String| match text::wrap(name, size, longest) {
-            lines if lines.len() <= most.min(MOST) => lines,
+            lines if lines.len() <= most(size) => lines,
             _ => vec![text::cut(&name.replace('\n', " "), size, longest)],
         };
         let lines: Vec<Vec<String>> = names.iter().map(broken).collect();

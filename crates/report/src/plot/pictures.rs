@@ -1,10 +1,12 @@
-//! Images side by side, each with its own colour bar: a raster of numbers per picture.
+//! Images side by side, each with its own colour bar: a raster of numbers per picture. Images of one colour axis share a bar; of an
+//! odd number of images the legend takes the place that is left.
 
 use super::axis::{Axis, Ruler};
-use super::colour::{self, Colour, INK, NO_VALUE, WHITE};
+use super::colour::{self, Colour, INK, NO_SIGNED_VALUE, NO_VALUE, WHITE};
 use super::contour;
 use super::frame::{self, Vertical};
 use super::heat::{draw_bar, shade};
+use super::label::Placer;
 use super::legend::{CASED, Entry, Key, Legend};
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text::{self, LEADING};
@@ -39,6 +41,8 @@ pub struct Picture {
     pub lines: Vec<usize>,
     /// Values, one for each pixel, between whose signs a line is drawn; nowhere where empty.
     pub boundary: Vec<f64>,
+    /// Words beside a pixel (row, column): what is there.
+    pub labels: Vec<(usize, usize, String)>,
 }
 
 /// Colours of an image that are no scale of one quantity.
@@ -74,7 +78,8 @@ impl Picture {
     /// An image of `columns` × (number of values / `columns`) pixels.
     pub fn new(title: impl Into<String>, colour: Axis, columns: usize, values: Vec<f64>) -> Self {
         let (title, painted) = (title.into(), None);
-        Self { title, colour, columns, values, painted, lines: Vec::new(), boundary: Vec::new() }
+        let (lines, boundary, labels) = (Vec::new(), Vec::new(), Vec::new());
+        Self { title, colour, columns, values, painted, lines, boundary, labels }
     }
 
     /// An image of colours.
@@ -96,6 +101,37 @@ impl Picture {
         self
     }
 
+    /// Names what is at a pixel.
+    #[must_use]
+    pub fn label(mut self, row: usize, column: usize, words: impl Into<String>) -> Self {
+        self.labels.push((row, column, words.into()));
+        self
+    }
+
+    /// Names areas, each in the middle of its longest run along a row: of every pixel its area, of every area its name. Areas of less
+    /// than a hundredth of a row have no name.
+    #[must_use]
+    pub fn name_areas(mut self, areas: &[Option<usize>], names: &[String]) -> Self {
+        let mut longest: Vec<(usize, usize)> = vec![(0, 0); names.len()];
+        let columns = self.columns.max(1);
+        for (row, of_row) in areas.chunks(columns).enumerate() {
+            let mut from = row * columns;
+            for run in of_row.chunk_by(|a, b| a == b) {
+                let area = run.first().copied().flatten().and_then(|area| longest.get_mut(area));
+                if let Some(best) = area.filter(|best| run.len() > best.0) {
+                    *best = (run.len(), from + run.len() / 2);
+                }
+                from += run.len();
+            }
+        }
+        for ((length, middle), name) in longest.into_iter().zip(names) {
+            if length > columns / 100 + 1 {
+                self.labels.push((middle / columns, middle % columns, name.clone()));
+            }
+        }
+        self
+    }
+
     fn rows(&self) -> usize {
         self.pixels().checked_div(self.columns).unwrap_or(0)
     }
@@ -113,11 +149,19 @@ impl Picture {
         Ruler::fit(self.colour.scale, self.colour.range, self.values.iter().copied(), 0.0)
     }
 
-    /// As wide as a slot allows with the bar beside it.
-    fn width(&self, slot: f64) -> f64 {
+    /// Width that the bar takes at the right.
+    fn room(&self, height: f64) -> f64 {
+        if self.painted.as_ref().is_some_and(|painted| painted.ramp.is_none()) {
+            return 0.0;
+        }
+        Vertical::new(&self.colour, self.ruler(), height).room() + BAR + APART - frame::EDGE
+    }
+
+    /// As wide as a slot allows with what stands beside it.
+    fn width(&self, slot: f64, has_bar: bool) -> f64 {
         // The room beside the bar depends on its height only through the number of its ticks.
         let guess = (0.75 * slot * self.ratio()).min(HIGHEST);
-        let room = Vertical::new(&self.colour, self.ruler(), guess).room() + BAR + APART - frame::EDGE;
+        let room = if has_bar { self.room(guess) } else { 0.0 };
         (slot - room).min(HIGHEST / self.ratio())
     }
 
@@ -177,21 +221,54 @@ impl Pictures {
     }
 }
 
+/// Whether all images are of one stated scale.
+fn is_shared(pictures: &[Picture]) -> bool {
+    let stated = |picture: &Picture| picture.painted.is_none() && picture.colour.range.is_some();
+    let same = pictures.windows(2).all(|pair| pair[0].colour == pair[1].colour);
+    pictures.len() > 1 && same && pictures.iter().all(stated)
+}
+
+/// Places of images of one width.
+struct Layout {
+    across: usize,
+    slot: f64,
+    width: f64,
+    /// Images of one scale share the bar at the right of the first row.
+    shared: bool,
+}
+
+impl Layout {
+    fn new(pictures: &[Picture]) -> Self {
+        let (across, shared) = (pictures.len().clamp(1, 2), is_shared(pictures));
+        let bar = pictures.first().filter(|_| shared).map_or(0.0, |first| first.room(0.5 * HIGHEST) + GAP);
+        let whole = frame::WIDTH - 2.0 * frame::EDGE - bar;
+        let slot = (whole - GAP * (across - 1) as f64) / across as f64;
+        // They are compared with their neighbours pixel by pixel.
+        let width = pictures.iter().map(|picture| picture.width(slot, !shared)).fold(slot, f64::min);
+        Self { across, slot, width, shared }
+    }
+}
+
 pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
     figure.pictures.iter().try_for_each(Picture::check)?;
-    let across = figure.pictures.len().clamp(1, 2);
-    let slot = (frame::WIDTH - 2.0 * frame::EDGE - GAP * (across - 1) as f64) / across as f64;
+    let layout = Layout::new(&figure.pictures);
+    let Layout { across, slot, width, shared } = layout;
     let mut scene = Scene::new(&figure.title, frame::WIDTH);
     let mut top = frame::heading(&mut scene, &figure.title, &figure.subtitle) + 4.0;
     let mut missing = false;
-    // Painted images are compared with their neighbours pixel by pixel: all are of one width.
-    let painted = figure.pictures.iter().any(|picture| picture.painted.is_some());
-    let width = figure.pictures.iter().map(|picture| picture.width(slot)).fold(slot, f64::min);
-    for pair in figure.pictures.chunks(across) {
+    let no_value = match figure.pictures.iter().any(|picture| colour::is_signed(&picture.ruler())) {
+        true => NO_SIGNED_VALUE,
+        false => NO_VALUE,
+    };
+    // Where the next one would be.
+    let mut free = None;
+    for (row, pair) in figure.pictures.chunks(across).enumerate() {
         let titles: Vec<Vec<String>> =
-            pair.iter().map(|picture| text::wrap_at_most(&picture.title, TITLE, slot, 2)).collect();
+            pair.iter().map(|picture| text::wrap_at_most(&picture.title, TITLE, slot, 4)).collect();
         let lines = titles.iter().map(Vec::len).max().unwrap_or(0) as f64;
-        let upper = top + lines * TITLE * LEADING + 16.0;
+        let bars = pair.iter().map(|picture| Vertical::new(&picture.colour, picture.ruler(), width));
+        let factor = if bars.into_iter().any(|bar| bar.has_multiplier()) { 10.0 } else { 0.0 };
+        let upper = top + lines * TITLE * LEADING + 6.0 + factor;
         let mut lowest = upper;
         for (i, (picture, title)) in pair.iter().zip(&titles).enumerate() {
             let left = frame::EDGE + i as f64 * (slot + GAP);
@@ -199,46 +276,69 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
                 let y = top + (line as f64 + 0.85) * TITLE * LEADING;
                 scene.text((left, y), words, TITLE, INK, Anchor::Start);
             }
-            let width = if painted { width } else { picture.width(slot) };
-            let (bottom, holes) = draw(&mut scene, picture, (left, upper), width);
+            let bar = match (shared, row, i) {
+                (false, ..) => Some(left + width + APART),
+                (true, 0, 0) => Some(frame::EDGE + across as f64 * (slot + GAP) - GAP + APART),
+                _ => None,
+            };
+            let (bottom, holes) = draw(&mut scene, picture, (left, upper), width, bar, no_value);
             lowest = lowest.max(bottom);
             missing |= holes;
         }
+        let last = frame::EDGE + (across - 1) as f64 * (slot + GAP);
+        free = (pair.len() < across).then_some(((last, upper), lowest));
         top = lowest + 12.0;
     }
+    let entries = entries(figure, missing.then_some(no_value));
+    if !entries.is_empty() {
+        let within = |left: f64| Legend::new(entries.clone(), frame::WIDTH - frame::EDGE - left, 0.0);
+        top = match free {
+            Some(((left, upper), lowest)) => {
+                let end = within(left).draw_below(&mut scene, left, left + slot, upper);
+                end.max(lowest) + 12.0
+            }
+            None => within(frame::EDGE).draw_below(&mut scene, frame::EDGE, frame::WIDTH - frame::EDGE, top),
+        };
+    }
+    scene.height = (top + 6.0).ceil();
+    Ok(scene)
+}
+
+/// What the legend says of colours, lines and pixels without value.
+fn entries(figure: &Pictures, no_value: Option<Colour>) -> Vec<Entry> {
     let of_key = |(rgb, label): &(Rgb, String)| {
         let key = Key::Area { colour: Colour { rgb: *rgb, opacity: 1.0 } };
         Entry { key, label: label.clone() }
     };
     let mut entries: Vec<Entry> = figure.keys.iter().map(of_key).collect();
     if figure.pictures.iter().any(|picture| !picture.boundary.is_empty()) {
-        let key = Key::Cased;
-        entries.push(Entry { key, label: figure.boundary_meaning.clone() });
+        entries.push(Entry { key: Key::Cased, label: figure.boundary_meaning.clone() });
     }
-    if missing {
-        let key = Key::Area { colour: NO_VALUE };
-        entries.push(Entry { key, label: figure.no_value.clone() });
-    }
-    if !entries.is_empty() {
-        let legend = Legend::new(entries, frame::WIDTH - 2.0 * frame::EDGE, 0.0);
-        top = legend.draw_below(&mut scene, frame::EDGE, frame::WIDTH - frame::EDGE, top);
-    }
-    scene.height = (top + 6.0).ceil();
-    Ok(scene)
+    let missing = no_value.map(|colour| Entry { key: Key::Area { colour }, label: figure.no_value.clone() });
+    entries.extend(missing);
+    entries
 }
 
-/// Draws a picture of this width with its bar; says where it ends and whether pixels have no value.
-fn draw(scene: &mut Scene, picture: &Picture, (left, top): Point, width: f64) -> (f64, bool) {
+/// Draws a picture of this width, its bar at `bar`; says where it ends and whether pixels have no value.
+fn draw(
+    scene: &mut Scene,
+    picture: &Picture,
+    (left, top): Point,
+    width: f64,
+    bar: Option<f64>,
+    no_value: Colour,
+) -> (f64, bool) {
     let ruler = picture.ruler();
     let area = Rect { left, right: left + width, top, bottom: top + width * picture.ratio() };
     if let Some(painted) = &picture.painted {
         draw_painted(scene, picture, painted, &area);
+        draw_labels(scene, picture, &area);
         return (area.bottom, false);
     }
-    let bar = Vertical::new(&picture.colour, ruler, area.height());
     let fractions: Vec<Option<f64>> = picture.values.par_iter().map(|value| ruler.fraction(*value)).collect();
     let holes = fractions.contains(&None);
-    let pixels = fractions.par_iter().map(|part| part.map_or(NO_VALUE, shade).rgb).collect();
+    let shaded = |part: &Option<f64>| part.map_or(no_value, |part| shade(&ruler, part)).rgb;
+    let pixels = fractions.par_iter().map(shaded).collect();
     scene.marks.push(Mark::Image { area, columns: picture.columns, pixels });
     draw_boundary(scene, picture, &area);
     for row in &picture.lines {
@@ -252,9 +352,29 @@ fn draw(scene: &mut Scene, picture: &Picture, (left, top): Point, width: f64) ->
         }
     }
     scene.outline(area, 0.9, INK);
-    let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
-    draw_bar(scene, fractions.into_iter().flatten(), &bar, &beside, &colour::quantity);
+    if let Some(left) = bar {
+        let axis = Vertical::new(&picture.colour, ruler, area.height());
+        let beside = Rect { left, right: left + BAR, ..area };
+        draw_bar(scene, fractions.into_iter().flatten(), &axis, &beside, &colour::map(&ruler));
+    }
+    draw_labels(scene, picture, &area);
     (area.bottom, holes)
+}
+
+/// Words beside what they name.
+fn draw_labels(scene: &mut Scene, picture: &Picture, area: &Rect) {
+    let mut placer = Placer::new(*area);
+    let (rows, columns) = (picture.rows() as f64, picture.columns as f64);
+    let place = |(row, column, words): &'_ (usize, usize, String)| {
+        let at = area.at((*column as f64 + 0.5) / columns, 1.0 - (*row as f64 + 0.5) / rows);
+        (at, words.clone())
+    };
+    let labels: Vec<(Point, String)> = picture.labels.iter().map(place).collect();
+    for (at, _) in &labels {
+        scene.marks.push(Mark::Disc { centre: *at, radius: 2.6, colour: WHITE });
+        scene.marks.push(Mark::Disc { centre: *at, radius: 1.7, colour: INK });
+    }
+    placer.away(scene, &labels);
 }
 
 /// Draws a painted picture, with a bar if it has one.

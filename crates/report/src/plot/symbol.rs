@@ -1,6 +1,6 @@
 //! Symbols of points, told apart by shape as well as by colour, filled or open.
 
-use super::colour::{Colour, WHITE};
+use super::colour::{Colour, INK, WHITE};
 use super::scene::{Mark, Point, Rect, Scene};
 use hadar::order;
 
@@ -75,6 +75,16 @@ impl Shape {
             Self::Left => sideways(x - reach, x + back),
             Self::Right => sideways(x + reach, x - back),
         }
+    }
+}
+
+/// A ring that is seen on any colour and leaves what is in it open to view.
+pub(super) fn draw_ring(scene: &mut Scene, (x, y): Point, radius: f64) {
+    let round = |i: u32| std::f64::consts::TAU * f64::from(i) / 48.0;
+    let points: Vec<Point> =
+        (0..=48).map(|i| (x + radius * round(i).cos(), y + radius * round(i).sin())).collect();
+    for (width, colour) in [(4.0, WHITE), (1.8, INK)] {
+        scene.marks.push(Mark::Stroke { points: points.clone(), width, colour });
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 
+use super::ticks::{power, superscript};
 use hadar::words::visible;
 use hadar::{Error, Result};
 
@@ -65,7 +66,61 @@ pub(super) fn rasterise(text: &str, size: f64, mut paint: impl FnMut((i32, i32),
 pub(super) fn clean(text: &str) -> String {
     let printable = |c: char| if c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') { ' ' } else { c };
     let line: String = text.trim().chars().map(printable).collect();
-    visible(&line).into_owned()
+    typeset(&visible(&line))
+}
+
+/// Powers, numbers and units that were written with the letters of a terminal, as they are printed: cm^-1, 2e7, 20 us, 37 degC.
+fn typeset(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut before = "";
+    for token in text.split_inclusive([' ', ',', ';', '(', ')']) {
+        let word = token.trim_end_matches([' ', ',', ';', '(', ')', '.', ':']);
+        let is_number = |word: &str| word.parse::<f64>().is_ok();
+        match word {
+            "degC" => out.push_str("°C"),
+            "us" if is_number(before) => out.push_str("µs"),
+            "um" if is_number(before) => out.push_str("µm"),
+            word => out.push_str(&scientific(word).unwrap_or_else(|| raised(word))),
+        }
+        out.push_str(token.get(word.len()..).unwrap_or_default());
+        before = word;
+    }
+    out
+}
+
+/// `2e7` as 2×10⁷; none where it is something else.
+fn scientific(word: &str) -> Option<String> {
+    let (mantissa, exponent) = word.split_once('e')?;
+    let is_plain = |digits: &str| digits.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+    let sign = exponent.strip_prefix('-').map_or("", |_| "-");
+    let digits = exponent.trim_start_matches(['-', '+']);
+    let whole = !mantissa.is_empty() && is_plain(mantissa) && mantissa.parse::<f64>().is_ok();
+    if !whole || digits.is_empty() || digits.len() > 3 || !digits.bytes().all(|b| b.is_ascii_digit()) {
+        return None;
+    }
+    let exponent: i32 = format!("{sign}{digits}").parse().ok()?;
+    Some(if mantissa == "1" { power(exponent) } else { format!("{mantissa}×{}", power(exponent)) })
+}
+
+/// What follows a circumflex, if it is a whole number, raised.
+fn raised(word: &str) -> String {
+    let mut parts = word.split('^');
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let sign = part.strip_prefix('-').map_or(0, |_| 1);
+        let digits = part.bytes().skip(sign).take_while(u8::is_ascii_digit).count();
+        match part.split_at_checked(sign + digits) {
+            Some((number, rest)) if digits > 0 => {
+                out.push_str(&superscript(number));
+                out.push_str(rest);
+            }
+            _ => {
+                out.push('^');
+                out.push_str(part);
+            }
+        }
+    }
+    out
 }
 
 /// Where a long word may be broken: after these.
@@ -140,6 +195,19 @@ mod tests {
     fn widths_are_those_of_the_font() {
         // Advance of `m` in DejaVu Sans: 1995 of 2048 units per em.
         assert!((width("mmmm", 10.0) - 40.0 * 1995.0 / 2048.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn letters_of_a_terminal_are_typeset() {
+        for (typed, printed) in [
+            ("S (photons s^-1 m^-2)", "S (photons s⁻¹ m⁻²)"),
+            ("1e7 photons, 5.4e6 of them, 1e-4 per K", "10⁷ photons, 5.4×10⁶ of them, 10⁻⁴ per K"),
+            ("200 us. 20 us at 37 degC: 12 um, for us.", "200 µs. 20 µs at 37 °C: 12 µm, for us."),
+            ("10^x ^ 2^ e7 1e basalt@1e7 1.e7.2", "10^x ^ 2^ e7 1e basalt@1e7 1.e7.2"),
+        ] {
+            assert_eq!(clean(typed), printed);
+            assert_eq!(clean(printed), printed);
+        }
     }
 
     #[test]

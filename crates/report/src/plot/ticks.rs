@@ -2,7 +2,8 @@
 //!
 //! Linear axes: steps of 1, 2 or 5 times a power of ten, a common power of ten taken out when the numbers
 //! are long. Logarithmic axes: decades, 0.001 … 1000 in full and others as 10ⁿ, with unlabelled marks
-//! between; below one decade the 1–2–5 multiples, and below that the marks of a linear axis.
+//! between; over a few decades the 1–2–5 multiples, over less than one as many as make three labels, and below that the marks of a
+//! linear axis.
 
 use super::axis::{Ruler, Scale};
 
@@ -48,32 +49,38 @@ fn linear(wanted: usize, (low, high): (f64, f64), place: impl Fn(f64) -> f64) ->
     Ticks { major, minor: Vec::new(), multiplier }
 }
 
+/// Multiples of a power of ten that carry labels, from few to many.
+const LABELLED: [&[i32]; 4] = [&[1], &[1, 2, 5], &[1, 2, 3, 5, 7], &[1, 2, 3, 4, 5, 6, 7, 8, 9]];
+/// Decades up to which more than powers of ten are labelled where there is room.
+const FEW_DECADES: f64 = 3.0;
+/// One or two numbers do not make a scale.
+const LEAST: usize = 3;
+
 fn log(ruler: &Ruler, wanted: usize) -> Ticks {
     let (low, high) = ruler.bounds();
     let (from, to) = ((low - 1e-9).ceil() as i32, (high + 1e-9).floor() as i32);
     let decades = usize::try_from(to - from + 1).unwrap_or(0);
-    if decades >= 2 {
+    if decades > wanted {
         let stride = decades.div_ceil(wanted) as i32;
         let is_major = |n: &i32| n.rem_euclid(stride) == 0;
         let major = (from..=to).filter(is_major).map(|n| (ruler.place(n.into()), number(1, n))).collect();
-        let minor = if stride == 1 {
-            multiples(low, high, 2..=9).map(|(t, ..)| ruler.place(t)).collect()
-        } else {
-            (from..=to).filter(|n| !is_major(n)).map(|n| ruler.place(n.into())).collect()
-        };
+        let minor = (from..=to).filter(|n| !is_major(n)).map(|n| ruler.place(n.into())).collect();
         return Ticks { major, minor, multiplier: None };
     }
     let all: Vec<_> = multiples(low, high, 1..=9).collect();
-    let labelled = |m: i32| if all.len() <= 4 { true } else { [1, 2, 5].contains(&m) };
-    if all.len() >= 2 {
-        let (major, minor): (Vec<_>, Vec<_>) = all.iter().partition(|(_, m, _)| labelled(*m));
-        return Ticks {
-            major: major.into_iter().map(|(t, m, n)| (ruler.place(t), number(m, n))).collect(),
-            minor: minor.into_iter().map(|(t, ..)| ruler.place(t)).collect(),
-            multiplier: None,
-        };
+    let count = |set: &[i32]| all.iter().filter(|(_, m, _)| set.contains(m)).count();
+    let roomy = |set: &[i32]| high - low < FEW_DECADES && count(set) <= wanted;
+    let [_, thirds, ..] = LABELLED;
+    let first = usize::from(roomy(thirds));
+    let Some(set) = LABELLED.iter().skip(first).find(|set| count(set) >= LEAST) else {
+        return linear(wanted, (10f64.powf(low), 10f64.powf(high)), |value| ruler.place(value.log10()));
+    };
+    let (major, minor): (Vec<_>, Vec<_>) = all.iter().partition(|(_, m, _)| set.contains(m));
+    Ticks {
+        major: major.into_iter().map(|(t, m, n)| (ruler.place(t), number(m, n))).collect(),
+        minor: minor.into_iter().map(|(t, ..)| ruler.place(t)).collect(),
+        multiplier: None,
     }
-    linear(wanted, (10f64.powf(low), 10f64.powf(high)), |value| ruler.place(value.log10()))
 }
 
 /// log₁₀, mantissa and exponent of every m·10ⁿ in the range.
@@ -108,21 +115,17 @@ fn number(mantissa: i32, exponent: i32) -> String {
 
 /// 10ⁿ with superscript digits.
 pub(super) fn power(exponent: i32) -> String {
-    let digits = exponent.to_string();
-    let digits = digits.chars().map(|c| match c {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        _ => '⁰',
-    });
-    format!("10{}", digits.collect::<String>())
+    format!("10{}", superscript(&exponent.to_string()))
+}
+
+/// Digits and signs raised.
+pub(super) fn superscript(digits: &str) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| match c {
+        '-' | '−' => '⁻',
+        c => c.to_digit(10).and_then(|digit| RAISED.get(digit as usize)).copied().unwrap_or(c),
+    };
+    digits.chars().map(raised).collect()
 }
 
 /// A single number as a label, three significant digits, e.g. of a contour line.
@@ -166,7 +169,9 @@ mod tests {
         assert_eq!(factor.as_deref(), Some("×10¹⁸"));
         assert_eq!(labels(Scale::Log, 0.1, 1e4, 9).0, ["0.1", "1", "10", "100", "1000", "10⁴"]);
         assert_eq!(labels(Scale::Log, 1e-9, 1e9, 7).0.len(), 7);
-        assert_eq!(labels(Scale::Log, 1.5e5, 8e5, 5).0, ["2×10⁵", "5×10⁵"]);
+        assert_eq!(labels(Scale::Log, 1.5e5, 8e5, 5).0, ["2×10⁵", "3×10⁵", "5×10⁵", "7×10⁵"]);
+        assert_eq!(labels(Scale::Log, 0.02, 1.0, 9).0, ["0.02", "0.05", "0.1", "0.2", "0.5", "1"]);
+        assert_eq!(labels(Scale::Log, 8.3e-4, 1.02e-3, 4).0, ["0.00085", "0.00090", "0.00095", "0.00100"]);
         assert_eq!(labels(Scale::Log, 3.1, 3.3, 4).0, ["3.10", "3.15", "3.20", "3.25", "3.30"]);
     }
 

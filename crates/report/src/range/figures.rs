@@ -1,7 +1,9 @@
 //! Pictures of the view and of its bounds, lines with their witnesses, errors of derivatives.
 
 use crate::figures::Plot;
-use crate::plot::{Axis, LineFigure, Panel, Picture, Pictures, Series, Style};
+use crate::plot::{
+    Axis, LineFigure, Painted, Panel, Picture, Pictures, Rgb, Series, Style, categorical, number as written,
+};
 use crate::range::lines_table;
 use crate::table::{Table, number};
 use crate::words::range::captions;
@@ -24,15 +26,19 @@ const BEYOND: f64 = 10.0;
 pub fn views(result: &Ranging) -> Option<Plot> {
     let columns = result.shape.columns();
     let lines: Vec<usize> = result.lines.iter().map(|line| line.row).collect();
+    let scattered = result.maps.pictures.iter().find(|(kind, _)| *kind == PictureKind::Scattered);
+    let span = scattered.map(|(_, values)| ends(values));
     let pictures: Vec<(String, Picture)> = result
         .maps
         .pictures
         .iter()
         .map(|(kind, values)| {
             let (title, axis, key) = match kind {
-                PictureKind::ThermalImage => {
-                    ("Thermal image, all bands", Axis::linear("photons per pixel"), "thermal_photons")
-                }
+                PictureKind::ThermalImage => (
+                    "Thermal image, all bands; colours span as many photons as in the scattered signal",
+                    Axis::linear("photons per pixel"),
+                    "thermal_photons",
+                ),
                 PictureKind::Scattered => (
                     "Scattered signal (no camera measures it alone)",
                     Axis::linear("photons per pixel"),
@@ -48,7 +54,10 @@ pub fn views(result: &Ranging) -> Option<Plot> {
                 ),
                 PictureKind::Depth => ("Depth", Axis::log("depth (m)"), "depth_m"),
             };
-            let axis = clipped(axis, values);
+            let axis = match kind {
+                PictureKind::ThermalImage => around(axis, values, span),
+                _ => clipped(axis, values),
+            };
             (key.to_owned(), Picture::new(title, axis, columns, values.clone()).lines(&lines))
         })
         .collect();
@@ -61,10 +70,14 @@ pub fn views(result: &Ranging) -> Option<Plot> {
         }
         flat.is_none() && picture.values.iter().any(|value| value.is_finite())
     });
-    let pictures: Vec<_> = pictures.collect();
+    let mut keys = Vec::new();
+    let pictures: Vec<_> = pictures.map(|(key, picture)| (key, few_values(picture, &mut keys))).collect();
     let subtitle = captions::views([result.shape.rows(), columns], &said);
     let figure = |pictures| {
-        Pictures::new("What the left camera sees", pictures).subtitle(subtitle.clone()).no_value("sky")
+        Pictures::new("Which texture is there to range by? The left view", pictures)
+            .subtitle(subtitle.clone())
+            .no_value("sky")
+            .keys(keys.clone())
     };
     plot("views", figure, pictures, ([0, 0], 1))
 }
@@ -121,7 +134,7 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
     let subtitle = captions::bounds(result.scenario.stereo.window, with_depth, &without);
     let meaning = captions::boundary(demand);
     let figure = |pictures| {
-        Pictures::new("How well depth can be measured", pictures)
+        Pictures::new("How well can depth be measured, and where as well as is demanded?", pictures)
             .subtitle(subtitle.clone())
             .boundary_meaning(meaning.clone())
             .no_value("sky, not seen by both cameras, or no texture at all")
@@ -159,7 +172,9 @@ pub fn matched_maps(result: &Ranging) -> Option<Plot> {
             .push(("depth_m_truth".to_owned(), Picture::new("True depth", axis(), columns, values.clone())));
     }
     let figure = |pictures| {
-        Pictures::new("Depth by matching", pictures).subtitle(captions::MATCHED).no_value("sky, or no match")
+        Pictures::new("Does block matching find the true depth?", pictures)
+            .subtitle(captions::MATCHED)
+            .no_value("sky, or no match")
     };
     plot("matched", figure, pictures, ([0, 0], 1))
 }
@@ -297,9 +312,47 @@ pub(crate) fn response_measured(scheme: Derivative, omega: f64) -> Result<f64> {
     Ok(top / bottom)
 }
 
-fn clipped(axis: Axis, values: &[f64]) -> Axis {
+/// What all but the lowest and highest of the values lie between.
+fn ends(values: &[f64]) -> (f64, f64) {
     let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    let (low, high) = (quantile(&finite, TAIL), quantile(&finite, 1.0 - TAIL));
+    (quantile(&finite, TAIL), quantile(&finite, 1.0 - TAIL))
+}
+
+/// An axis about the median, as long as between other ends, so that equal textures are equally seen.
+fn around(axis: Axis, values: &[f64], others: Option<(f64, f64)>) -> Axis {
+    let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let (middle, half) = (quantile(&finite, 0.5), others.map_or(0.0, |(low, high)| 0.5 * (high - low)));
+    if half > FLAT * middle.abs() { axis.range(middle - half, middle + half) } else { clipped(axis, values) }
+}
+
+/// Most values that are drawn as so many colours with their names.
+const FEW: usize = 5;
+
+/// A picture of a few values is one of areas, each with its value in the legend; others stay as they are.
+fn few_values(picture: Picture, keys: &mut Vec<(Rgb, String)>) -> Picture {
+    let same = |a: f64, b: f64| (a - b).abs() <= FLAT * a.abs();
+    let mut seen: Vec<f64> = Vec::new();
+    for value in picture.values.iter().copied().filter(|value| value.is_finite()) {
+        if !seen.iter().any(|one| same(*one, value)) {
+            seen.push(value);
+        }
+        if seen.len() > FEW {
+            return picture;
+        }
+    }
+    seen.sort_by(f64::total_cmp);
+    let area = |value: &f64| seen.iter().position(|one| same(*one, *value));
+    let areas: Vec<Option<usize>> = picture.values.iter().map(area).collect();
+    let pixels = areas.iter().map(|area| area.map_or((0xD6, 0xD6, 0xD6), categorical)).collect();
+    let names: Vec<String> =
+        seen.iter().map(|value| format!("{}: {}", picture.colour.title, written(*value))).collect();
+    keys.extend(names.into_iter().enumerate().map(|(i, name)| (categorical(i), name)));
+    let painted = Some(Painted { pixels, ramp: None });
+    Picture { painted, ..picture }
+}
+
+fn clipped(axis: Axis, values: &[f64]) -> Axis {
+    let (low, high) = ends(values);
     if high - low > FLAT * high.abs() { axis.range(low, high) } else { axis }
 }
 

@@ -65,7 +65,7 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
     let limit: Vec<f64> = points.iter().map(|point| bits(limit_of(point))).collect();
     let mut figure = LineFigure::new(
         curves.title.clone(),
-        Axis::log("normalised photon number N d₀²"),
+        photons_axis(result, curves),
         information_axis("information log₂ 2P (bits)"),
     );
     if points.len() > 2 {
@@ -76,11 +76,21 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
         let label = "where 95 % of an ideal classifier's points lie";
         figure = figure.band(Band::new(label, x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
     }
+    // The limits lie on top of the points.
+    for (place, colour, words) in methods(result) {
+        figure = figure.series(series(result, place, words).colour(colour));
+    }
+    if let Some((other, words)) = curves.other {
+        figure = figure.subtitle(words);
+        for (place, colour, _) in methods(other) {
+            figure = figure.series(series(other, place, String::new()).colour(colour));
+        }
+    }
     match curves.noise {
         Some(noise) => {
             for (i, curve) in noise.curves.iter().enumerate() {
                 let style = [Style::Line, Style::Dashed, Style::Dotted, Style::Line][i.min(3)];
-                let colour = if i == 0 { LIMIT_COLOUR } else { NOISE_COLOUR };
+                let colour = if i == 0 { CURVE_COLOUR } else { NOISE_COLOUR };
                 let label =
                     if i == 0 { "limit, shot noise".to_owned() } else { format!("limit, {}", curve.name) };
                 figure = figure.series(
@@ -91,24 +101,15 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
             }
         }
         None => {
-            figure = figure.series(Series::line("limit", x.clone(), limit).colour(LIMIT_COLOUR));
+            figure = figure.series(Series::line("limit", x.clone(), limit).colour(CURVE_COLOUR));
         }
     }
     let promised: Vec<f64> = points.iter().map(|point| bits(point.local_accuracy)).collect();
     figure = figure.series(
         Series::line("what the local distance would have promised", x.clone(), promised)
-            .style(Style::Dashed)
+            .style(Style::Dotted)
             .colour(LOCAL_COLOUR),
     );
-    for (place, colour, words) in methods(result) {
-        figure = figure.series(series(result, place, words).colour(colour));
-    }
-    if let Some((other, words)) = curves.other {
-        figure = figure.subtitle(words);
-        for (place, colour, _) in methods(other) {
-            figure = figure.series(series(other, place, String::new()).colour(colour));
-        }
-    }
     figure = figure.lower(lower(result, curves.other.map(|other| other.0)));
     let criterion = detection::information_bits(1.0);
     figure = figure.rule(Rule::horizontal(criterion, "identifiable: d = 1"));
@@ -117,11 +118,16 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
 
 /// Accuracies less the limit, in percentage points: what the information cannot show where points lie on the curve.
 fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
-    let mut panel = Panel::new(Axis::linear("accuracy − limit (points)"));
+    let joined = joined(result);
+    let of_several = if joined > 1 { format!(", means of {joined}") } else { String::new() };
+    let mut panel = Panel::new(Axis::linear(format!("accuracy − limit (percentage points{of_several})")))
+        .rule(Rule::horizontal(0.0, ""));
     for result in std::iter::once(result).chain(other) {
-        let x: Vec<f64> = result.points.iter().map(|point| point.normalised_photons).collect();
+        let photons: Vec<f64> = result.points.iter().map(|point| point.normalised_photons.ln()).collect();
+        let x: Vec<f64> = means(&photons, joined).into_iter().map(f64::exp).collect();
         let edge = |sign: f64| {
-            result.points.iter().map(|point| sign * (100.0 * 1.96 * spread(result, point))).collect()
+            let spread = |point| sign * 100.0 * 1.96 * spread(result, point) / (joined as f64).sqrt();
+            means(&result.points.iter().map(spread).collect::<Vec<_>>(), joined)
         };
         if x.len() > 2 {
             panel = panel.band(Band::new("", x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
@@ -131,13 +137,42 @@ fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
                 let found = point.performances.get(place);
                 found.map_or(f64::NAN, |found| 100.0 * (found.performance.accuracy - limit_of(point)))
             };
-            let y = result.points.iter().map(of).collect();
-            panel = panel.series(Series::points("", x.clone(), y).colour(colour));
+            let y = means(&result.points.iter().map(of).collect::<Vec<_>>(), joined);
+            let style = if joined > 1 { Style::Marked } else { Style::Points };
+            panel = panel.series(Series::line("", x.clone(), y).style(style).colour(colour));
         }
     }
     panel
 }
 
+/// More experiments than this are drawn as means of neighbours, so that the classifiers are seen beside each other.
+const MOST_POINTS: usize = 40;
+
+/// How many neighbouring experiments are taken together.
+fn joined(result: &Simulation) -> usize {
+    if result.points.len() > MOST_POINTS { 10 } else { 1 }
+}
+
+/// Means of so many neighbours each.
+fn means(values: &[f64], joined: usize) -> Vec<f64> {
+    values.chunks(joined.max(1)).map(|some| some.iter().sum::<f64>() / some.len() as f64).collect()
+}
+
+/// The photon numbers of the experiments, with what is drawn beyond them.
+fn photons_axis(result: &Simulation, curves: &SimulationCurves<'_>) -> Axis {
+    let points = result.points.iter().chain(curves.other.iter().flat_map(|other| &other.0.points));
+    let ends = points.fold((f64::INFINITY, 0.0f64), |(low, high), point| {
+        (low.min(point.normalised_photons), high.max(point.normalised_photons))
+    });
+    let axis = Axis::log("normalised photon number N d₀²");
+    let beyond = if curves.noise.is_some() { BEYOND } else { MARGIN };
+    if ends.0 < ends.1 { axis.range(ends.0 / MARGIN, beyond * ends.1) } else { axis }
+}
+
+/// Curves are drawn to this factor beyond the last experiment.
+const BEYOND: f64 = 10.0;
+const MARGIN: f64 = 1.3;
+const CURVE_COLOUR: usize = 6;
 const NOISE_COLOUR: usize = 2;
 const LOCAL_COLOUR: usize = 6;
 
@@ -168,7 +203,7 @@ fn series(result: &Simulation, place: usize, label: String) -> Series {
         bits.map_or(f64::NAN, |bits| bits.max(0.0))
     };
     let x = result.points.iter().map(|point| point.normalised_photons).collect();
-    Series::points(label, x, result.points.iter().map(of).collect())
+    Series::points(label, x, result.points.iter().map(of).collect()).pale()
 }
 
 /// The deviation of the accuracy of an ideal classifier: two classes of so many test spectra each.
@@ -209,4 +244,21 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
         None => figure,
     };
     Plot { name: "accuracies".into(), figure: figure.into(), table: simulation_table(result) }
+}
+
+/// Limits under each kind of noise over all photon numbers, without experiments.
+#[must_use]
+pub fn noise_limits(noise: &NoiseCurves, title: &str, table: Table) -> Plot {
+    let mut figure = LineFigure::new(
+        title,
+        Axis::log("normalised photon number N d₀²"),
+        information_axis("information log₂ 2P (bits)"),
+    )
+    .rule(Rule::horizontal(detection::information_bits(1.0), "identifiable: d = 1"));
+    for (i, curve) in noise.curves.iter().enumerate() {
+        let style = [Style::Line, Style::Dashed, Style::Dotted, Style::Line][i.min(3)];
+        let series = Series::line(curve.name, noise.normalised_photons.clone(), curve.information_bits());
+        figure = figure.series(series.style(style).colour(i));
+    }
+    Plot { name: "noise_curves".into(), figure: figure.into(), table }
 }

@@ -39,9 +39,38 @@ pub fn emissivities(title: &str, wavenumbers_cm1: &[f64], surfaces: &[&Surface])
             let curve = Series::line(&surface.name, wavenumbers_cm1.to_vec(), surface.emissivity.clone());
             figure = figure.series(curve.style(style));
         }
+        if let Some(panel) = near_ones(wavenumbers_cm1, drawn) {
+            figure = figure.lower(panel);
+        }
         Plot { name, figure: figure.into(), table }
     };
     surfaces.chunks(CURVES).enumerate().map(one).collect()
+}
+
+/// Curves that differ from the first by less than this share of the range of all are drawn once more, as their differences.
+const NEAR: f64 = 0.25;
+
+/// Differences from the first surface of those that are near it, where others are so far that these are one line beside them.
+fn near_ones(wavenumbers_cm1: &[f64], drawn: &[&Surface]) -> Option<Panel> {
+    let (first, others) = drawn.split_first()?;
+    let (low, high) = emissivity_range(drawn);
+    let off = |other: &Surface| -> Vec<f64> {
+        other.emissivity.iter().zip(&first.emissivity).map(|(e, own)| e - own).collect()
+    };
+    let is_near = |off: &[f64]| off.iter().all(|off| off.abs() < NEAR * (high - low));
+    let near: Vec<(usize, Vec<f64>)> = (others.iter().enumerate())
+        .map(|(i, other)| (i + 1, off(other)))
+        .filter(|(_, off)| is_near(off))
+        .collect();
+    if near.is_empty() || near.len() == others.len() {
+        return None;
+    }
+    let mut panel =
+        Panel::new(Axis::linear(format!("difference from {}", first.name))).rule(Rule::horizontal(0.0, ""));
+    for (colour, off) in near {
+        panel = panel.series(Series::line("", wavenumbers_cm1.to_vec(), off).colour(colour));
+    }
+    Some(panel)
 }
 
 /// Whether two curves lie on each other.

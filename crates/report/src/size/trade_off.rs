@@ -18,6 +18,8 @@ const MARGIN: f64 = 3.0;
 const LONG: usize = 24;
 /// Farther than this factor from the camera's own value nothing is drawn: nobody builds it.
 const FARTHEST: f64 = 1e6;
+/// How far beyond camera and solution is drawn.
+const AROUND: f64 = 32.0;
 /// Share by which the value that would do must differ from the camera's to be named.
 const OTHER: f64 = 0.01;
 
@@ -35,7 +37,9 @@ pub(super) fn trade_off(curve: &TradeOff, result: &Sizing) -> Plot {
     let (met, now) = (column(|point| point.y), column(|point| point.y_as_now));
     let own = (curve.camera.0 * sx, curve.camera.1 * sy);
     let (bottom, top) = extent(curve, &[&met, &now], own.1, sy);
+    let solved = just_enough(curve);
     let [from, to] = [at.first(), at.last()].map(|end| end.copied().unwrap_or(1.0));
+    let (from, to) = about(from, to, own.0, solved.map(|point| point.x * sx));
     // Whole numbers change in steps; between two points the larger one is sure to do.
     let drawn = |values: &[f64]| match y {
         Quantity::Frames => stairs(&at, values),
@@ -46,13 +50,23 @@ pub(super) fn trade_off(curve: &TradeOff, result: &Sizing) -> Plot {
         let inside = |values: Vec<f64>| values.iter().map(|y| y.clamp(bottom, top)).collect();
         Band::new(label, x, inside(low), inside(high))
     };
+    let required = significant(curve.required, 3);
+    // The answer first.
+    let is_allowed = curve.points.iter().any(|point| point.within_limits.is_some());
+    let answer = match (is_allowed, solved) {
+        (false, _) => format!("nothing meets d = {required} within all limits"),
+        (true, Some(point)) => {
+            let value = just_enough_label(curve, point.x, point.y.unwrap_or(f64::NAN));
+            format!("{value} just meets d = {required}")
+        }
+        (true, None) => format!("what meets d = {required}"),
+    };
     let mut figure = LineFigure::new(
-        format!("{} against {}", title(y), x.name()),
+        format!("{} against {}: {answer}", title(y), x.name()),
         Axis::log(axis(x)).range(from, to),
         Axis::log(axis(y)).range(bottom, top),
     )
     .subtitle(captions::trade_off(curve, camera));
-    let required = significant(curve.required, 3);
     let allowed = ends(curve, sy, |point| point.within_limits);
     let label =
         if allowed.0.iter().any(|y| !y.is_nan()) { format!("meets d = {required}") } else { String::new() };
@@ -111,7 +125,7 @@ pub(super) fn trade_off(curve: &TradeOff, result: &Sizing) -> Plot {
         };
         figure = figure.marker(Marker::new(label, own.0, own.1));
     }
-    if let Some(point) = just_enough(curve) {
+    if let Some(point) = solved {
         let value = point.y.unwrap_or(f64::NAN);
         figure =
             figure.marker(Marker::new(just_enough_label(curve, point.x, value), point.x * sx, value * sy));
@@ -172,6 +186,15 @@ fn just_enough(curve: &TradeOff) -> Option<&Point> {
     }?;
     let far = |a: f64, b: f64| (a / b - 1.0).abs() > OTHER;
     (far(found.x, curve.camera.0) || far(found.y?, curve.camera.1)).then_some(found)
+}
+
+/// The range of the horizontal axis: a decade and a half about the camera and the solution, of what was computed.
+fn about(from: f64, to: f64, own: f64, solved: Option<f64>) -> (f64, f64) {
+    if !(own.is_finite() && own > 0.0) {
+        return (from, to);
+    }
+    let solved = solved.unwrap_or(own);
+    (from.max(own.min(solved) / AROUND), to.min(own.max(solved) * AROUND))
 }
 
 fn in_words(of: Quantity, value: f64) -> String {

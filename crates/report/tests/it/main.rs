@@ -1,6 +1,7 @@
 //! Tests of reports.
 
 mod figures;
+mod labels;
 mod named_values;
 
 mod support {

@@ -3,7 +3,7 @@
 use super::designs::Choice;
 use super::shown::Shown;
 use hadar_report::figures::Plot;
-use hadar_report::plot::{Axis, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
+use hadar_report::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use hadar_report::table::{Table, number};
 
 pub(super) fn all(shown: &Shown) -> [Plot; 5] {
@@ -76,9 +76,12 @@ fn kernels(shown: &Shown) -> Plot {
     Plot { name: "resolved".into(), figure: figure.into(), table }
 }
 
+/// What is unknown to more than this many peaks of the response is drawn at this level: how much is not told by the readings.
+const UNKNOWN: f64 = 1e4;
+
 /// A deviation beyond which rounding has a say is none.
 pub(super) fn told(sigma: f64) -> f64 {
-    if sigma < 1e4 { sigma } else { f64::NAN }
+    if sigma < UNKNOWN { sigma } else { f64::NAN }
 }
 
 fn directions(shown: &Shown) -> Plot {
@@ -89,13 +92,19 @@ fn directions(shown: &Shown) -> Plot {
         table.push_numbers(&[(i + 1) as f64, exact[i], uncertain[i]]);
     }
     let x: Vec<f64> = (1..=exact.len()).map(|i| i as f64).collect();
+    let first = exact.iter().zip(&uncertain).position(|(a, b)| a.is_nan() && b.is_nan()).unwrap_or(x.len());
+    let unknown = [first as f64 + 0.5, x.len() as f64 + 0.5];
     let beyond = exact.iter().chain(&uncertain).filter(|sigma| sigma.is_nan()).count();
     let figure = LineFigure::new(
-        format!("{} of 30 values are determined by the readings alone", shown.uncertain.number),
-        Axis::linear("direction of the response, the best known first"),
-        Axis::log("σ of its coefficient (peak of the response: 1)").range(1e-5, 1e4),
+        format!("How many values do the readings alone determine? {} of 30", shown.uncertain.number),
+        Axis::linear("direction of the response, the best known first").range(0.0, x.len() as f64 + 1.0),
+        Axis::log("σ of its coefficient (peak of the response: 1)").range(1e-5, 3.0 * UNKNOWN),
     )
-    .subtitle(format!("Singular values of the scores, inverted; {beyond} points above 10⁴ are not shown."))
+    .subtitle(format!(
+        "Singular values of the scores, inverted. Below the dashed line a direction is determined; shaded: {beyond} points that are not, to \
+         10⁴ or more."
+    ))
+    .band(Band::new("no value: rounding has a say", unknown.to_vec(), vec![1e-5; 2], vec![3.0 * UNKNOWN; 2]))
     .series(Series::points("temperatures exact", x.clone(), exact).style(Style::Marked).colour(0))
     .series(Series::points("temperatures to 20 mK", x, uncertain).style(Style::Marked).colour(1))
     .rule(Rule::horizontal(0.1, "a tenth of the peak"));

@@ -152,10 +152,10 @@ fn distances(rows: &[Row]) -> Plot {
             optional(row.classes.last().and_then(|answer| answer.share_of_pairs_told)),
         ]);
     }
-    let names = rows.iter().map(|row| row.what.clone()).collect();
+    let names = rows.iter().map(Row::in_words).collect();
     let photons = rows.iter().map(|row| row.photons.unwrap_or(f64::NAN)).collect();
     let figure = NamedValues::new(
-        "What it takes to tell a person from a robot",
+        "How many photons does it take to distinguish a person from a robot?",
         names,
         Axis::log("photons required for d = 1, by shot noise alone"),
     )

@@ -4,6 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::table::Table;
+use crate::text::significant;
 use crate::words::simulate::thermometry as words;
 use hadar_simulate::efficiency::Errors;
 use hadar_study::{Reader, Thermometry, ThermometryRow};
@@ -104,7 +105,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
     let columns = [
         (bound(false), Style::Line, 0, of(&|row| row.lighting_known.bound_k)),
         (label(false), Style::Points, 0, of(&|row| Some(row.lighting_known.errors.rmse))),
-        (bound(true), Style::Line, 1, of(&|row| row.lighting_unknown.as_ref()?.bound_k)),
+        (bound(true), Style::Dashed, 1, of(&|row| row.lighting_unknown.as_ref()?.bound_k)),
         (label(true), Style::Points, 1, of(&|row| Some(row.lighting_unknown.as_ref()?.errors.rmse))),
         ("bound averaged over the lighting's range".to_owned(), Style::Dotted, 1, of(&range_bound)),
         (fixed_label(result), FIXED.0, FIXED.1, of(&|row| row.fixed.errors.map(|e| e.rmse))),
@@ -133,15 +134,29 @@ pub fn rmse(result: &Thermometry) -> Plot {
         }
         table.push_numbers(&cells);
     }
+    let unbiased = of(&|row| row.lighting_unknown.as_ref()?.bound_k);
+    let ends = unbiased.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
+    let left_out = match applies || ends.0 > ends.1 {
+        true => String::new(),
+        false => format!(
+            " The bound for unbiased estimates and unknown lighting, {} to {} K, does not apply and is not drawn.",
+            significant(ends.0, 2),
+            significant(ends.1, 2)
+        ),
+    };
     let mut figure = LineFigure::new(
-        format!("How precisely {} is read, and could be", result.target),
+        format!("How precisely is {} read, and how precisely could it be?", result.target),
         true_temperature(),
         Axis::log("root mean squared error (K)"),
     )
-    .subtitle(words::bounds(result, rows.iter().any(|row| range_bound(row).is_some())));
+    .subtitle(words::bounds(result, rows.iter().any(|row| range_bound(row).is_some())) + &left_out);
     for (label, style, colour, values) in columns {
-        if values.iter().any(|value| value.is_finite()) {
-            figure = figure.series(Series::line(label, celsius.clone(), values).style(style).colour(colour));
+        // A bound that is none for these estimates is in the table alone.
+        let applies = applies || label != bound(true);
+        if applies && values.iter().any(|value| value.is_finite()) {
+            let series = Series::line(label, celsius.clone(), values).style(style).colour(colour);
+            // What lies below is seen inside.
+            figure = figure.series(open_if(series, style == Style::Points && colour == 1));
         }
     }
     Plot {
@@ -149,6 +164,10 @@ pub fn rmse(result: &Thermometry) -> Plot {
         figure: figure.lower(over_bound(result, &rows, &celsius)).into(),
         table,
     }
+}
+
+fn open_if(series: Series, open: bool) -> Series {
+    if open { series.open() } else { series }
 }
 
 /// The bound averaged over the range of the lighting, where that stops the fits; elsewhere it hides under the others.
@@ -177,7 +196,7 @@ fn over_bound(result: &Thermometry, rows: &[&ThermometryRow], celsius: &[f64]) -
             let meaning = if colour == 0 { "95 % interval of error" } else { "" };
             panel = panel
                 .band(Band::new(meaning, celsius.to_vec(), low, high).colour(colour))
-                .series(Series::points(label, celsius.to_vec(), values).colour(colour));
+                .series(open_if(Series::points(label, celsius.to_vec(), values).colour(colour), colour == 1));
         }
     }
     panel

@@ -6,7 +6,7 @@ use hadar::error::Result;
 use hadar::fisher::emissivity::{EmissivityPrior, Seen, Separation, Smoothness};
 use hadar::planck::photon_radiance_and_slope_into;
 use hadar_report::figures::Plot;
-use hadar_report::plot::{Axis, LineFigure, Series};
+use hadar_report::plot::{Axis, LineFigure, Series, Style};
 use hadar_report::table::Table;
 
 /// Narrow bands that one wide band takes in.
@@ -87,7 +87,9 @@ impl Bounds {
         let series = |rows: &[(f64, Vec<Bound>)], i: usize| {
             let x: Vec<f64> = rows.iter().map(|row| row.0).collect();
             let y = rows.iter().map(|row| row.1[i][0]).collect();
-            Series::line(self.labels[i].clone(), x, y).colour(i)
+            // A colour for each sky, dashes for the larger noise.
+            let style = if i.is_multiple_of(2) { Style::Line } else { Style::Dashed };
+            Series::line(self.labels[i].clone(), x, y).style(style).colour(i / 2)
         };
         let known = self.known;
         let said = format!(
@@ -95,15 +97,15 @@ impl Bounds {
             known.mean, known.magnitude, known.shape, known.correlation_cm1
         );
         let mut resolution = LineFigure::new(
-            "Least temperature error with nothing known but smoothness, over resolution",
+            "How well does smoothness alone determine the temperature, over the width of the bands?",
             Axis::log("width of a band (cm⁻¹)"),
-            Axis::log("temperature, least deviation (K)"),
+            Axis::log("least error of the temperature (K)"),
         )
         .subtitle(format!("{said} Surface at {SURFACE_K} K, 8 to 13 µm, the same NEDT in every band."));
         let mut contrast = LineFigure::new(
-            "Least temperature error with nothing known but smoothness, over contrast",
+            "How well does smoothness alone determine the temperature, over the contrast?",
             Axis::linear("surface warmer than the air (K)"),
-            Axis::log("temperature, least deviation (K)"),
+            Axis::log("least error of the temperature (K)"),
         )
         .subtitle(format!("{said} Bands of {STEP_CM1} cm⁻¹ from 8 to 13 µm."));
         for i in 0..self.labels.len() {

@@ -3,7 +3,7 @@
 use super::methods::{Compared, METHODS};
 use super::street::{MATERIALS, TakenApart};
 use hadar_report::figures::Plot;
-use hadar_report::plot::{Axis, LineFigure, Series, Style};
+use hadar_report::plot::{Axis, NamedSeries, NamedValues};
 use hadar_report::table::{Table, number};
 
 /// Published errors of smoothness: NEDT (K), temperature (K), emissivity.
@@ -75,7 +75,6 @@ pub(super) fn errors(compared: &[Compared]) -> Plot {
     );
     let sky = compared.last().map_or("", |one| one.sky);
     let rows: Vec<&Compared> = compared.iter().filter(|one| one.sky == sky).collect();
-    let x: Vec<f64> = rows.iter().map(|one| one.nedt_k).collect();
     let published = |nedt_k: f64| PUBLISHED.iter().find(|p| p[0] == nedt_k).map_or(f64::NAN, |p| p[1]);
     for one in &rows {
         let cells = one.errors.iter().map(|e| e.temperature_rms_k);
@@ -83,30 +82,21 @@ pub(super) fn errors(compared: &[Compared]) -> Plot {
         table
             .push_numbers(&cells.chain([one.bound_temperature_k, published(one.nedt_k)]).collect::<Vec<_>>());
     }
-    let mut figure = LineFigure::new(
-        "Temperature errors without a library, over the noise",
-        Axis::log("NEDT (K)").range(0.02, 0.15),
+    let mut names: Vec<String> = METHODS.iter().map(|method| (*method).to_owned()).collect();
+    names.extend(["bound, smooth prior", "published, smoothness"].map(str::to_owned));
+    let mut figure = NamedValues::new(
+        "Which method reads temperatures best without a library?",
+        names,
         Axis::log("temperature error, rms (K)"),
     )
     .subtitle(format!(
         "Measured spectra of surfaces that are no bare metals, each left out of what a method learns; clear sky {sky}. The bound holds for \
          emissivities drawn from its prior, averaged."
     ));
-    for (m, method) in METHODS.iter().enumerate() {
-        let y = rows.iter().map(|one| one.errors[m].temperature_rms_k).collect();
-        figure = figure.series(Series::line(*method, x.clone(), y).style(Style::Marked).colour(m));
+    for one in &rows {
+        let own = one.errors.iter().map(|e| e.temperature_rms_k);
+        let values = own.chain([one.bound_temperature_k, published(one.nedt_k)]).collect();
+        figure = figure.series(NamedSeries::new(format!("NEDT {} K", one.nedt_k), values));
     }
-    let bound = rows.iter().map(|one| one.bound_temperature_k).collect();
-    figure = figure
-        .series(Series::line("bound, smooth prior", x.clone(), bound).style(Style::Dashed).colour(5))
-        .series(
-            Series::points(
-                "published, smoothness",
-                PUBLISHED.iter().map(|p| p[0]).collect(),
-                PUBLISHED.iter().map(|p| p[1]).collect(),
-            )
-            .open()
-            .colour(6),
-        );
     Plot { name: "temperature_errors".into(), figure: figure.into(), table }
 }

@@ -7,7 +7,7 @@ use hadar::material::Library;
 use hadar_estimate::decompose::{Maps, Method, NO_MATERIAL};
 use hadar_estimate::separation::{Asked, Found};
 use hadar_report::figures::Plot;
-use hadar_report::plot::{Axis, Band, LineFigure, Series, Style};
+use hadar_report::plot::{Axis, Band, LineFigure, Panel, Series, Style};
 use hadar_report::table::Table;
 
 /// What the street is made of.
@@ -15,6 +15,8 @@ pub(super) const MATERIALS: [&str; 6] =
     ["asphalt", "brick-red", "soda-lime-glass", "marble", "steel-rough", "vegetation-leaf"];
 /// Photons of a pixel: some 10⁵ a band.
 pub(super) const PHOTONS: f64 = 5.4e6;
+/// Emissivity below which a surface is a bare metal.
+const METAL: f64 = 0.5;
 /// Counts of groups that are tried.
 const COUNTS: [usize; 2] = [2, 10];
 const KNOWN: Smoothness = Smoothness { mean: 0.9, magnitude: 0.3, shape: 0.1, correlation_cm1: 50.0 };
@@ -113,15 +115,16 @@ impl TakenApart {
             table.push_numbers(&std::iter::once(*nu).chain(cells).collect::<Vec<_>>());
         }
         let mut figure = LineFigure::new(
-            "Emissivities found in the pixels of a street, and those that they are made of",
+            "Are the emissivities found without a library the true ones?",
             Axis::linear("wavenumber (cm⁻¹)"),
-            Axis::linear("emissivity").range(0.0, 1.02),
+            Axis::linear("emissivity"),
         )
         .subtitle(format!(
-            "{} pixels of {} materials, {PHOTONS:.1e} photons each; no library known. Shaded: two standard deviations. Dashed: true.",
+            "{} pixels of {} materials, {PHOTONS:.1e} photons each; no library known. Shaded: two standard deviations. Dotted: true.",
             self.pixels,
             MATERIALS.len()
         ));
+        let mut metals = Panel::new(Axis::linear("emissivity"));
         for (i, (one, m)) in self.found.clusters.iter().zip(&self.material).enumerate() {
             let edge = |sign: f64| -> Vec<f64> {
                 one.emissivity
@@ -130,10 +133,16 @@ impl TakenApart {
                     .map(|(e, s)| (e + 2.0 * sign * s).clamp(0.0, 1.02))
                     .collect()
             };
-            figure = figure
-                .band(Band::new("", nu.clone(), edge(-1.0), edge(1.0)).colour(i))
-                .series(Series::line(MATERIALS[*m], nu.clone(), one.emissivity.clone()).colour(i))
-                .series(Series::line("", nu.clone(), self.truth[*m].clone()).style(Style::Dashed).colour(i));
+            // Metals are far below all else: in a panel of their own both are seen.
+            let panel =
+                if self.truth[*m].iter().all(|e| *e < METAL) { &mut metals } else { &mut figure.panel };
+            panel.bands.push(Band::new("", nu.clone(), edge(-1.0), edge(1.0)).colour(i));
+            panel.series.push(Series::line(MATERIALS[*m], nu.clone(), one.emissivity.clone()).colour(i));
+            let truth = self.truth[*m].clone();
+            panel.series.push(Series::line("", nu.clone(), truth).style(Style::Dotted).colour(6));
+        }
+        if !metals.series.is_empty() {
+            figure = figure.lower(metals);
         }
         Plot { name: "street_emissivities".into(), figure: figure.into(), table }
     }

@@ -68,7 +68,7 @@ pub(super) fn pairs(shown: &Shown) -> Plot {
     rows(&mut table, plane, |e| vec![e.total_k(), e.noise_k, e.temperature_k]);
     let values = plane.errors.iter().map(|e| e.map_or(f64::NAN, |e| 1e3 * e.total_k())).collect();
     let mut figure = HeatMap::new(
-        "Which two blackbodies calibrate best",
+        "Which two blackbodies calibrate best?",
         (Axis::linear("colder blackbody (K)"), plane.axis_k.clone()),
         (Axis::linear("warmer blackbody (K)"), plane.axis_k.clone()),
         (Axis::log("error of a calibrated radiance (mK)").range(10.0, 1000.0), values),
@@ -101,10 +101,10 @@ pub(super) fn surface(shown: &Shown) -> Plot {
     rows(&mut table, plane, |e| vec![e.total(), e.noise, e.temperature, e.bias]);
     let values = plane.errors.iter().map(|e| e.map_or(f64::NAN, |e| e.total())).collect();
     let mut figure = HeatMap::new(
-        "Which two temperatures of a surface tell its emissivity best",
-        (Axis::linear("colder (K)"), plane.axis_k.clone()),
-        (Axis::linear("warmer (K)"), plane.axis_k.clone()),
-        (Axis::log("error of the emissivity").range(5e-4, 0.05), values),
+        "Which two temperatures of a surface determine its emissivity best?",
+        (Axis::linear("temperature of the colder reading (K)"), plane.axis_k.clone()),
+        (Axis::linear("temperature of the warmer reading (K)"), plane.axis_k.clone()),
+        (Axis::log("error of the emissivity (1)").range(1e-3, 0.02), values),
     )
     .subtitle(format!(
         "Emissivity 0.9, wanted at {WANTED_K} K, changing by 1e-4 per K, under surroundings at {SURROUNDINGS_K} K. Noise, temperatures and \

@@ -17,3 +17,36 @@ pub(super) struct Row {
     /// Where there are classes, by photons and before each camera.
     pub(super) classes: Vec<ClassAnswer>,
 }
+
+impl Row {
+    /// The question for a reader, who does not know the library's names.
+    pub(super) fn in_words(&self) -> String {
+        let spectra = self.classes.first().map(|answer| [answer.target.spectra, answer.alternative.spectra]);
+        let [own, other] = spectra.unwrap_or([1, 1]);
+        let word = |name: &str| {
+            match name {
+                "skin" => "skin (0.95 in all bands)",
+                "human" => "skin (authors' spectrum)",
+                "al" => "aluminium (authors' spectrum)",
+                "painted-robot" => "painted robot",
+                "metal-robot" => "metal robot",
+                name => name,
+            }
+            .to_owned()
+        };
+        let side = |name: &str, spectra: usize| match spectra {
+            1 => word(name),
+            _ => format!("{}, {spectra} spectra", word(name)),
+        };
+        let (question, mixed) = match self.what.split_once(", mixed") {
+            Some((question, _)) => (question, " and their mixtures"),
+            None => (self.what.as_str(), ""),
+        };
+        match question.split_once(" against ") {
+            Some((target, alternative)) => {
+                format!("{} against {}{mixed}", side(target, own), side(alternative, other))
+            }
+            None => self.what.clone(),
+        }
+    }
+}

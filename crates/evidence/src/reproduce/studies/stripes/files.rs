@@ -134,14 +134,31 @@ pub(super) fn pictures(twin: &Twin, share: f64, seed: u64) -> Result<Plot> {
     }
     let [before, after, off_before, off_after] = layers;
     let counts = || Axis::linear("counts").range(0.6e5, 1.35e5);
-    let kelvin = || Axis::linear("error (K)").range(-1.0, 1.0);
+    // All but one in a hundred of the errors are within the scale.
+    let mut sizes: Vec<f64> = off_before.iter().map(|off: &f64| off.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let most = sizes.get(sizes.len() * 99 / 100).copied().unwrap_or(1.0);
+    let kelvin = || Axis::linear("error (K)").range(-most, most);
+    // What stripes add to the scene, of which the mean is known here.
+    let mean: Vec<f64> = twin.mean.iter().skip(band).step_by(BANDS).copied().collect();
+    let beside = |counts: &[f64]| -> Vec<f64> {
+        counts.iter().zip(&mean).map(|(n, mean)| 100.0 * (n / mean - 1.0)).collect()
+    };
+    let percent = || Axis::linear("excess (%)").range(-5.0, 5.0);
     let figure = Pictures::new(
-        "A striped cube, and the same destriped",
+        "Does destriping take the stripes away?",
         vec![
-            Picture::new("one band, striped", counts(), COLUMNS, before),
-            Picture::new("the same, destriped", counts(), COLUMNS, after),
-            Picture::new("temperature error, striped", kelvin(), COLUMNS, off_before),
-            Picture::new("temperature error, destriped", kelvin(), COLUMNS, off_after),
+            Picture::new("One band as it is read", counts(), COLUMNS, before.clone()),
+            Picture::new("The same, destriped", counts(), COLUMNS, after.clone()),
+            Picture::new(
+                "Excess of the counts over the scene: stripes and noise",
+                percent(),
+                COLUMNS,
+                beside(&before),
+            ),
+            Picture::new("The same, destriped", percent(), COLUMNS, beside(&after)),
+            Picture::new("Temperature error, striped", kelvin(), COLUMNS, off_before),
+            Picture::new("Temperature error, destriped", kelvin(), COLUMNS, off_after),
         ],
     )
     .subtitle(format!("{} % of the lines of every band are striped, each band for itself.", 100.0 * share));
