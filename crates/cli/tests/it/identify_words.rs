@@ -72,7 +72,7 @@ fn a_changed_preset_and_skies_left_out_are_said() {
         )
     );
     assert!(said(SCENARIO, &[]).starts_with("No: flir-a325sc cannot distinguish"));
-    let skies = "skies of the library are surroundings, no alternatives: left out sky-midlatitude-summer, ";
+    let skies = "skies of the library are surroundings, not alternatives: sky-midlatitude-summer, ";
     assert!(said(LIBRARY, &["--apart"]).contains(skies) && !said(SCENARIO, &[]).contains("skies"));
 }
 
