@@ -148,7 +148,7 @@ fn every_word_is_explained() {
     assert!(line.contains("`NETD`"), "{line}");
     let line = folder.refusal(&["explain", "size.toml"]);
     assert_eq!(line.matches("`size`").count(), 1, "{line}");
-    let line = folder.refusal(&["explain", "123"]);
+    let line = folder.refusal(&["explain", "!!!"]);
     assert!(line.contains("`hadar explain` gives an overview"), "{line}");
     let demand = folder.json(&["explain", "clause.requirement"]);
     let inside = demand["keys"][0]["inside"].to_string();

@@ -52,7 +52,7 @@ fn an_edge_is_a_warning_only_where_the_scenario_set_it() {
     let warm = said(&named("temperature = [\"0 degC\", \"100 degC\"]"), &[]);
     assert!(
         warm.contains(
-            "skin against aluminium: the nearest state stands at the edge of its range (temperature)"
+            "skin against aluminium: the closest confuser is at the edge of its range (temperature)"
         ),
         "{warm}"
     );
@@ -71,8 +71,8 @@ fn a_changed_preset_and_skies_left_out_are_said() {
             "No: flir-a325sc with exposure, netd changed cannot distinguish skin from aluminium"
         )
     );
-    assert!(said(SCENARIO, &[]).starts_with("No: flir-a325sc cannot tell"));
-    let skies = "skies of the library are surroundings, no alternatives: left out sky-midlatitude-summer, ";
+    assert!(said(SCENARIO, &[]).starts_with("No: flir-a325sc cannot distinguish"));
+    let skies = "skies of the library are surroundings, not alternatives: sky-midlatitude-summer, ";
     assert!(said(LIBRARY, &["--apart"]).contains(skies) && !said(SCENARIO, &[]).contains("skies"));
 }
 

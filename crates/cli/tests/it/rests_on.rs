@@ -18,7 +18,7 @@ fn a_verdict_names_what_it_rests_on() {
     let folder = Folder::with("");
     let Some(one_band) = path("verdict", "own_one_band_camera.toml") else { return };
     let own = folder.run(&["size", &one_band]).stdout;
-    assert!(own.starts_with("No: the camera could tell") && own.contains("[readout] "), "{own}");
+    assert!(own.starts_with("No: the camera could distinguish") && own.contains("[readout] "), "{own}");
 
     let edge = path("verdict", "one_band_yes.toml").unwrap();
     let said = folder.run(&["size", &edge, "--check"]);

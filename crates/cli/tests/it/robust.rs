@@ -297,8 +297,9 @@ fn a_local_distance_is_never_called_a_limit() {
                     assert!(matches!(outcome.code, 0 | 3), "{}", outcome.stderr);
                     for never in [
                         "at most",
-                        "cannot tell",
-                        "cannot be told",
+                        "cannot distinguish",
+                        "cannot be distinguished",
+                        "upper limit",
                         "No camera",
                         "no algorithm",
                         "d is a limit",

@@ -121,7 +121,7 @@ fn what_passes_passes_before_the_best_of_the_camera() {
     folder.file("exact.toml", &text);
     folder.file("errors.toml", &(text + "[sensitivity]\nemissivity_error = 0.01\n"));
     let said = |file: &str| folder.run(&["rule", file, "--stand-in"]).stdout;
-    assert!(said("exact.toml").starts_with("No camera tells any of these 2 stand-ins"));
+    assert!(said("exact.toml").starts_with("No camera distinguishes any of these 2 surrogate targets"));
     let errors = said("errors.toml");
     assert!(!errors.contains("No camera") && errors.contains("if spectra are exact"), "{errors}");
     assert!(errors.contains("[emissivity-errors-left-out]"), "{errors}");
@@ -150,7 +150,7 @@ fn the_clause_that_is_turned_round_is_named() {
             folder
                 .run(&["rule", "one.toml", "--stand-in"])
                 .stdout
-                .contains(&format!("clause {name:?}: a stand-in at"))
+                .contains(&format!("clause {name:?}: a surrogate target at"))
         );
     }
     folder.file("one.toml", &named("sure"));

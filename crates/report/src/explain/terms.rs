@@ -173,7 +173,8 @@ mod tests {
             assert_eq!(names(word), [name], "{word}");
         }
         assert!(names("").is_empty() && names("size.toml").is_empty());
-        assert!(terms_like("resolution of temperature").is_empty());
+        assert_eq!(terms_like("resolution of temperature").first().map(|term| term.name), Some("NETD"));
+        assert!(terms_like("nothing of the kind").is_empty());
         assert_eq!(terms_like("temperature difference").first().map(|term| term.name), Some("NETD"));
     }
 
