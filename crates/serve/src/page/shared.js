@@ -56,13 +56,14 @@ async function explained(link) {
   const word = element("p", {}, element("strong", {}, found.querySelector("h1")?.textContent ?? ""));
   found.querySelector("h1")?.remove();
   found.querySelectorAll("h2").forEach((head) => head.replaceWith(element("p", {}, element("strong", {}, head.textContent))));
-  const close = button("Close", () => box.hidePopover(), { className: "small" });
-  box.replaceChildren(word, ...found.childNodes, close);
+  const close = button("Close", () => box.hidePopover(), { className: "small close" });
+  box.replaceChildren(close, word, ...found.childNodes);
   if (!box.isConnected) document.body.append(box);
   const place = link.getBoundingClientRect();
   box.showPopover();
   box.style.left = `${Math.max(8, Math.min(place.left, innerWidth - box.offsetWidth - 8))}px`;
   box.style.top = `${Math.max(8, Math.min(place.bottom + 6, innerHeight - box.offsetHeight - 8))}px`;
+  box.scrollTop = 0;
   close.focus();
   box.addEventListener("toggle", () => link.isConnected && link.focus(), { once: true });
 }
