@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn columns_are_those_that_a_cell_stands_under() {
         let text = "Margins\n              windows      error\n  all, 4 m         12    3.1 mm\n  car               7      none\n\
-                    \x20                    no more than that\nIn all.\n";
+                    \x20                  no more than that\nIn all.\n";
         let found = html(text);
         assert!(found.starts_with("<h3>Margins</h3>\n"), "{found}");
         let head =

@@ -65,7 +65,8 @@ async function explained(link) {
   box.style.top = `${Math.max(8, Math.min(place.bottom + 6, innerHeight - box.offsetHeight - 8))}px`;
   box.scrollTop = 0;
   close.focus();
-  box.addEventListener("toggle", () => link.isConnected && link.focus(), { once: true });
+  // Opening is told in the same way, a moment later.
+  box.ontoggle = (event) => { if (event.newState === "closed" && link.isConnected) link.focus(); };
 }
 
 document.addEventListener("click", (event) => {
