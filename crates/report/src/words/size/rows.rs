@@ -45,7 +45,7 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
     let (Some(camera), Some(pair)) = (&result.camera, limiting(result)) else { return Vec::new() };
     let mut rows = Vec::new();
     let mut row = |label, value, key| rows.push(Row { label, value, key });
-    row("photons at the detector, all bands", significant(camera.photons, 4), "camera.photons");
+    row("photons at the detector", significant(camera.photons, 4), "camera.photons");
     let of_band = match camera.camera.frames {
         1 => "electronic noise of a band reading",
         _ => "electronic noise of a band",
