@@ -5,6 +5,7 @@ use crate::plot::{Axis, Figure, Matrix, NamedSeries, NamedValues};
 use crate::table::{Table, number, optional};
 use crate::text::significant;
 use crate::words::classes::LIGHTEST;
+use crate::words::pictures;
 use hadar_study::ClassAnswer;
 
 /// Every pair with its distance, or what is proved of it.
@@ -117,11 +118,9 @@ fn dots(answer: &ClassAnswer, sides: &[Vec<Group>; 2]) -> NamedValues {
     let mut rows: Vec<&Group> = rows.iter().collect();
     rows.sort_by(|a, b| nearest(a).total_cmp(&nearest(b)));
     let names = rows.iter().map(|row| row.said()).collect();
-    let mut figure = NamedValues::new(title(answer), names, axis(answer))
-        .no_value("farther than those that decide; how far is not computed");
+    let mut figure = NamedValues::new(title(answer), names, axis(answer)).no_value(pictures::FARTHER);
     if sides.iter().flatten().any(|group| group.members.len() > 1) {
-        figure =
-            figure.subtitle("Of several samples of one material the nearest. All pairs are in the table.");
+        figure = figure.subtitle(pictures::NEAREST_OF_SAMPLES);
     }
     for of in series {
         figure =

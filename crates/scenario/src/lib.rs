@@ -28,6 +28,7 @@ mod entries;
 pub mod envelope;
 pub mod examples;
 pub mod find;
+mod kept;
 pub mod keys;
 mod kind;
 pub mod library;

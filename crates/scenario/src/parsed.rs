@@ -6,16 +6,16 @@
 //!
 //! A parsed document borrows its text, which therefore stays until the program ends: it is parsed once a job.
 
+use super::kept::Kept;
 use super::report_inputs::ReportInputs;
 use super::source::{LineStarts, Source};
 use super::stated_camera::StatedCamera;
 use hadar::error::{Error, Result};
 use hadar::instrument::figures::BLANK;
 use hadar::units::decimal_comma;
-use std::any::{Any, TypeId};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use toml::de::DeTable;
 
 /// A text that is TOML.
@@ -31,32 +31,6 @@ pub(super) struct Parsed {
     kept: Arc<Kept>,
     /// What else its tables were read by.
     by: (Option<PathBuf>, Arc<[StatedCamera]>, bool),
-}
-
-/// What a table is read as, by its key and type.
-type Reading = (&'static str, TypeId);
-
-/// Tables of a text as they were read where nothing is set in them.
-#[derive(Debug, Default)]
-pub(super) struct Kept(Mutex<HashMap<Reading, Arc<dyn Any + Send + Sync>>>);
-
-impl Kept {
-    /// What stands at a key: kept, or read.
-    pub(super) fn or_read<T: Any + Clone + Send + Sync>(
-        &self,
-        key: &'static str,
-        read: impl FnOnce() -> Result<T>,
-    ) -> Result<T> {
-        let reading = (key, TypeId::of::<T>());
-        let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let before = kept().get(&reading).cloned();
-        if let Some(found) = before.as_deref().and_then(|found| found.downcast_ref::<T>()) {
-            return Ok(found.clone());
-        }
-        let found = read()?;
-        kept().insert(reading, Arc::new(found.clone()));
-        Ok(found)
-    }
 }
 
 impl Parsed {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use toml::de::{DeTable, DeValue};
 
-use super::parsed::Kept;
+use super::kept::Kept;
 use super::report_inputs::ReportInputs;
 use super::setting::Setting;
 pub(super) use super::setting::dotted;

@@ -3,7 +3,7 @@
 use crate::edit::{self, Edit};
 use crate::examples::{self, Example};
 use crate::form::{self, Form};
-use crate::route;
+use crate::longest::longest;
 use crate::said::{Said, Told};
 use crate::size_limit::{self, Command};
 use hadar::demand::{Reason, Thing, Work};
@@ -171,7 +171,7 @@ impl Engine {
             materials: self.library.iter().map(of_material).chain(classes).collect(),
             cameras: self.presets()?.map(of_camera).collect(),
             examples: examples::all()?,
-            longest_s: self.limits.time.unwrap_or(route::longest("/ask").0).as_secs(),
+            longest_s: self.limits.time.unwrap_or(longest("/ask").0).as_secs(),
             library_warnings: self.library.warnings(),
         })
     }

@@ -5,6 +5,7 @@
 
 use crate::engine::Engine;
 use crate::guard::{self, Refusal};
+use crate::longest::longest;
 use crate::room::{Asking, Room};
 use crate::route::{self, Begun, Reply};
 use crate::turns::{self, Turns};
@@ -168,7 +169,7 @@ async fn compute(shared: Arc<Shared>, path: String, body: Bytes) -> Reply {
             Begun::Prepared(question) => question.reply(&shared.engine),
         };
     }
-    let (longest, command) = route::longest(&path);
+    let (longest, command) = longest(&path);
     let longest = shared.engine.limits.time.unwrap_or(longest);
     let taken = turns::taken(Arc::clone(&shared.turns), Arc::clone(&shared.engine), path, body);
     timeout(longest, taken).await.unwrap_or_else(|_| Reply::refused(command.takes_too_long()))

@@ -32,6 +32,7 @@ mod examples;
 mod form;
 mod guard;
 mod http;
+mod longest;
 mod meaning;
 mod packs;
 mod place;

@@ -4,17 +4,10 @@ use crate::engine::{Ask, Engine, Prepared};
 use crate::guard::Refusal;
 use crate::meaning;
 use crate::rules::{PreparedReforms, PreparedRule};
-use crate::size_limit::Command;
 use hadar::error::Error;
 use hyper::StatusCode;
 use hyper::body::Bytes;
 use serde::de::DeserializeOwned;
-use std::time::Duration;
-
-/// Time for an answer, where no other limit is given.
-const LONGEST_ANSWER: Duration = Duration::from_secs(60);
-/// The same for an answer about a rule: every camera before every clause, in all scenes.
-const LONGEST_RULE: Duration = Duration::from_secs(240);
 
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
@@ -73,11 +66,6 @@ pub(crate) fn get(path: &str, engine: &Engine) -> Reply {
             None => Reply::refused(NOT_HERE),
         },
     }
-}
-
-/// How long an answer there may take where no other limit is given, and who gives those that take longer.
-pub(crate) fn longest(path: &str) -> (Duration, Command) {
-    if path.starts_with("/rule") { (LONGEST_RULE, Command::Rule) } else { (LONGEST_ANSWER, Command::Size) }
 }
 
 /// What is asked to be computed of a scenario.

@@ -9,7 +9,6 @@
 //! of the same and smoother. A relative error η of every signal moves a distance d₀ per √photon by no more than 2η.
 
 use super::air::Air;
-use super::remembered::Remembered;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::Result;
 use hadar::instrument::{Camera, EfficiencyCurve};
@@ -75,7 +74,7 @@ pub(super) type Integrals = (Bands, Integration, Work);
 
 impl Spectra<'_> {
     /// What their integrals over bands of a scenario depend on.
-    fn integrand(&self, scenario: &Scenario, asked: Option<bool>, bands: &Bands) -> Integrand {
+    pub(super) fn integrand(&self, scenario: &Scenario, asked: Option<bool>, bands: &Bands) -> Integrand {
         let around = scenario.environment.iter().map(|object| object.temperature_k);
         let owned = |material: &Cow<'_, Material>| material.as_ref().clone();
         Integrand {
@@ -172,24 +171,14 @@ impl Spectra<'_> {
     }
 }
 
-/// The integrals of a scenario over its bands, which may be `remembered`.
-pub(super) fn integrated(
-    scenario: &Scenario,
-    source: &BandSource,
-    bands: &Bands,
-    spectra: &Spectra<'_>,
-    remembered: Option<&Remembered>,
-) -> Result<Integrals> {
+/// Whether the integrals of a scenario are asked for, or refused.
+pub(super) fn asked(scenario: &Scenario, source: &BandSource) -> Option<bool> {
     let always = matches!(source, BandSource::Ranges(_) | BandSource::Filters(_));
-    let asked = scenario.bands.integrate.filter(|_| !always).or(always.then_some(true));
-    let compute = || computed(scenario, asked, bands, spectra);
-    match remembered {
-        Some(remembered) => remembered.integrals(spectra.integrand(scenario, asked, bands), compute),
-        None => compute(),
-    }
+    scenario.bands.integrate.filter(|_| !always).or(always.then_some(true))
 }
 
-fn computed(
+/// The integrals of a scenario over its bands.
+pub(super) fn integrated(
     scenario: &Scenario,
     asked: Option<bool>,
     bands: &Bands,

@@ -11,7 +11,7 @@ use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
 use super::camera::check_time;
 use super::classes::Members;
-use super::integration::{Spectra, integrated};
+use super::integration::{self, Spectra, integrated};
 use super::remembered::Remembered;
 use super::{Study, Surface, camera, camera_bands};
 use hadar::demand::Skipping;
@@ -129,11 +129,16 @@ impl Study {
             air: atmosphere.as_ref(),
             camera: camera.as_ref(),
         };
-        let (bands, integration, integrals) = integrated(&scenario, &asked, &bands, &spectra, remembered)
-            .map_err(|error| {
-                let mut groups = std::iter::once(&target).chain(&alternatives);
-                groups.find_map(|group| group.short_of(&bands, &scenario)).unwrap_or(error)
-            })?;
+        let wanted = integration::asked(&scenario, &asked);
+        let compute = || integrated(&scenario, wanted, &bands, &spectra);
+        let found = match remembered {
+            Some(remembered) => remembered.integrals(spectra.integrand(&scenario, wanted, &bands), compute),
+            None => compute(),
+        };
+        let (bands, integration, integrals) = found.map_err(|error| {
+            let mut groups = std::iter::once(&target).chain(&alternatives);
+            groups.find_map(|group| group.short_of(&bands, &scenario)).unwrap_or(error)
+        })?;
 
         let nodes = bands.nodes_cm1();
         let on_nodes = |material: &Material, key: &str| {

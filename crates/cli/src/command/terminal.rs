@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn lines_are_wrapped_and_rows_of_tables_are_not() {
         let shown = dressed(TEXT, Some(50), false);
-        let expected = "No: the camera cannot distinguish skin from aluminium\nwith 84.1 % reliability\n\n  reading            distance  photons\n  \
+        let expected = "No: the camera cannot distinguish skin from\naluminium with a probability of 84.1 %\n\n  reading            distance  photons\n  \
                         exposure           longer than a frame allows,\n                     and more than the well holds\nWarnings\n  \
                         [small-target] the target is small";
         assert_eq!(shown, expected);

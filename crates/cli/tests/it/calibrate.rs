@@ -422,7 +422,7 @@ fn frames_of_a_shutter_tell_what_rows_and_pixels_share() {
     );
     assert!(value("column_noise") < 3.0 && camera.contains("# at most"), "{camera}");
     let said = folder.run(&["calibrate", "noise", "shutter.toml"]).stdout;
-    assert!(said.starts_with("Beside ") && said.contains("row to row, staying (v)"), "{said}");
+    assert!(said.starts_with("In addition to ") && said.contains("row to row, staying (v)"), "{said}");
     // The camera is one that a scenario takes.
     folder.file("size.toml", &format!("[target]\nmaterial = \"skin\"\ntemperature = \"34 degC\"\n[alternatives]\nmaterials = [\"pmma\"]\n{}\npreset = \"flir-a325sc\"\n", camera.trim_end()));
     assert!(folder.json(&["size", "size.toml"])["camera"]["pattern"]["row_k"].as_f64().is_some());

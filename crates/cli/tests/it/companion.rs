@@ -50,7 +50,7 @@ fn at_one_temperature_practice_says_what_it_always_says() {
     let (warm, still) = (Folder::with(&sized("37 degC", "1.0")), Folder::with(&sized("20 degC", "1.0")));
     let lines = |folder: &Folder| -> Vec<String> {
         let outcome = folder.run(&["size", "a.toml", "-q"]);
-        let from = outcome.stdout.find("What sizing practice").unwrap();
+        let from = outcome.stdout.find("Rules of thumb of sizing practice").unwrap();
         outcome.stdout[from..].lines().take_while(|line| !line.is_empty()).map(str::to_owned).collect()
     };
     let (warm, still) = (lines(&warm), lines(&still));

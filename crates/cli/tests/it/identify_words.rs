@@ -90,7 +90,7 @@ fn averages_over_priors_lead_where_the_nominal_state_is_blind() {
             && lines[0].contains(" the best test distinguishes skin from aluminium in "),
         "{text}"
     );
-    let averaged = "Averaged over the priors of both, to distinguish skin from aluminium with 84.1 % right answers it takes between ";
+    let averaged = "Averaged over the priors of both, to distinguish skin from aluminium with a probability of 84.1 % it takes between ";
     assert!(lines[1].starts_with(averaged), "{text}");
     assert_eq!(lines[3], "At exactly 20.00 degC and V 1.00:");
     assert!(lines[4].starts_with("No: ") && text.contains("no number of photons suffices"), "{text}");

@@ -64,7 +64,9 @@ fn messages_say_what_to_write() {
     folder.file("b.toml", &format!("frames = 2\n{SCENARIO}"));
     let line = folder.refusal(&["size", "b.toml"]);
     assert!(
-        line.contains("there is no key `frames`; it is a key of another table: write `camera.frames`"),
+        line.contains(
+            "there is no key `frames`; it is a key of another table: write `find.frames` or `camera.frames`"
+        ),
         "{line}"
     );
     let own = SCENARIO.replace("preset = \"flir-a325sc\"", "detectivity = \"4.7e10 cm Hz^0.5/W\"");

@@ -206,7 +206,7 @@ fn a_check_says_yes_or_no_by_the_cheapest_proof_and_the_same() {
         let whole = folder.run(&["range", "a.toml", "--check", "--no-skip"]);
         assert_eq!((quick.code, whole.code), (code, code), "{} {}", quick.stderr, whole.stderr);
         // The proofs say nothing of the thermal image.
-        let answer = |outcome: &Outcome| outcome.stdout.split(" demanded)").next().unwrap().to_owned();
+        let answer = |outcome: &Outcome| outcome.stdout.split(" required)").next().unwrap().to_owned();
         assert_eq!(answer(&quick), answer(&whole));
     }
 }

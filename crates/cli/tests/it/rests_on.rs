@@ -32,7 +32,7 @@ fn a_verdict_names_what_it_rests_on() {
     let pixel = folder.run(&["size", &path("verdict", "one_pixel_no.toml").unwrap()]).stdout;
     // d = 0.126 of a pixel, 2.45 of 378 of them: 99.3 %.
     assert!(
-        pixel.contains("a pixel reaches 55.0 % at most; all 378 pixels on it together 99.3 %"),
+        pixel.contains("upper limit of one pixel 55.0 %; of all 378 pixels on it together 99.3 %"),
         "{pixel}"
     );
 
@@ -61,7 +61,7 @@ fn a_rule_is_not_passed_on_the_ground_of_what_nobody_stated() {
         (
             of("set_over_law.toml"),
             &["--set", "requirement.detection_probability=0.6"],
-            "yes, if the rule said requirement.detection_probability = 0.6, which it does not",
+            "yes, if requirement.detection_probability = 0.6 replaces the value of the rule",
         ),
     ] {
         let outcome = folder.run(&[&["rule", &rule, "--check"], more].concat());

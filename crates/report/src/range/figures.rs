@@ -6,6 +6,7 @@ use crate::plot::{
 };
 use crate::range::lines_table;
 use crate::table::{Table, number};
+use crate::words::pictures;
 use crate::words::range::captions;
 use hadar::error::Result;
 use hadar::ranging::derivative::{Derivative, Differentiator};
@@ -34,11 +35,9 @@ pub fn views(result: &Ranging) -> Option<Plot> {
         .iter()
         .map(|(kind, values)| {
             let (title, axis, key) = match kind {
-                PictureKind::ThermalImage => (
-                    "Thermal image, all bands; colours span as many photons as in the scattered signal",
-                    Axis::linear("photons per pixel"),
-                    "thermal_photons",
-                ),
+                PictureKind::ThermalImage => {
+                    (pictures::THERMAL_IMAGE, Axis::linear("photons per pixel"), "thermal_photons")
+                }
                 PictureKind::Scattered => (
                     "Scattered signal (no camera measures it alone)",
                     Axis::linear("photons per pixel"),

@@ -308,7 +308,7 @@ mod tests {
             (S::Pixels, "too few pixels"),
             (S::TemperatureError, "temperature is not known"),
             (S::DepthError, "distance is not known"),
-            (S::DecisionTime, "read later"),
+            (S::DecisionTime, "read after"),
             (S::MotionBlur, "moves by a pixel or more"),
             (S::MotionUnknown, "not known without target.distance"),
             (S::FullWell, "full well"),

@@ -128,7 +128,7 @@ mod tests {
         };
         assert_eq!(
             crate::json::line(&of_pair).unwrap(),
-            "{\"code\":\"nearest-at-edge\",\"message\":\"skin against pmma: the nearest state stands at the edge of its range \
+            "{\"code\":\"nearest-at-edge\",\"message\":\"skin against pmma: the closest confuser is at the edge of its range \
              (temperature, lighting of environment[1]); the range decides the answer\"}"
         );
         let digits = |relative_error| Warning::FewDigits { distance: "local distance", relative_error }.say();

@@ -5,6 +5,7 @@ use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::simulate::thermometry::rows::{decisive, rising};
 use crate::table::Table;
 use crate::text::significant;
+use crate::words::pictures;
 use crate::words::simulate::thermometry as words;
 use hadar_simulate::efficiency::Errors;
 use hadar_study::{Reader, Thermometry, ThermometryRow};
@@ -138,11 +139,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
     let ends = unbiased.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
     let left_out = match applies || ends.0 > ends.1 {
         true => String::new(),
-        false => format!(
-            " The bound for unbiased estimates and unknown lighting, {} to {} K, does not apply and is not drawn.",
-            significant(ends.0, 2),
-            significant(ends.1, 2)
-        ),
+        false => pictures::bound_left_out(&significant(ends.0, 2), &significant(ends.1, 2)),
     };
     let mut figure = LineFigure::new(
         format!("How precisely is {} read, and how precisely could it be?", result.target),
