@@ -532,11 +532,9 @@ fn unknown_key(key: &str, known: &[&str]) -> Error {
         .filter(|place| place.key.name == key)
         .filter_map(|place| place.paths.first().filter(|path| path.contains('.')).cloned())
         .collect();
-    // Above all tables those of this file are meant.
+    // Tables of other kinds of files are not meant.
     let is_below = |path: &&String| known.iter().any(|table| path.split('.').next() == Some(table));
-    let below: Vec<&String> = all.iter().filter(is_below).collect();
-    let elsewhere = if below.is_empty() { all.iter().collect() } else { below };
-    let elsewhere: Vec<String> = elsewhere.into_iter().map(|path| format!("`{path}`")).collect();
+    let elsewhere: Vec<String> = all.iter().filter(is_below).map(|path| format!("`{path}`")).collect();
     if !elsewhere.is_empty() {
         let more = if elsewhere.len() > MOST_TABLES { ", …" } else { "" };
         let named: Vec<String> = elsewhere.into_iter().take(MOST_TABLES).collect();
