@@ -65,7 +65,7 @@ fn the_example_is_the_case_of_the_paper() {
     let path = hadar_testing::repository().join("examples/human_vs_robot.toml");
     let scenario = Scenario::from_file(&path).unwrap();
     let expected = Scenario {
-        title: Some("Can a camera distinguish a person from a robot?".to_owned()),
+        title: Some("Can a camera tell a person from a robot?".to_owned()),
         classes: BTreeMap::new(),
         target: Target {
             material: name("skin"),
