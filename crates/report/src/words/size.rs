@@ -311,7 +311,7 @@ mod tests {
             (S::DecisionTime, "read after"),
             (S::MotionBlur, "moves by a pixel or more"),
             (S::MotionUnknown, "not known without target.distance"),
-            (S::FullWell, "full well"),
+            (S::FullWell, "well capacity"),
             (S::FrameRate, "longer than a frame"),
             (S::Diffraction, "the lens blurs"),
             (S::Impractical, "no camera is built"),
