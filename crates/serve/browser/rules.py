@@ -48,7 +48,7 @@ def check(browser, url, hadar, folder):
     page.js("document.getElementById('day').value = '1990-01-01', document.getElementById('day').dispatchEvent(new Event('input'))")
     page.until(f"{ANSWERED} && shown.question.on === '1990-01-01'")
     assert "WARNED" in text_of(page, "passed") and page.js("document.getElementById('sentence').className") == ""
-    assert text_of(page, "sentence").startswith("Nothing is demanded")
+    assert text_of(page, "sentence").startswith("Nothing is required")
 
     # What is written is no answer until it is asked; a mistake is told, and what a rule says is never run.
     area = "document.getElementById('rule')"
