@@ -165,6 +165,11 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>, glo
     let is_it = |folder: &Path| is_rule(&folder.join(&path));
     let absolute = std::path::absolute(certificate).ok();
     let own = absolute.as_deref().and_then(Path::parent);
+    // One that was changed in its place is not found again in another.
+    let in_place = own.and_then(Path::parent).map(|folder| folder.join(&path)).filter(|file| file.is_file());
+    if let Some(changed) = in_place.filter(|file| !is_rule(file)) {
+        return changed;
+    }
     let near = own.and_then(|folder| nearest_folder(folder, is_it));
     let here = || std::env::current_dir().ok().and_then(|folder| nearest_folder(&folder, is_it));
     let found = near.or_else(here).map(|folder| folder.join(&path));

@@ -252,7 +252,9 @@ fn what_was_changed_is_named() {
             outcome.stderr
         );
     }
-    // Of an input.
+    // Of an input, though the rule as it was is in a folder beside it too.
+    fs::create_dir(folder.path().join("before")).unwrap();
+    folder.file("before/a.toml", &rule);
     for (file, content) in [("coat.csv", COAT.replace("0.92", "0.91")), ("a.toml", format!("{rule}\n"))] {
         let before = fs::read_to_string(folder.path().join(file)).unwrap();
         folder.file(file, &content);
