@@ -165,10 +165,11 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>, glo
     let is_it = |folder: &Path| is_rule(&folder.join(&path));
     let absolute = std::path::absolute(certificate).ok();
     let own = absolute.as_deref().and_then(Path::parent);
-    // One that was changed in its place is not found again in another.
-    let in_place = own.and_then(Path::parent).map(|folder| folder.join(&path)).filter(|file| file.is_file());
-    if let Some(changed) = in_place.filter(|file| !is_rule(file)) {
-        return changed;
+    // One that stands above the report, or here, is the rule that is meant: changed there, it is not found again in another place.
+    let above = own.and_then(Path::parent).map(|folder| folder.join(&path));
+    let in_place = above.into_iter().chain([path.clone()]).find(|file| file.is_file());
+    if let Some(in_place) = in_place {
+        return in_place;
     }
     let near = own.and_then(|folder| nearest_folder(folder, is_it));
     let here = || std::env::current_dir().ok().and_then(|folder| nearest_folder(&folder, is_it));

@@ -30,7 +30,7 @@ pub(super) fn html(name: &str, table: &Table) -> String {
     if header.len() > WIDEST {
         return format!("<p>{}</p>\n", page::too_wide(&escape(name), header.len()));
     }
-    let shown = page::shown(1, 1, ROWS, rows.len());
+    let shown = page::shown(ROWS, rows.len());
     let caption = format!("{} ({}){shown}", escape(&title(name)), escape(name));
     let heads: String = others
         .iter()

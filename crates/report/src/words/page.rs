@@ -26,9 +26,7 @@ pub(crate) fn too_wide(name: &str, columns: usize) -> String {
     format!("<code>{name}</code> has {columns} columns, too many for a page.")
 }
 
-/// Which part of a table is shown: one of several beside each other, the first of all rows.
-pub(crate) fn shown(part: usize, parts: usize, first: usize, rows: usize) -> String {
-    let part = if parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
-    let cut = if rows > first { format!(": the first {first} of {rows} rows") } else { String::new() };
-    part + &cut
+/// Which rows of a table are shown, the first of all; nothing where all are.
+pub(crate) fn shown(first: usize, rows: usize) -> String {
+    if rows > first { format!(": the first {first} of {rows} rows") } else { String::new() }
 }
