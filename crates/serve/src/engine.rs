@@ -11,7 +11,7 @@ use hadar::error::Result;
 use hadar::inputs::{self, Inputs, inputs_of};
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
-use hadar::policy::trade_off::POINTS;
+use hadar::policy::trade_off::Resolution;
 use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
@@ -25,8 +25,6 @@ use hadar_study::warning::Warning;
 use hadar_study::{OwnCameras, PairResult, SizeAsked, Study, YesNo};
 use serde::{Deserialize, Serialize};
 
-/// Points of a trade-off while a slider moves; when it rests there are [`POINTS`].
-const MOVING_POINTS: usize = 11;
 /// Nodes of bands times alternatives, and objects of the surroundings, up to which a question without priors takes a part of a second.
 /// With priors the search for the closest state takes seconds whatever their number.
 const QUICK_SPECTRAL_VALUES: usize = 20_000;
@@ -258,8 +256,9 @@ fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
     let pairs = study.traded_off();
     let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
     let pair = pairs.iter().find(wanted).or(pairs.first());
-    let points = if ask.full { POINTS } else { MOVING_POINTS };
-    let curve = pair.map(|pair| study.trade_off(&result, *pair, points)).transpose()?.flatten();
+    // While a slider moves, a coarse one.
+    let resolution = if ask.full { Resolution::FINE } else { Resolution::COARSE };
+    let curve = pair.map(|pair| study.trade_off(&result, *pair, resolution)).transpose()?.flatten();
     let met = result.verdict.met;
     Ok(Answer {
         met,

@@ -146,13 +146,10 @@ impl Study {
 
     fn camera_bits(&self, camera: &Camera, alternative: &Surface, photons: &[f64]) -> Result<Vec<f64>> {
         let kind = self.scenario.requirement.by;
-        photons
-            .iter()
-            .map(|n| {
-                let counting = self.counting_with(camera, *n);
-                self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
-            })
-            .collect()
+        parallel::booked(photons.len(), |i| {
+            let counting = self.counting_with(camera, photons[i]);
+            self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
+        })
     }
 
     /// Photons that the requirement takes against `alternative`, over target temperature and lighting of
