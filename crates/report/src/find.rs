@@ -1,5 +1,6 @@
 //! The files of `hadar find`: the question, the scenario of every choice that is listed, tables, and a picture of them.
 
+pub use crate::words::find::rows::{Row, rows};
 pub use crate::words::find::{sentence, text, why};
 
 use crate::bundle::Bundle;
