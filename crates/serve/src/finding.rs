@@ -83,7 +83,9 @@ fn lens(camera: &dyn TableLike) -> Option<InlineTable> {
     // Without the comments beside them.
     let own = |name: &str| Some(camera.get(name)?.as_value()?.clone().decorated("", ""));
     let (f_number, focal_length) = (own("f_number")?, own("focal_length")?);
-    Some(InlineTable::from_iter([("f_number", f_number), ("focal_length", focal_length)]))
+    let mut lens = InlineTable::from_iter([("f_number", f_number), ("focal_length", focal_length)]);
+    lens.fmt();
+    Some(lens)
 }
 
 #[cfg(test)]
