@@ -2,7 +2,8 @@
 
 A block ```` ```console ```` has commands after `$ ` and what they print. `...` alone on a line stands for any lines, `[...]`
 for the rest of one (seconds, commits). A block ```` ```toml file=NAME ```` writes that file. The blocks of a page run one after
-the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one.
+the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one. Figures in the prose of a tutorial must be in what
+its commands print: figures.py.
 
     python3 docs/commands.py HADAR             compare; exit code 1 if anything differs
     python3 docs/commands.py HADAR --update    write what is printed into the pages, dots kept
@@ -17,10 +18,14 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import figures
+
 SRC = Path(__file__).resolve().parent / "src"
 BLOCK = re.compile(r"^```(?:(console)|\w+ file=(\S+))\n(.*?)^```$", re.M | re.S)
 DOTS = "..."
 SECONDS = 300
+# Pages whose figures in the prose are held against what is printed.
+TUTORIALS = ["index.md", "tutorials/*.md"]
 
 
 def matches(expected, printed):
@@ -83,7 +88,7 @@ def commands(block):
 
 def run_page(path, program, update):
     """Runs a page; returns how many commands ran, and what differs."""
-    text, done, differs = path.read_text(), [], []
+    text, done, differs, everything = path.read_text(), [], [], []
     with tempfile.TemporaryDirectory() as scratch:
         tools, folder = Path(scratch, "bin"), Path(scratch, "page")
         tools.mkdir()
@@ -103,6 +108,7 @@ def run_page(path, program, update):
                 ran = subprocess.run(["bash", "-c", command], timeout=SECONDS, **alone)
                 printed = ran.stdout if not ran.stdout or ran.stdout.endswith("\n") else ran.stdout + "\n"
                 done.append(command)
+                everything.append(printed)
                 if not matches(expected, printed):
                     difference = difflib.unified_diff(expected.splitlines(), printed.splitlines(), "guide", "program", lineterm="")
                     differs.append(f"{path.name}: {written}" + "\n".join(difference))
@@ -112,6 +118,9 @@ def run_page(path, program, update):
         new = BLOCK.sub(run, text)
     if update and new != text:
         path.write_text(new)
+    if any(path.relative_to(SRC).match(pattern) for pattern in TUTORIALS):
+        unfounded = figures.unfounded(new if update else text, "".join(everything))
+        differs += [f"{path.name}:{sentence}" for sentence in unfounded]
     return len(done), differs
 
 
