@@ -2,8 +2,8 @@
 
 A block ```` ```console ```` has commands after `$ ` and what they print. `...` alone on a line stands for any lines, `[...]`
 for the rest of one (seconds, commits). A block ```` ```toml file=NAME ```` writes that file. The blocks of a page run one after
-the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one. Figures in the prose of a tutorial must be in what
-its commands print: figures.py.
+the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one. `<!-- picture: FILE -->` before a picture: it is
+that file of this folder. Figures in the prose of a tutorial must be in what its commands print: figures.py.
 
     python3 docs/commands.py HADAR             compare; exit code 1 if anything differs
     python3 docs/commands.py HADAR --update    write what is printed into the pages, dots kept
@@ -22,6 +22,7 @@ import figures
 
 SRC = Path(__file__).resolve().parent / "src"
 BLOCK = re.compile(r"^```(?:(console)|\w+ file=(\S+))\n(.*?)^```$", re.M | re.S)
+PICTURE = re.compile(r"^<!-- picture: (\S+) -->\n!\[[^\]]*\]\(([^)]+)\)", re.M)
 DOTS = "..."
 SECONDS = 300
 # Pages whose figures in the prose are held against what is printed.
@@ -116,6 +117,12 @@ def run_page(path, program, update):
             return f"```console\n{content}```"
 
         new = BLOCK.sub(run, text)
+        for made, shown in PICTURE.findall(text):
+            drawn, kept = Path(folder, made).read_bytes(), Path(path.parent, shown)
+            if not kept.exists() or kept.read_bytes() != drawn:
+                differs.append(f"{path.name}: the picture {shown} is another than {made}")
+                if update:
+                    kept.write_bytes(drawn)
     if update and new != text:
         path.write_text(new)
     if any(path.relative_to(SRC).match(pattern) for pattern in TUTORIALS):
