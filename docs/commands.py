@@ -25,8 +25,9 @@ BLOCK = re.compile(r"^```(?:(console)|\w+ file=(\S+))\n(.*?)^```$", re.M | re.S)
 PICTURE = re.compile(r"^<!-- picture: (\S+) -->\n!\[[^\]]*\]\(([^)]+)\)", re.M)
 DOTS = "..."
 SECONDS = 300
-# Pages whose figures in the prose are held against what is printed.
+# Pages whose figures in the prose are held against what is printed, or against a table of the reports.
 TUTORIALS = ["index.md", "tutorials/*.md"]
+OF_REPORTS = {"ledger.md": SRC.parents[1] / "reports/ledger.csv"}
 
 
 def matches(expected, printed):
@@ -125,7 +126,9 @@ def run_page(path, program, update):
                     kept.write_bytes(drawn)
     if update and new != text:
         path.write_text(new)
-    if any(path.relative_to(SRC).match(pattern) for pattern in TUTORIALS):
+    if path.name in OF_REPORTS:
+        everything.append(OF_REPORTS[path.name].read_text())
+    if path.name in OF_REPORTS or any(path.relative_to(SRC).match(pattern) for pattern in TUTORIALS):
         unfounded = figures.unfounded(new if update else text, "".join(everything))
         differs += [f"{path.name}:{sentence}" for sentence in unfounded]
     return len(done), differs
