@@ -154,7 +154,12 @@ impl Camera {
         }
         for light in &view.light {
             let counts = light.radiance.iter().map(|radiance| of_light * radiance).collect();
-            push(of_photons(light.label, photons(counts), "t", "light that tells nothing of the target"));
+            push(of_photons(
+                light.label,
+                photons(counts),
+                "t",
+                "light that holds no information on the target",
+            ));
         }
         if self.photon_bunching && view.occupancy.len() == view.signal.len() {
             let counts = |w: usize, signal: f64| kappa * signal + of_light * view.other_light(w);

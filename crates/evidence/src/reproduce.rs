@@ -168,11 +168,11 @@ impl Item {
             Self::FigS12 => "Fig. S12: measures of texture",
             Self::FigS17 => "Fig. S17: what more materials in the library explain",
             Self::FigS19 => "Fig. S19 and Table I: ranging on decomposed texture",
-            Self::FigS20 => "Fig. S20: scattered light told apart, or not",
+            Self::FigS20 => "Fig. S20: scattered light separated, or not",
             Self::FigS29 => "Fig. S29: the camera's response from blackbodies, and what they determine",
             Self::TabS5 => "Tables S4 and S5: what resolution is worth",
             Self::TabS2 => "Table S2: detectors",
-            Self::Policy => "Policy: can a camera tell a person from a robot?",
+            Self::Policy => "Policy: can a camera distinguish a person from a robot?",
         }
     }
 

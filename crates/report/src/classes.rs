@@ -161,7 +161,7 @@ fn matrix(answer: &ClassAnswer) -> Matrix {
         figure = figure.subtitle(LIGHTEST);
     }
     if let Some(required) = answer.required {
-        let label = format!("not told apart: d below {}", significant(required, 3));
+        let label = format!("not distinguished: d below {}", significant(required, 3));
         figure = figure.threshold(required, label);
     }
     figure

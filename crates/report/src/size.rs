@@ -15,7 +15,9 @@ use crate::words::size::captions;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::order;
-use hadar::policy::TradeOff;
+use hadar::parallel;
+use hadar::policy::trade_off::Resolution;
+use hadar::policy::Quantity;
 use hadar_study::{PairResult, Sensitivity, Sizing, Study, Surface};
 
 /// Most alternatives that are drawn into one plot.
@@ -77,20 +79,54 @@ pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &
     Ok(drawn)
 }
 
+/// How finely curves are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// For a picture that stays.
+    Fine,
+    /// For one that is drawn anew in a moment, while a slider moves.
+    Coarse,
+}
+
+impl Detail {
+    const fn photon_numbers(self) -> usize {
+        match self {
+            Self::Fine => 81,
+            Self::Coarse => 41,
+        }
+    }
+
+    const fn trade_off(self) -> Resolution {
+        match self {
+            Self::Fine => Resolution::FINE,
+            Self::Coarse => Resolution::COARSE,
+        }
+    }
+}
+
 /// The two pictures that change with every figure of the camera: information against photons, and one trade-off.
 ///
 /// # Errors
 /// A scene without photons.
-pub fn followed(study: &Study, result: &Sizing, trade_off: Option<&TradeOff>) -> Result<Bundle> {
+pub fn followed(
+    study: &Study,
+    result: &Sizing,
+    traded: Option<(Quantity, Quantity)>,
+    detail: Detail,
+) -> Result<Bundle> {
+    let limiting = rows::limiting(result).zip(study.alternative(&result.limiting));
+    let plots = parallel::booked(2, |i| match i {
+        0 => Ok(limiting
+            .map(|(pair, surface)| identifiability(study, result, pair, surface, detail))
+            .transpose()?
+            .flatten()),
+        _ => {
+            let curve = traded.map(|pair| study.trade_off(result, pair, detail.trade_off())).transpose()?;
+            Ok(curve.flatten().map(|curve| trade_off::trade_off(&curve, result)))
+        }
+    })?;
     let mut bundle = Bundle::default();
-    if let (Some(pair), Some(surface)) = (rows::limiting(result), study.alternative(&result.limiting)) {
-        bundle.add_plots(
-            &[identifiability(study, result, pair, surface)?].into_iter().flatten().collect::<Vec<_>>(),
-        )?;
-    }
-    bundle.add_plots(
-        &trade_off.map(|curve| trade_off::trade_off(curve, result)).into_iter().collect::<Vec<_>>(),
-    )?;
+    bundle.add_plots(&plots.into_iter().flatten().collect::<Vec<_>>())?;
     Ok(bundle)
 }
 
@@ -100,6 +136,7 @@ fn identifiability(
     result: &Sizing,
     pair: &PairResult,
     surface: &Surface,
+    detail: Detail,
 ) -> Result<Option<Plot>> {
     if result.requirement.photons_bounds[0].is_none() {
         return Ok(None);
@@ -112,7 +149,8 @@ fn identifiability(
         required_bits: detection::information_bits(study.required_distance()),
         required_distance: study.required_distance(),
     };
-    let curves = study.information_curves(surface, pair.distance_nearest, pair.distance_local)?;
+    let [nearest, local] = [pair.distance_nearest, pair.distance_local];
+    let curves = study.information_curves(surface, nearest, local, detail.photon_numbers())?;
     Ok(Some(figures::identifiability(&curves, &pair.target, &pair.alternative, &marks)))
 }
 
@@ -123,7 +161,7 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
         result.pairs.iter().zip(study.alternatives()).find(|(pair, _)| pair.alternative == result.limiting);
     let Some((pair, surface)) = limiting else { return Ok(drawn) };
     let (target, other) = (pair.target.as_str(), pair.alternative.as_str());
-    drawn.extend(identifiability(study, result, pair, surface)?);
+    drawn.extend(identifiability(study, result, pair, surface, Detail::Fine)?);
     if let Some((curve, object)) = study.object_curve(surface)?.zip(result.object.as_ref()) {
         let required = result.requirement.distance;
         drawn.push(figures::object(&curve, object, [target, other], required));

@@ -11,11 +11,10 @@ use hadar::error::Result;
 use hadar::inputs::{self, Inputs, inputs_of};
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
-use hadar::policy::trade_off::POINTS;
 use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
-use hadar_report::size::{self, rows};
+use hadar_report::size::{self, Detail, rows};
 use hadar_report::text::{between, photons_between, significant};
 use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
@@ -25,8 +24,6 @@ use hadar_study::warning::Warning;
 use hadar_study::{OwnCameras, PairResult, SizeAsked, Study, YesNo};
 use serde::{Deserialize, Serialize};
 
-/// Points of a trade-off while a slider moves; when it rests there are [`POINTS`].
-const MOVING_POINTS: usize = 11;
 /// Nodes of bands times alternatives, and objects of the surroundings, up to which a question without priors takes a part of a second.
 /// With priors the search for the closest state takes seconds whatever their number.
 const QUICK_SPECTRAL_VALUES: usize = 20_000;
@@ -258,8 +255,7 @@ fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
     let pairs = study.traded_off();
     let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
     let pair = pairs.iter().find(wanted).or(pairs.first());
-    let points = if ask.full { POINTS } else { MOVING_POINTS };
-    let curve = pair.map(|pair| study.trade_off(&result, *pair, points)).transpose()?.flatten();
+    let detail = if ask.full { Detail::Fine } else { Detail::Coarse };
     let met = result.verdict.met;
     Ok(Answer {
         met,
@@ -270,7 +266,7 @@ fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
         pairs: result.pairs.iter().map(pair_shown).collect(),
         conditions: result.verdict.conditions.iter().map(Said::from).collect(),
         warnings: result.warnings.iter().map(Said::from).collect(),
-        pictures: size::followed(study, &result, curve.as_ref())?.drawings()?,
+        pictures: size::followed(study, &result, pair.copied(), detail)?.drawings()?,
         trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
         trade_off: pair.map(|pair| pair.1.key().to_owned()),
         text: ask.full.then(|| size::text(&result, study)),

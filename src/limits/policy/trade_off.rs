@@ -16,8 +16,22 @@ use crate::error::Result;
 use crate::order;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-/// Points of a curve that are evenly spread; there are some more at boundaries.
-pub const POINTS: usize = 41;
+/// How finely a curve is traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Resolution {
+    /// Points that are evenly spread in the logarithm, at least 2; there are some more at boundaries.
+    pub points: usize,
+    /// Halvings of a step at whose one end nothing meets the demand.
+    pub halvings: usize,
+}
+
+impl Resolution {
+    /// Of a picture that stays.
+    pub const FINE: Self = Self { points: 41, halvings: 8 };
+    /// Of one that is drawn again at once: boundaries to a fiftieth of a decade.
+    pub const COARSE: Self = Self { points: 11, halvings: 3 };
+}
+
 /// f-numbers, as far as lenses are made; factors around the camera's own value of the others.
 const SLOWEST_F_NUMBER: f64 = 8.0;
 const PIXELS: f64 = 8.0;
@@ -27,8 +41,6 @@ const DISTANCES: f64 = 30.0;
 const FARTHEST: f64 = 1e6;
 /// How far the range reaches beyond that value.
 const BEYOND: f64 = 1.5;
-/// Halvings of a step at whose one end nothing meets the demand.
-const HALVINGS: usize = 8;
 /// Share by which frames that are as good as now may be worse: a whole frame more is no price for the last digits.
 const AS_GOOD: f64 = 1e-6;
 /// Values closer than this share are one.
@@ -134,7 +146,7 @@ fn range(task: &CameraTask<'_>, quantity: Quantity, alone: Option<f64>) -> [f64;
     }
 }
 
-/// Traces a curve of so many points between its boundaries. `solve` solves a task for a quantity; `as_now` is the statistical distance
+/// Traces a curve between its boundaries. `solve` solves a task for a quantity; `as_now` is the statistical distance
 /// of the camera as it is,
 /// `alone` the value of the first quantity that alone meets the demand.
 ///
@@ -146,7 +158,7 @@ pub fn trace(
     as_now: f64,
     alone: Option<f64>,
     given: &Circumstances<'_>,
-    points: usize,
+    resolution: Resolution,
     solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
 ) -> Result<TradeOff> {
     let (x, y) = pair;
@@ -154,7 +166,7 @@ pub fn trace(
     let of_x = limits(x, &task.own(), given)?;
     let exact = of_x.iter().map(|limit| limit.value).chain(alone).chain([task.value(x)]);
     let exact: Vec<f64> = exact.filter(|value| (low..=high).contains(value)).collect();
-    let points = points.max(2);
+    let points = resolution.points.max(2);
     let last = (points - 1) as f64;
     let even = (0..points).map(|i| (low.ln() + (high / low).ln() * i as f64 / last).exp());
     let near = |a: f64, b: f64| (a / b - 1.0).abs() < SAME;
@@ -169,7 +181,7 @@ pub fn trace(
     }
     for holds in [|point: &Point| point.y.is_some(), |point: &Point| point.within_limits.is_some()] {
         let mut at = |at| point(task, pair, at, as_now, given, solve);
-        found.extend(edges(&found, &exact, holds, &mut at)?);
+        found.extend(edges(&found, &exact, holds, resolution.halvings, &mut at)?);
         order::ascending(&mut found, |(point, _)| point.x);
     }
 
@@ -200,6 +212,7 @@ fn edges(
     found: &[Found],
     known: &[f64],
     holds: fn(&Point) -> bool,
+    halvings: usize,
     at: &mut dyn FnMut(f64) -> Result<Found>,
 ) -> Result<Vec<Found>> {
     let mut edges = Vec::new();
@@ -211,7 +224,7 @@ fn edges(
             _ => continue,
         };
         let (mut last, mut first) = (None, None);
-        for _ in 0..HALVINGS {
+        for _ in 0..halvings {
             let middle = (inside * outside).sqrt();
             let tried = at(middle)?;
             if holds(&tried.0) {
@@ -341,16 +354,22 @@ mod tests {
         let given =
             Circumstances { bands: &bands, speed_m_s: Some(10.0), time_s: None, brightest: &|_| Ok(0.0) };
         let alone = task.solve(x, shot).unwrap().value;
-        trace(&task, (x, y), shot(&task.own()).unwrap(), alone, &given, POINTS, &mut |task, quantity| {
-            task.solve(quantity, shot)
-        })
+        trace(
+            &task,
+            (x, y),
+            shot(&task.own()).unwrap(),
+            alone,
+            &given,
+            Resolution::FINE,
+            &mut |task, quantity| task.solve(quantity, shot),
+        )
         .unwrap()
     }
 
     #[test]
     fn exposure_grows_as_the_square_of_the_f_number() {
         let curve = traced(Quantity::FNumber, Quantity::Exposure);
-        assert!(curve.points.len() >= POINTS && curve.points.is_sorted_by(|a, b| a.x < b.x));
+        assert!(curve.points.len() >= Resolution::FINE.points && curve.points.is_sorted_by(|a, b| a.x < b.x));
         let first = curve.points[0].y.unwrap() / curve.points[0].x.powi(2);
         for point in &curve.points {
             let (y, now) = (point.y.unwrap(), point.y_as_now.unwrap());

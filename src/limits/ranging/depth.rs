@@ -56,7 +56,7 @@ impl StereoGeometry {
     pub fn new(baseline_m: f64, focal_length_m: f64, pitch_m: f64) -> Result<Self> {
         if baseline_m == 0.0 {
             return Err(Error::malformed(
-                "the two cameras stand in the same place (baseline 0 m), from where nothing tells depth",
+                "the two cameras stand in the same place (baseline 0 m), from where depth cannot be determined",
                 "give the distance between their centres, e.g. baseline = \"0.2 m\"",
             ));
         }

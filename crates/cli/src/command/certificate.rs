@@ -169,7 +169,9 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>, glo
     let above = own.and_then(Path::parent).map(|folder| folder.join(&path));
     let in_place = above.into_iter().chain([path.clone()]).find(|file| file.is_file());
     if let Some(in_place) = in_place {
-        return in_place;
+        // As it was written, where that is the same file.
+        let real = |file: &Path| file.canonicalize().ok();
+        return if real(&path) == real(&in_place) { path } else { in_place };
     }
     let near = own.and_then(|folder| nearest_folder(folder, is_it));
     let here = || std::env::current_dir().ok().and_then(|folder| nearest_folder(&folder, is_it));

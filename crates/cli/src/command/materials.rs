@@ -80,7 +80,7 @@ fn list(library: &Library, global: &Global) -> Result<()> {
     }
     let _ = writeln!(
         out,
-        "\n{} materials; `hadar materials show NAME` tells source, licence and range",
+        "\n{} materials; `hadar materials show NAME` prints source, licence and range",
         summaries.len()
     );
     out.push_str(&classes::listed(library));

@@ -75,7 +75,7 @@ pub fn skipping(quick: bool) -> Result<Vec<Skipped>> {
     let three = study(HUMAN_VS_ROBOT_3_BANDS)?;
     let street = STREET.replace("[bands]", &format!("size = [{}]\n[bands]", VIEW[level]));
     let street = RangeStudy::new(&RangeScenario::from_toml(&street, None)?, &library)?;
-    let apart = "which pairs the camera tells apart";
+    let apart = "which pairs the camera distinguishes";
     let told = |study: &'static str, at: &Study| {
         bench.compared((study, apart), |skipping| at.told_apart(skipping, &|_, _| ()), same_pairs)
     };
@@ -83,7 +83,7 @@ pub fn skipping(quick: bool) -> Result<Vec<Skipped>> {
         told("five materials", &five)?,
         told("the built-in library", &all_at_once)?,
         bench.compared(
-            ("a person among the built-in library", "whether the camera tells the target from all"),
+            ("a person among the built-in library", "whether the camera distinguishes the target from all"),
             |skipping| person.check(skipping).inspect(|check| demand::add(&check.stats)),
             |a, b| (a.identifiable, &a.not_told_from) == (b.identifiable, &b.not_told_from),
         )?,

@@ -41,7 +41,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
     bundle.add_plots(&plots)?;
     let pictures = vec![
         ("looks.png", "One heat cube as a thermal image, equalised, as pseudo-TeX and as TeX vision"),
-        ("information.png", "What each of them tells of the place of a window"),
+        ("information.png", "What each measure says of the position of a window"),
     ];
     Ok((bundle, lines(&found), Figures { pictures, text: text(&found) }))
 }
@@ -302,7 +302,7 @@ fn lines(found: &Compared) -> Vec<Line> {
             format!("{}; {}, {}", times(raised), times(1.0), times(kept)),
             Verdict::NotInThePaper,
             format!(
-                "contrast rises, information never: a rising map steepens noise as it does texture, and levels take some; pixels that would tell more: {}",
+                "contrast rises, information never: a rising map steepens noise as it does texture, and levels take some; pixels that would carry more information: {}",
                 found.violations
             ),
         ),
@@ -318,7 +318,7 @@ fn lines(found: &Compared) -> Vec<Line> {
         ),
         Line::new(
             "SIII D",
-            "pseudo-TeX vision tells no more than the thermal image",
+            "pseudo-TeX vision shows no more than the thermal image",
             "no more than the original thermal vision",
             times(information("pseudo-TeX") / information("thermal image")),
             if information("pseudo-TeX") <= information("thermal image") {

@@ -173,7 +173,7 @@ fn lines(detected: &[Detected], [person, car]: [f64; 2], pairs: &[Pair]) -> Vec<
     lines.push(Line::new(
         "Ext. Data Fig. 7b",
         "person and robot found by regions of their materials",
-        "both, told apart",
+        "both, distinguished",
         ours,
         if all { Verdict::UnderAChoice } else { Verdict::NotReproduced },
         "without a network: connected regions of a category; the scene is like the paper's as far as that is stated",
@@ -195,7 +195,7 @@ fn lines(detected: &[Detected], [person, car]: [f64; 2], pairs: &[Pair]) -> Vec<
     for Pair { camera, names: [a, b], shares: [right, limit] } in pairs {
         lines.push(Line::new(
             "Ext. Data Fig. 7",
-            format!("{a} and {b} told apart by a pixel alone ({camera})"),
+            format!("{a} and {b} distinguished by a pixel alone ({camera})"),
             "-",
             share(*right),
             Verdict::NotInThePaper,

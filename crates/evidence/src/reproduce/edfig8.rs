@@ -196,7 +196,7 @@ fn lines(scenes: &[Scene]) -> Vec<Line> {
             "-",
             format!("{} against {}", iou(&scene.agreements[0]), iou(&scene.agreements[5])),
             Verdict::NotInThePaper,
-            "brightness laid out with the truth; grey materials of unknown temperature and lighting look alike: materials tell no more than their spectra do",
+            "brightness laid out with the truth; grey materials of unknown temperature and lighting look alike: materials carry no more information than their spectra",
         )
     }));
     lines

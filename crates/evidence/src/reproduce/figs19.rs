@@ -475,7 +475,7 @@ fn lines(rows: &[Row]) -> Vec<Line> {
             "-",
             format!("{}; {}", three(&|row| row.median_px), three(&bounds)),
             Verdict::NotInThePaper,
-            "the median of a Gaussian error is 0.67 of its deviation; the cube tells the most and no texture more",
+            "the median of a Gaussian error is 0.67 of its deviation; the cube holds the most information and no texture more",
         ),
         Line::new(
             "not in the paper",

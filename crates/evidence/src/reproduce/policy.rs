@@ -154,7 +154,7 @@ fn glass_in_one_frame(distances: [Option<f64>; 2]) -> Line {
     let why = "the built-in glass is nearer to skin than the authors' (line above), and the local distance is no limit";
     Line::new(
         PLACE,
-        "FLIR A325sc tells skin from glass in one frame",
+        "FLIR A325sc distinguishes skin from glass in one frame",
         "yes: 0.049 > 0.0078",
         ours,
         verdict,

@@ -64,7 +64,7 @@ pub(super) fn distance_matrix(matrix: &Matrix) -> Plot {
         let required = significant(matrix.required_distance, 3);
         figure = figure.threshold(
             matrix.required_distance,
-            format!("target not told from the other: d below {required}"),
+            format!("target not distinguished from the other: d below {required}"),
         );
     }
     Plot { name: "distance_matrix".into(), figure: Figure::from(figure), table }
@@ -86,7 +86,7 @@ pub(super) fn minimum_distances(matrix: &Matrix) -> Plot {
     let names = targets.iter().map(|target| format!("{} – {}", target.material, target.limiting)).collect();
     let axis = if with_camera { "least statistical distance d" } else { "least distance (per √photon)" };
     let mut figure =
-        NamedValues::new("Each material and the one hardest to tell it from", names, Axis::log(axis))
+        NamedValues::new("Each material and the one hardest to distinguish from it", names, Axis::log(axis))
             .subtitle(captions::all_against_all(matrix.by, false))
             .series(NamedSeries::new("", targets.iter().map(|target| value(target)).collect()));
     if with_camera {
@@ -185,7 +185,7 @@ pub(super) fn distances(study: &Study, pairs: &[PairResult]) -> Plot {
     if with_camera {
         figure = figure
             .threshold(required, format!("demanded: d = {}", significant(required, 3)))
-            .below("not told apart as demanded");
+            .below("not distinguished as demanded");
     }
     Plot { name: "distances".into(), figure: figure.into(), table }
 }

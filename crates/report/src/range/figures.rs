@@ -133,7 +133,7 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
     let subtitle = captions::bounds(result.scenario.stereo.window, with_depth, &without);
     let meaning = captions::boundary(demand);
     let figure = |pictures| {
-        Pictures::new("How well can depth be measured, and where as well as is demanded?", pictures)
+        Pictures::new("How precisely can depth be measured, and where is the demand met?", pictures)
             .subtitle(subtitle.clone())
             .boundary_meaning(meaning.clone())
             .no_value("sky, not seen by both cameras, or no texture at all")

@@ -230,7 +230,7 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
         found().map(|performance| performance.interval.high).collect(),
     );
     let figure = NamedValues::new(
-        format!("How often each classifier tells {pair}"),
+        format!("How often each classifier is right: {pair}"),
         found().map(Performance::words).collect(),
         Axis::linear("share of right decisions, averaged over the classes"),
     )

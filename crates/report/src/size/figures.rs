@@ -199,7 +199,7 @@ pub fn identifiability(
     let table = Table::of_columns(columns);
     let x = &curves.photons;
     let mut figure = LineFigure::new(
-        format!("How many photons it takes to tell {target} from {alternative}"),
+        format!("How many photons distinguish {target} from {alternative}?"),
         Axis::log("photons at the detector"),
         information_axis("information (bits)"),
     )
@@ -310,7 +310,7 @@ pub fn photon_map(
     let celsius: Vec<f64> = map.temperatures_k.iter().map(|t| t - 273.15).collect();
     let top = map.lightings.last().copied().unwrap_or(1.0);
     let mut figure = HeatMap::new(
-        format!("Photons needed to tell {target} from {alternative}"),
+        format!("Photons required to distinguish {target} from {alternative}"),
         (Axis::linear("target temperature (°C)"), celsius),
         (Axis::linear("thermal lighting factor V"), map.lightings.clone()),
         (Axis::log("required photons").range(low, high), map.photons.clone()),

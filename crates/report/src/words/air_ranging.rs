@@ -45,11 +45,15 @@ impl Say for AirFinding {
                 out + "."
             }
             Self::Unchanged { distance_m } => format!(
-                "At {} m nothing tells the distance: the target looks like the air, so that more or less of it changes nothing.",
+                "At {} m no band holds information on the distance: the target looks like the air, so that more or less of it changes nothing.",
                 significant(*distance_m, 3)
             ),
             Self::Imitated { distance_m, by } => {
-                format!("At {} m nothing tells the distance: {}.", significant(*distance_m, 3), imitated(by))
+                format!(
+                    "At {} m no band holds information on the distance: {}.",
+                    significant(*distance_m, 3),
+                    imitated(by)
+                )
             }
         }
     }

@@ -296,7 +296,7 @@ pub fn why(failed: &Failed, required: f64) -> String {
         Why::Motion => "the target moves by a pixel or more while its bands are exposed".into(),
         Why::FullWell => "a reading overflows its full well at the exposure that is fixed".into(),
         Why::Undecided => "undecided".into(),
-        Why::NotAsAWhole => "its best choice tells every pair, and is not met as a whole: ask it with `hadar size` or `hadar rule`".into(),
+        Why::NotAsAWhole => "its best choice distinguishes every pair and does not meet the requirement as a whole: compute it with `hadar size` or `hadar rule`".into(),
     }
 }
 
@@ -349,7 +349,7 @@ fn footing(found: &FindAnswer) -> String {
     };
     let mut notes = vec![
         format!("{put}; a price is a class of one piece where a public page states one"),
-        "more filters are exposed one after the other; of as many filters those that tell most are taken"
+        "more filters are exposed one after the other; of an equal number of filters the most informative are taken"
             .to_owned(),
     ];
     match &spec.filters.from {

@@ -125,7 +125,8 @@ fn shared(result: &LibraryFound) -> String {
         return String::new();
     }
     let mut out =
-        "Unknown for the whole cube: in the deviations, as the pixels do not tell it here\n".to_owned();
+        "Unknown for the whole cube: included in the deviations, since the pixels do not determine it here\n"
+            .to_owned();
     for row in &result.shared {
         let share_of = row.stated.unit.is_empty();
         let _ = write!(

@@ -119,7 +119,7 @@ fn why(one: &SafetyMaterial) -> String {
         (_, Some(_)) => {
             format!("it is not proved that {} is left in at most 1 % of the readings", one.material)
         }
-        (_, None) => format!("there is no camera that tells {}", one.material),
+        (_, None) => format!("there is no camera that distinguishes {}", one.material),
     }
 }
 

@@ -202,7 +202,7 @@ pub struct AirWitness {
     pub unconverged: usize,
 }
 
-/// The distance beyond which the air tells more than stereo, by the line between two points of the curve on logarithmic axes.
+/// The distance beyond which the air is more precise than stereo, by the line between two points of the curve on logarithmic axes.
 pub(super) fn crossing(curve: &[AirPoint]) -> Option<f64> {
     let lead = |point: &AirPoint| Some((point.sigma_window_m? / point.sigma_stereo_m?).ln());
     curve.windows(2).rev().find_map(|pair| {

@@ -11,8 +11,6 @@ use hadar::policy;
 use hadar::scene::State;
 use hadar_scenario::DistanceKind;
 
-/// Points of a curve over photons.
-const CURVE_POINTS: usize = 81;
 /// Half the points of a map along temperature and the points along lighting; fewer of both where the
 /// temperatures of the surroundings are unknown, since every nearest state then takes ten times as long.
 const MAP: (i32, u32) = (40, 51);
@@ -104,7 +102,7 @@ impl Study {
         })
     }
 
-    /// Information on `alternative` against photons: shot-noise limits, and the camera as its exposure varies.
+    /// Information on `alternative` against so many numbers of photons: shot-noise limits, and the camera as its exposure varies.
     ///
     /// # Errors
     /// As [`Study::identify`].
@@ -113,6 +111,7 @@ impl Study {
         alternative: &Surface,
         distance_nearest: f64,
         distance_local: f64,
+        points: usize,
     ) -> Result<InformationCurves> {
         let radiance = self.photon_radiance();
         let own = self.counting().map(|counting| counting.counts_per_radiance * radiance);
@@ -128,7 +127,7 @@ impl Study {
         let least = if least.is_finite() { least } else { own.unwrap_or(1e6) };
         let low = (1e-2 * least).min(own.map_or(f64::INFINITY, |own| 0.3 * own));
         let high = most.max(least).max(own.map_or(0.0, |own| 0.3 * own)) * 10.0;
-        let photons = logarithmic([low, high], CURVE_POINTS);
+        let photons = logarithmic([low, high], points);
         let shot = |distance: f64| -> Vec<f64> {
             photons.iter().map(|n| detection::information_bits(n.sqrt() * distance)).collect()
         };
@@ -146,13 +145,10 @@ impl Study {
 
     fn camera_bits(&self, camera: &Camera, alternative: &Surface, photons: &[f64]) -> Result<Vec<f64>> {
         let kind = self.scenario.requirement.by;
-        photons
-            .iter()
-            .map(|n| {
-                let counting = self.counting_with(camera, *n);
-                self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
-            })
-            .collect()
+        parallel::booked(photons.len(), |i| {
+            let counting = self.counting_with(camera, photons[i]);
+            self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
+        })
     }
 
     /// Photons that the requirement takes against `alternative`, over target temperature and lighting of

@@ -199,29 +199,32 @@ impl<'a> Reach<'a> {
     /// the value by what is proved.
     pub(crate) fn solve(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
         let mut required = task.required * (1.0 + SURELY);
-        let found = self.solve_found(&CameraTask { required, ..task.clone() }, quantity)?;
+        let (found, mut proved) = self.solve_found(&CameraTask { required, ..task.clone() }, quantity)?;
         let Some(necessary) = found.value else { return Ok(found) };
         let mut solution = found.clone();
         for _ in 0..RAISES {
             let Some(value) = solution.value else { break };
-            let [proved, _] = self.anew(&task.forward(quantity, value))?;
-            if proved >= task.required {
+            let lower = match proved {
+                Some(lower) => lower,
+                None => self.anew(&task.forward(quantity, value))?[0],
+            };
+            if lower >= task.required {
                 return Ok(Solution { necessary: Some(necessary), ..solution });
             }
             // More is asked for, by the share that the proof stays behind.
-            let raised = required * (task.required / proved) * (1.0 + SURELY);
+            let raised = required * (task.required / lower) * (1.0 + SURELY);
             if !(raised.is_finite() && raised > required) {
                 break;
             }
             required = raised;
             let harder = CameraTask { required, ..task.clone() };
-            solution = self.solve_found(&harder, quantity)?;
+            (solution, proved) = self.solve_found(&harder, quantity)?;
         }
         Ok(found.not_proved())
     }
 
-    /// Solves by the states that are found.
-    fn solve_found(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<Solution> {
+    /// Solves by the states that are found; with what is proved at the solution, where that was searched in full last.
+    fn solve_found(&mut self, task: &CameraTask<'_>, quantity: Quantity) -> Result<(Solution, Option<f64>)> {
         // What is asked of the distance, and what came of the last one, as logarithms over what is required.
         let (mut asked, mut last) = (0.0, None);
         for _ in 0..TURNS {
@@ -237,17 +240,19 @@ impl<'a> Reach<'a> {
                     self.evaluate(trial, start.as_ref(), true).map(|[_, found]| found)
                 })?;
                 if by_law.value.is_none() {
-                    return Ok(by_law);
+                    return Ok((by_law, None));
                 }
                 break;
             };
             // A speed is that of an exposure, which is where the search ended.
-            let [_, anew] = self.anew(&task.forward(quantity, value))?;
+            let [proved, anew] = self.anew(&task.forward(quantity, value))?;
             let found = match self.few_counts {
                 true if quantity == Quantity::Frames => break,
                 true => (anew / task.required).ln(),
                 // Where another state is nearer at this noise, that is followed from now on.
-                false if anew >= solution.statistical_distance * (1.0 - SAME) => return Ok(solution),
+                false if anew >= solution.statistical_distance * (1.0 - SAME) => {
+                    return Ok((solution, Some(proved)));
+                }
                 false => {
                     (asked, last) = (0.0, None);
                     continue;
@@ -255,12 +260,12 @@ impl<'a> Reach<'a> {
             };
             if found.abs() <= SAME {
                 solution.statistical_distance = anew;
-                return Ok(solution);
+                return Ok((solution, Some(proved)));
             }
             let slope = last.map_or(1.0, |(asked_before, before)| (found - before) / (asked - asked_before));
             last = Some((asked, found));
             asked -= found / if slope > 0.2 { slope } else { 1.0 };
         }
-        task.solve(quantity, |trial| Ok(self.anew(trial)?[1]))
+        Ok((task.solve(quantity, |trial| Ok(self.anew(trial)?[1]))?, None))
     }
 }

@@ -5,7 +5,7 @@ use crate::size::Sizing;
 use crate::size::reach::{Reach, SURELY};
 use hadar::error::Result;
 use hadar::parallel;
-use hadar::policy::trade_off::{self, PAIRS, POINTS, TradeOff};
+use hadar::policy::trade_off::{self, PAIRS, Resolution, TradeOff};
 use hadar::policy::{Motion, Quantity, Trial};
 
 impl Study {
@@ -18,7 +18,7 @@ impl Study {
     /// As [`Study::size`].
     pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
         let pairs = self.traded_off();
-        let curves = parallel::booked(pairs.len(), |i| self.trade_off(result, pairs[i], POINTS))?;
+        let curves = parallel::booked(pairs.len(), |i| self.trade_off(result, pairs[i], Resolution::FINE))?;
         Ok(curves.into_iter().flatten().collect())
     }
 
@@ -39,7 +39,7 @@ impl Study {
         PAIRS.into_iter().filter(known).collect()
     }
 
-    /// One of the curves of [`Study::trade_offs`], of so many points between its boundaries; none where nothing along it suffices, or
+    /// One of the curves of [`Study::trade_offs`], so finely traced; none where nothing along it suffices, or
     /// without a camera.
     ///
     /// # Errors
@@ -48,7 +48,7 @@ impl Study {
         &self,
         result: &Sizing,
         pair: (Quantity, Quantity),
-        points: usize,
+        resolution: Resolution,
     ) -> Result<Option<TradeOff>> {
         let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
             return Ok(None);
@@ -68,7 +68,7 @@ impl Study {
             as_now,
             alone,
             &given,
-            points,
+            resolution,
             &mut |task, quantity| reach.solve(task, quantity),
         )?;
         Ok(Some(curve).filter(TradeOff::has_solution))

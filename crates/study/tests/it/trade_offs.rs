@@ -2,7 +2,7 @@
 
 use hadar::material::Library;
 use hadar::policy::elasticity::Lever;
-use hadar::policy::trade_off::POINTS;
+use hadar::policy::trade_off::Resolution;
 use hadar::policy::{CapCode, Quantity, Solution};
 use hadar_scenario::Scenario;
 use hadar_study::{Answer, Condition, Shortfall, Sizing, Study, Warning};
@@ -120,7 +120,7 @@ fn points_of_the_curves_meet_the_demand() {
         ("exposure_s", "speed_m_s"),
     ];
     assert_eq!(pairs, expected);
-    assert!(curves.iter().all(|curve| curve.points.len() >= POINTS));
+    assert!(curves.iter().all(|curve| curve.points.len() >= Resolution::FINE.points));
     for i in [3, 14, 20] {
         let point = &curves[0].points[i];
         let (f_number, exposure) = (point.x, point.y.unwrap());

@@ -35,7 +35,7 @@ pub fn frame_is_over(frame_s: f64) -> String {
     format!("a frame lasts {frame_s} s, and no exposure is longer")
 }
 
-const NO_TEXTURE: &str = "the window has no texture: nothing in it tells its position";
+const NO_TEXTURE: &str = "the window has no texture: it holds no information on its position";
 
 /// How good depth must be.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

@@ -21,7 +21,7 @@ pub(crate) fn bands_that_matter(found: &BandsThatMatter, study: &Study) -> Plot 
     let most = local.iter().chain(&nearest).copied().fold(0.0, f64::max);
     let top = 1.08 * if most > 0.0 { most } else { 1.0 };
     let mut figure = LineFigure::new(
-        format!("Which bands tell {target} from {}", found.alternative),
+        format!("Which bands distinguish {target} from {}?", found.alternative),
         band_axis(bands),
         Axis::linear("share of the squared distance (% per band)").range(0.0, top),
     )

@@ -64,7 +64,7 @@ pub(crate) fn band_number(scaling: &Scaling, study: &Study) -> Option<Plot> {
         |values: &[f64]| values.iter().map(|d| d * photons.unwrap_or(1.0).sqrt()).collect::<Vec<f64>>();
     let axis = if photons.is_some() { "statistical distance d" } else { "distance (per √photon)" };
     let mut figure = LineFigure::new(
-        format!("How many bands it takes to tell {target} from the library"),
+        format!("How many bands distinguish {target} from the library?"),
         Axis::log("number of bands"),
         Axis::log(axis),
     )

@@ -118,7 +118,7 @@ fn nothing_seen_is_nothing_read() {
     }
     let told = text(&found);
     assert!(
-        told.starts_with("A spectrum in these bands tells nothing of the temperature. The other"),
+        told.starts_with("A spectrum in these bands holds no information on the temperature. The other"),
         "{told}"
     );
     assert!(!told.contains(" reads "), "{told}");

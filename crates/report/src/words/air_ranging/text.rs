@@ -86,11 +86,16 @@ fn distances(result: &AirRanging) -> String {
     }
     if any(&|point| point.sigma_stereo_m) {
         let said = match result.stereo_crossing_m {
-            Some(crossing) => format!("the air tells more than stereo beyond {} m", significant(crossing, 2)),
+            Some(crossing) => {
+                format!("the air is more precise than stereo beyond {} m", significant(crossing, 2))
+            }
             None => {
                 let air = result.curve.iter().all(|point| point.sigma_window_m < point.sigma_stereo_m);
-                let who =
-                    if air { "the air tells more than stereo" } else { "stereo tells more than the air" };
+                let who = if air {
+                    "the air is more precise than stereo"
+                } else {
+                    "stereo is more precise than the air"
+                };
                 format!("{who} at all of these distances")
             }
         };
@@ -122,7 +127,7 @@ fn bands(result: &AirRanging) -> String {
         ]);
     }
     let at = significant(result.at.distance_m, 3);
-    format!("Bands that tell most of it at {at} m, of {}\n{}\n", result.bands.len(), table.text())
+    format!("The most informative bands at {at} m, of {}\n{}\n", result.bands.len(), table.text())
 }
 
 fn best(result: &AirRanging) -> String {

@@ -58,7 +58,7 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
             let _ = writeln!(out, "  about straight lines: chi2/nu {}", significant(chi, 3));
         }
         None => out.push_str(
-            "  two blackbodies fit any line: nothing tells whether response or temperatures are right\n",
+            "  two blackbodies fit any line: nothing checks whether response and temperatures are right\n",
         ),
     }
     if let Some(scene) = &result.scene {

@@ -49,7 +49,7 @@ fn of_photons(found: &PhotonNoise) -> String {
         out,
         "  {}; own lines of all {} bands are in noise.csv\n",
         match found.transfer.chi_square_reduced.is_nan() {
-            true => "whether bands have a line in common is not told by so few".to_owned(),
+            true => "so few bands do not show whether they have a line in common".to_owned(),
             false => format!(
                 "bands about their common line: chi2/nu {}, by chance below {} (99.9 %)",
                 significant(found.transfer.chi_square_reduced, 2),

@@ -45,7 +45,7 @@ fn line(row: &SharedRow, all: &[SharedRow]) -> String {
         significant(stated, 2),
     );
     if row.sigma > HARDLY * row.stated.sigma_stated {
-        out.push_str("; hardly told by the pixels");
+        out.push_str("; the pixels hardly determine it");
     }
     for other in row.same_as.iter().filter_map(|i| all.get(*i)) {
         let _ = write!(out, "; the pixels do not distinguish it from {}", name(other));

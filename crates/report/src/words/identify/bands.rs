@@ -49,7 +49,10 @@ pub(super) fn scaling(scaling: &Scaling, target: &str) -> String {
 
 /// Why alternatives do not count in a choice of bands.
 fn beyond_reach(names: &[String]) -> String {
-    format!("without {}, which not even all bands with shot noise alone tell as required", listed(names))
+    format!(
+        "without {}, which cannot be distinguished even with all bands and shot noise alone",
+        listed(names)
+    )
 }
 
 /// Which bands matter, and what the best few keep.
@@ -62,7 +65,11 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
     let mut out =
         format!("Bands that matter for distinguishing {target} from {against}, by the local distance\n");
     if !found.left_out.is_empty() {
-        let _ = writeln!(out, "  left out, since not even all bands tell them: {}", listed(&found.left_out));
+        let _ = writeln!(
+            out,
+            "  omitted, since all bands together do not distinguish them: {}",
+            listed(&found.left_out)
+        );
     }
     if !found.out_of_reach.is_empty() {
         let _ = writeln!(out, "  {}", beyond_reach(&found.out_of_reach));
@@ -74,7 +81,7 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
         if choice.distance == 0.0 {
             let _ = writeln!(
                 out,
-                "  so few {what}s tell nothing: it takes {} or more, one more than there are unknowns",
+                "  so few {what}s carry no information: {} or more are required, one more than there are unknowns",
                 choice.fewest
             );
             continue;

@@ -38,8 +38,13 @@ pub(crate) fn band_number(scaling: &Scaling) -> String {
     let bands = &scaling.bands;
     let left_out = match bands.left_out.as_slice() {
         [] => String::new(),
-        [one] => format!(" Without {one}, which light alone does not tell as required."),
-        more => format!(" Without {} alternatives that light alone does not tell as required.", more.len()),
+        [one] => {
+            format!(" Without {one}, which cannot be distinguished as required even with shot noise alone.")
+        }
+        more => format!(
+            " Without {} alternatives that cannot be distinguished as required even with shot noise alone.",
+            more.len()
+        ),
     };
     format!(
         "Neighbouring bands joined. Photons are the same for any number of bands{}.{left_out}{}",

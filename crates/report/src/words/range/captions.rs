@@ -30,7 +30,7 @@ pub(crate) fn bounds(window: Window, with_depth: bool, without: &[&str]) -> Stri
     };
     let missing = match without {
         [] => String::new(),
-        names => format!(" Nothing at all is told by: {}.", names.join("; ")),
+        names => format!(" No information at all in: {}.", names.join("; ")),
     };
     format!(
         "Least error of windows of {} × {} pixels, at their centres in the left view. One colour scale for all.{clipped}{missing}",

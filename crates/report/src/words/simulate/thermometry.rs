@@ -203,7 +203,7 @@ fn likelihood(result: &Thermometry, rows: &[&ThermometryRow]) -> String {
     if seen.is_empty() {
         let known: Vec<&Reader> =
             rows.iter().map(|row| &row.lighting_known).filter(|reader| reader.sight == Sight::Seen).collect();
-        let mut out = "A spectrum in these bands tells nothing of the temperature.".to_owned();
+        let mut out = "A spectrum in these bands holds no information on the temperature.".to_owned();
         if own.iter().all(|reader| reader.sight == Sight::Imitated) {
             out.push_str(" The other unknowns imitate all that it changes.");
         }
@@ -266,7 +266,7 @@ fn standing(readers: &[&Reader], lighting_unknown: bool) -> String {
         ));
     }
     if !unseen.is_empty() {
-        clauses.push(format!("a spectrum tells nothing of the temperature at {} {of}", unseen.len()));
+        clauses.push(format!("a spectrum holds no information on the temperature at {} {of}", unseen.len()));
     }
     clauses.join("; ")
 }

@@ -81,8 +81,8 @@ words! {
         },
     }
     TemperatureNotSeen {
-        meaning: "The spectrum tells nothing of the temperature that the other unknowns do not imitate.",
+        meaning: "The spectrum holds no information on the temperature that the other unknowns do not imitate.",
         remedy: "Take more bands, or make an unknown known.",
-        TemperatureNotSeen => "the spectrum tells nothing of the temperature, or nothing that the other unknowns do not imitate",
+        TemperatureNotSeen => "the spectrum holds no information on the temperature, or none that the other unknowns do not imitate",
     }
 }

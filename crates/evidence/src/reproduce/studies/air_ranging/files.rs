@@ -78,7 +78,7 @@ pub(super) fn stereo(found: &Found) -> Plot {
         table.push_numbers(&row);
     }
     let mut figure = LineFigure::new(
-        "Where the air tells more than a second camera",
+        "Where is the air more precise than a second camera?",
         Axis::log("distance (m)"),
         Axis::log("least error of the distance (m)"),
     )

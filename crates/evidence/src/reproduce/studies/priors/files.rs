@@ -31,7 +31,7 @@ pub(super) fn temperatures(name: &'static str, lighting: f64, most: f64, rows: &
     let x: Vec<f64> = rows.iter().map(|(keys, _)| keys[0]).collect();
     let line = |label: &str, pick| Series::line(label, x.clone(), column(rows, pick));
     let figure = LineFigure::new(
-        format!("Photons to tell skin from aluminium, V = {lighting}"),
+        format!("Photons required to distinguish skin from aluminium, V = {lighting}"),
         Axis::linear("target temperature (°C)"),
         Axis::log("photons required").range(1e2, most),
     )
