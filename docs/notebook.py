@@ -32,8 +32,10 @@ def printed(text, folder):
     os.environ.setdefault("MPLBACKEND", "Agg")
     names, outputs = {"__name__": "__main__"}, []
     with contextlib.chdir(folder):
-        for code, _ in blocks(text):
+        for found in BLOCK.finditer(text):
             out = io.StringIO()
+            # Lines before it, so that a traceback names that of the page.
+            code = "\n" * text.count("\n", 0, found.start(1)) + found[1]
             with contextlib.redirect_stdout(out):
                 exec(compile(code, str(PAGE), "exec"), names)
             outputs.append(out.getvalue())
