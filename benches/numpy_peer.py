@@ -173,7 +173,7 @@ def told_apart(materials, required):
 
 
 def judged(spectra=5000, at_once=100):
-    """Share of right decisions of the likelihood ratio on Poisson spectra of the person and the nearest robot, d = 1."""
+    """Share of correct decisions of the likelihood ratio on Poisson spectra of the person and the nearest robot, d = 1."""
     draws = np.random.Generator(np.random.SFC64(1))
     person = (SKIN * planck(310.15) + (1.0 - SKIN) * 0.5 * AROUND)[0]
     robot = (ROBOT * planck(355.951) + (1.0 - ROBOT) * 0.1867 * AROUND)[0]

@@ -105,7 +105,7 @@ impl Scene {
     }
 }
 
-/// Nothing unknown: the lattice's two right decisions average to 1 − ½Σ min(p, q).
+/// Nothing unknown: the lattice's two correct decisions average to 1 − ½Σ min(p, q).
 #[test]
 fn the_lattice_of_known_states_is_the_likelihood_ratio() {
     let scene = scene(&[850.0, 1150.0]);

@@ -26,7 +26,7 @@ const WAVELENGTHS_UM: [f64; 26] = [
 pub(crate) fn information_axis(title: &str) -> Axis {
     const SHARES: [f64; 8] = [0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0];
     let ticks = SHARES.map(|share| ((2.0 * share).log2(), format!("{:.0} %", 100.0 * share)));
-    Axis::linear(title).range(0.0, 1.05).secondary("right decisions between two (%)", ticks.to_vec())
+    Axis::linear(title).range(0.0, 1.05).secondary("correct decisions (%)", ticks.to_vec())
 }
 
 /// More bands than this are drawn as a curve through their centres.

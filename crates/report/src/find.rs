@@ -1,5 +1,6 @@
 //! The files of `hadar find`: the question, the scenario of every choice that is listed, tables, and a picture of them.
 
+pub use crate::words::find::rows::{Row, rows};
 pub use crate::words::find::{sentence, text, why};
 
 use crate::bundle::Bundle;
@@ -133,7 +134,7 @@ fn drawn(found: &FindAnswer) -> Option<Plot> {
     let times = ends(all.iter().map(|choice| choice.time_s).collect());
     let distances = ends(all.iter().map(|choice| choice.lower).chain([required]).collect());
     let mut figure = LineFigure::new(
-        "What each choice tells, and how long it takes",
+        "What does each choice determine, and how long does it take?",
         Axis::log("time until all is read [s]").range(times.0, times.1),
         Axis::log("statistical distance that is proved").range(distances.0, distances.1),
     );

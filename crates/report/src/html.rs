@@ -1,8 +1,8 @@
 //! A report as one page: the verdict, its conditions, two pictures, the answer as tables, warnings with what to do, who made it of what; all
 //! other pictures, the tables of its files and the question are folded, and not printed.
 //!
-//! One file without script, and without anything that is loaded from elsewhere, so that it can be mailed, archived and printed as it
-//! is. Every picture has its title as its name, every table a caption and heads of rows and columns; order and headings are those
+//! One file that loads nothing from elsewhere, so that it can be mailed, archived and printed as it is. Its script reads values off the
+//! pictures ([`READINGS`]); nothing else needs it. Every picture has its title as its name, every table a caption and heads of rows and columns; order and headings are those
 //! of reading. It is set for a telephone, a screen and paper by one style sheet.
 
 mod answer;
@@ -21,6 +21,8 @@ use hadar_study::warning::{Code, by_code};
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("html/style.css");
+/// Script of a page that reads values off its pictures: `readable(figure, focused, svg)`.
+pub const READINGS: &str = include_str!("html/readings.js");
 
 /// A figure.
 pub(crate) struct Drawing<'a> {
@@ -102,7 +104,10 @@ pub(crate) fn page(page: &Page<'_>) -> String {
         let _ = writeln!(out, "<section id=\"{own}\"{class} aria-labelledby=\"{id}-heading\">");
         let _ = writeln!(out, "{begin}\n{content}{end}</section>");
     }
-    out.push_str("</main>\n</body>\n</html>\n");
+    let _ = write!(
+        out,
+        "</main>\n<script>\n{READINGS}for (const svg of document.querySelectorAll(\"figure svg\")) readable(svg.closest(\"figure\"), svg.closest(\".wide\"), svg);\n</script>\n</body>\n</html>\n"
+    );
     out
 }
 

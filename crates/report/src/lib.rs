@@ -37,4 +37,5 @@ pub mod tables;
 pub mod verify;
 pub mod words;
 
+pub use html::READINGS;
 pub use words::text;

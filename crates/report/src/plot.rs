@@ -42,6 +42,7 @@ mod named;
 mod names;
 mod pictures;
 mod png;
+mod readings;
 mod scene;
 mod svg;
 mod symbol;

@@ -16,8 +16,8 @@ use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::order;
 use hadar::parallel;
-use hadar::policy::trade_off::Resolution;
 use hadar::policy::Quantity;
+use hadar::policy::trade_off::Resolution;
 use hadar_study::{PairResult, Sensitivity, Sizing, Study, Surface};
 
 /// Most alternatives that are drawn into one plot.

@@ -3,8 +3,8 @@
 //!
 //! Nothing leaves this machine and nothing of it is read: the page listens on a loopback address, takes requests of its own page
 //! alone (`guard`), bounds their size and number (`http`), and reads scenarios that name no files
-//! ([`Written::refusing_files`](hadar_scenario::Written::refusing_files)). The answers are those of `hadar size` and
-//! of `hadar rule`.
+//! ([`Written::refusing_files`](hadar_scenario::Written::refusing_files)). The answers are those of `hadar size`,
+//! `hadar find` and `hadar rule`.
 //!
 //! | file | what is there |
 //! |---|---|
@@ -14,6 +14,7 @@
 //! | `guard` | who may ask |
 //! | `route` | which question is asked where |
 //! | `engine` | the answer to a scenario |
+//! | `finding` | the cameras that meet a scenario |
 //! | `rules` | the answer to a rule |
 //! | `examples` | scenarios that the page offers to begin from |
 //! | `packs` | rules that the page offers |
@@ -29,6 +30,7 @@
 mod edit;
 mod engine;
 mod examples;
+mod finding;
 mod form;
 mod guard;
 mod http;

@@ -1,6 +1,7 @@
 //! Which question is asked where.
 
 use crate::engine::{Ask, Engine, Prepared};
+use crate::finding::{FindAsk, PreparedFind};
 use crate::guard::Refusal;
 use crate::meaning;
 use crate::rules::{PreparedReforms, PreparedRule};
@@ -52,9 +53,11 @@ pub(crate) fn get(path: &str, engine: &Engine) -> Reply {
     match path {
         "/" => Reply::of(HTML, include_str!("page/index.html")),
         "/page.css" => Reply::of(STYLE, include_str!("page/page.css")),
+        "/readings.js" => Reply::of(SCRIPT, hadar_report::READINGS),
         "/shared.js" => Reply::of(SCRIPT, include_str!("page/shared.js")),
         "/form.js" => Reply::of(SCRIPT, include_str!("page/form.js")),
         "/past.js" => Reply::of(SCRIPT, include_str!("page/past.js")),
+        "/find.js" => Reply::of(SCRIPT, include_str!("page/find.js")),
         "/page.js" => Reply::of(SCRIPT, include_str!("page/page.js")),
         "/start" => Reply::answered(JSON, engine.start()),
         "/rules" => Reply::of(HTML, include_str!("page/rules.html")),
@@ -85,6 +88,7 @@ enum Asked {
     Scenario(Wanted, Box<Prepared>),
     Rule(Box<PreparedRule>),
     Reforms(PreparedReforms),
+    Find(Box<PreparedFind>),
 }
 
 /// What comes of the beginning of a question.
@@ -104,6 +108,7 @@ pub(crate) fn begun(path: &str, body: &[u8], engine: &Engine) -> Begun {
         "/ask" => of_scenario(Wanted::Ask),
         "/json" => of_scenario(Wanted::Json),
         "/report" => of_scenario(Wanted::Report),
+        "/find" => read(body).map(|ask: FindAsk| Asked::Find(Box::new(engine.prepare_find(&ask)))),
         "/rule" => read(body).map(|ask| Asked::Rule(Box::new(engine.prepare_rule(ask)))),
         "/rule/reforms" => read(body).map(|ask| Asked::Reforms(engine.prepare_reforms(&ask))),
         _ => Err(NOT_HERE),
@@ -127,6 +132,7 @@ impl Question {
             Asked::Scenario(_, prepared) => prepared.is_quick(),
             Asked::Rule(prepared) => prepared.is_quick(),
             Asked::Reforms(prepared) => prepared.is_quick(),
+            Asked::Find(prepared) => prepared.is_quick(),
         }
     }
 
@@ -138,6 +144,7 @@ impl Question {
             Asked::Scenario(Wanted::Report, prepared) => Reply::answered(HTML, engine.report(*prepared)),
             Asked::Rule(prepared) => Reply::answered(JSON, engine.rule_answer(*prepared)),
             Asked::Reforms(prepared) => Reply::answered(JSON, engine.reforms_answer(prepared)),
+            Asked::Find(prepared) => Reply::answered(JSON, engine.find_answer(*prepared)),
         }
     }
 }

@@ -243,7 +243,7 @@ fn asked_day(on: Option<&str>) -> Result<Option<Date>> {
     day(text).map(Some).ok_or_else(wrong)
 }
 
-fn told<T: Serialize>(answer: Result<T>) -> Result<String> {
+pub(crate) fn told<T: Serialize>(answer: Result<T>) -> Result<String> {
     json::line(&match answer {
         Ok(answer) => Answered { answer: Some(answer), error: None },
         Err(error) => Answered { answer: None, error: Some(Told::from(&error)) },

@@ -17,6 +17,7 @@ const MOST_LINES: usize = 100;
 pub(crate) enum Command {
     Size,
     Rule,
+    Find,
 }
 
 impl Command {
@@ -26,6 +27,10 @@ impl Command {
             Self::Size => {
                 "this question takes longer than a page waits; ask `hadar size` with the scenario of this page, or start `hadar serve` \
                  with a longer --time-limit"
+            }
+            Self::Find => {
+                "this search takes longer than a page waits; run `hadar find` with a question of fewer cameras, or start `hadar serve` with \
+                 a longer --time-limit"
             }
             Self::Rule => {
                 "this rule takes longer than a page waits; ask `hadar rule` with the rule of this page, or start `hadar serve` with a \
@@ -39,6 +44,7 @@ impl Command {
     const fn instead(self) -> &'static str {
         match self {
             Self::Size => "take fewer, or ask `hadar size` with the scenario of this page",
+            Self::Find => "take fewer, or run `hadar find` with a question of your own",
             Self::Rule => "take fewer, or ask `hadar rule` with the rule of this page",
         }
     }

@@ -59,11 +59,11 @@ pub struct AverageScene<'a> {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct AverageDecisions {
-    /// Share of right decisions; ties are split.
+    /// Share of correct decisions; ties are split.
     pub probability: f64,
     /// Wilson's interval of it, 95 %.
     pub interval: Interval,
-    /// Share of right decisions with the target true, and with the alternative true.
+    /// Share of correct decisions with the target true, and with the alternative true.
     pub probability_by_class: [f64; 2],
     /// Number of decisions that were simulated.
     pub trials: u64,

@@ -91,7 +91,7 @@ pub struct DecisionScene<'a> {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
 pub struct Detection {
-    /// Share of right decisions; ties are split.
+    /// Share of correct decisions; ties are split.
     pub probability: f64,
     /// Wilson's interval of it at the plan's level.
     pub interval: Interval,
@@ -112,7 +112,7 @@ pub struct Detection {
 /// The mean of two detections: one state each of two materials, equally likely.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balanced {
-    /// Share of right decisions, averaged over the two.
+    /// Share of correct decisions, averaged over the two.
     pub probability: f64,
     /// Interval of it at the plan's level.
     pub interval: Interval,

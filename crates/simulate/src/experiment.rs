@@ -52,11 +52,11 @@ pub struct Performance {
     pub method: Method,
     /// Whether it was trained before, and taken from a file.
     pub saved: bool,
-    /// Balanced accuracy: share of right decisions, averaged over the classes.
+    /// Balanced accuracy: share of correct decisions, averaged over the classes.
     pub accuracy: f64,
     /// Confidence interval of the balanced accuracy, 0 to 1.
     pub interval: Interval,
-    /// Share of right decisions of each class, and of wrong ones for each.
+    /// Share of correct decisions of each class, and of wrong ones for each.
     pub confusion: Confusion,
     /// How the training of the classifier ended, in words.
     #[serde(skip_serializing_if = "Option::is_none")]

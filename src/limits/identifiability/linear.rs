@@ -111,7 +111,7 @@ mod tests {
         }
     }
 
-    /// Share of right decisions of the maximum-likelihood rule, solved by brute force in two unknowns.
+    /// Share of correct decisions of the maximum-likelihood rule, solved by brute force in two unknowns.
     fn simulate(a: &[f64; 4], b: &[[f64; 4]; 2], sigma: &[f64; 4], draws: u32) -> f64 {
         let white = |x: &[f64; 4]| nalgebra::Vector4::from_fn(|w, _| x[w] / sigma[w]);
         let (step, along) = (white(a), nalgebra::Matrix4x2::from_columns(&[white(&b[0]), white(&b[1])]));

@@ -65,7 +65,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
     let text = text(&shown);
     let pictures = vec![
         ("response.png", "The response of the twin, estimated and true"),
-        ("resolved.png", "What a value of the estimate sees of the true response"),
+        ("resolved.png", "Which part of the true response does a value of the estimate see?"),
         ("directions.png", "How well each direction of the response is known"),
         ("number_over_noise.png", "Values that are determined over the noise of a reading"),
         ("choices.png", "What other temperatures and filters would determine in the same time"),

@@ -49,7 +49,7 @@ pub fn error_over_distance(result: &AirRanging) -> Plot {
     let table = Table::of_columns(std::iter::once(("distance_m", &x)).chain(of_table));
     let name = &result.target;
     let mut figure = LineFigure::new(
-        format!("How well the distance of {name} can be read from the air"),
+        format!("How precisely can the distance of {name} be read from the air?"),
         distance(),
         Axis::log("error of the distance (m)"),
     )
@@ -186,7 +186,7 @@ pub fn stereo(result: &AirRanging) -> Option<Plot> {
     let (air, stereo) = (of(curve, |point| point.sigma_window_m), of(curve, |point| point.sigma_stereo_m));
     let table = Table::of_columns([("distance_m", &x), ("sigma_air_m", &air), ("sigma_stereo_m", &stereo)]);
     let mut figure = LineFigure::new(
-        "A window by the air and by stereo",
+        "Ranging of a window: by the air and by stereo",
         distance(),
         Axis::log("error of the distance (m)"),
     )

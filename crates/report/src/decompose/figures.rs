@@ -48,7 +48,7 @@ pub(super) fn maps(result: &Decomposed, pixels: &Block, shown: Shown) -> Plot {
         ("material", "Material", Axis::linear("index in the library"), whole(&maps.material, u16::MAX)),
         ("candidates", "Materials that 95 % leave", Axis::linear("materials"), whole(&maps.candidates, 0)),
     ]);
-    let figure = Pictures::new("What the photons tell", pictures)
+    let figure = Pictures::new("What do the photons say of each pixel?", pictures)
         .subtitle(format!("{}.{}", how(result), thinned(shown)))
         .no_value(NOTHING_TOLD);
     Plot { name: "maps".into(), figure: figure.into(), table }
@@ -75,7 +75,7 @@ pub(super) fn flags(result: &Decomposed, pixels: &Block, shown: Shown) -> Plot {
         occurs.iter().map(|(bit, rgb)| (*rgb, flag_said(*bit, result).to_owned())).collect();
     keys.push((NO_FLAG, "nothing is said".to_owned()));
     let picture = Picture::painted("Flags", Axis::linear(""), shown.wide(), painted);
-    let figure = Pictures::new("What is said of each pixel", vec![picture])
+    let figure = Pictures::new("What was decided of each pixel?", vec![picture])
         .subtitle(format!("{FLAGGED}{}", thinned(shown)))
         .keys(keys);
     Plot { name: "flags".into(), figure: figure.into(), table }
@@ -89,7 +89,7 @@ pub(super) fn p_values(result: &Decomposed, pixels: &Block, shown: Shown) -> Plo
     let (table, _) = shown.layers(vec![("p_value", "p-value", Axis::linear("p-value"), values)]);
     let axis = Axis::log("p-value").range(LEAST_P, 1.0);
     let picture = Picture::new("p-value of the best material", axis, shown.wide(), drawn);
-    let figure = Pictures::new("How well the model fits each pixel", vec![picture])
+    let figure = Pictures::new("How well does the model fit each pixel?", vec![picture])
         .subtitle(format!("{}. {P_VALUES}{}", how(result), thinned(shown)))
         .no_value(NOTHING_TOLD);
     Plot { name: "p_value".into(), figure: figure.into(), table }
@@ -115,7 +115,7 @@ pub(super) fn residual(model: &ModelJudged) -> Option<Plot> {
     ]);
     let twice = |sign: f64| sigma.iter().map(|sigma| sign * 2.0 * sigma).collect();
     let figure = LineFigure::new(
-        "What all pixels have in common and the model has not",
+        "Residual that all pixels have in common",
         Axis::linear("wavenumber (cm⁻¹)"),
         Axis::linear("mean residual (deviations of a pixel's noise)"),
     )

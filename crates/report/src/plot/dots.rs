@@ -11,6 +11,7 @@ use super::label;
 use super::legend::{Entry, Key, Legend};
 use super::named::{NamedSeries, NamedValues};
 use super::names::{self, Names};
+use super::readings::Readable;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
 use super::text;
@@ -82,6 +83,8 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
         }
     }
     scene.outline(area, 0.9, INK);
+    let series = figure.series.iter().map(|series| (series.label.as_str(), series.values.as_slice()));
+    scene.readable.push(Readable::rows(area.sides(), (&figure.axis.title, &ruler), &figure.names, series));
     x.draw_ticks(&mut scene, &area);
     x.draw_secondary(&mut scene, &area);
     if twice > 0.0 {

@@ -9,6 +9,7 @@ use super::geometry;
 use super::heatmap::{HeatMap, edges};
 use super::label::Placer;
 use super::legend::{self, Entry, Key, Legend};
+use super::readings::Readable;
 use super::scene::{Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
 use super::ticks;
@@ -40,6 +41,9 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
 
     let shades = |part| shade(&colours, part);
     let missing = draw_cells(&mut scene, &Lattice::new(map, &colours), &shades, [&x.ruler, &y.ruler], area);
+    let [across, up] = [(&map.x, &x.ruler, &map.columns), (&map.y, &y.ruler, &map.rows)]
+        .map(|(axis, ruler, centres)| (axis.title.as_str(), ruler, centres.as_slice()));
+    scene.readable.extend(Readable::cells(area.sides(), [across, up], (&map.colour.title, &map.values)));
     let mut placer = Placer::new(area);
     let contours = draw_contours(&mut scene, &mut placer, map, &x, &y, &area);
     scene.outline(area, 0.9, INK);

@@ -8,6 +8,7 @@ use super::frame::{self, Horizontal, Vertical};
 use super::geometry;
 use super::label::Placer;
 use super::legend::{Entry, Key, Legend};
+use super::readings::Readable;
 use super::scene::{Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
 use super::text;
@@ -84,6 +85,9 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
         let area = Rect { left, right, top: bottom + gap, bottom: bottom + gap + part.height };
         bottom = area.bottom;
         draw_panel(&mut scene, part, &x, y, area);
+        let axes = [(figure.x.title.as_str(), &x.ruler), (part.panel.y.title.as_str(), &y.ruler)];
+        let curves = part.panel.series.iter().map(|one| (one.label.as_str(), &one.x[..], &one.y[..]));
+        scene.readable.push(Readable::curves(area.sides(), axes, curves));
         if i == 0 {
             x.draw_secondary(&mut scene, &area);
         }

@@ -1,6 +1,7 @@
 //! A figure laid out: a list of marks in logical pixels, x to the right and y downwards.
 
 use super::colour::Colour;
+use super::readings::Readable;
 use super::text;
 
 /// A position in logical pixels.
@@ -22,6 +23,11 @@ impl Rect {
 
     pub(super) fn height(&self) -> f64 {
         self.bottom - self.top
+    }
+
+    /// Left, top, right, bottom.
+    pub(super) fn sides(&self) -> [f64; 4] {
+        [self.left, self.top, self.right, self.bottom]
     }
 
     pub(super) fn contains(&self, (x, y): Point) -> bool {
@@ -77,11 +83,13 @@ pub(super) struct Scene {
     pub(super) width: f64,
     pub(super) height: f64,
     pub(super) marks: Vec<Mark>,
+    /// Panels whose numbers can be read off.
+    pub(super) readable: Vec<Readable>,
 }
 
 impl Scene {
     pub(super) fn new(title: &str, width: f64) -> Self {
-        Self { title: text::clean(title), width, height: 0.0, marks: Vec::new() }
+        Self { title: text::clean(title), width, height: 0.0, marks: Vec::new(), readable: Vec::new() }
     }
 
     pub(super) fn line(&mut self, from: Point, to: Point, width: f64, colour: Colour) {

@@ -5,6 +5,7 @@
 
 use super::colour::{Colour, WHITE};
 use super::encode;
+use super::readings;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
@@ -39,13 +40,14 @@ pub(super) fn paint(scene: &Scene) -> Result<String> {
     Ok(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" \
          role=\"img\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" font-family=\"{}\">\n\
-         <title>{}</title>\n{}</svg>\n",
+         <title>{}</title>\n{}{}</svg>\n",
         scene.width.ceil(),
         scene.height.ceil(),
         size.0,
         size.1,
         text::FAMILY,
         escape(&scene.title),
+        readings::element(&scene.readable),
         inner.end(),
     ))
 }

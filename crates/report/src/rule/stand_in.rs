@@ -43,7 +43,7 @@ fn table(answer: &StandInAnswer) -> Table {
 /// The edge of every stand-in that passes: temperature over emissivity.
 fn picture(answer: &StandInAnswer) -> Plot {
     let mut figure = LineFigure::new(
-        "How exact a stand-in must be",
+        "How exact must a surrogate target be?",
         Axis::linear("tolerance of its emissivity, ±"),
         Axis::linear("tolerance of its temperature (K), ±"),
     )

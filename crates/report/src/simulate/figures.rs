@@ -230,9 +230,9 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
         found().map(|performance| performance.interval.high).collect(),
     );
     let figure = NamedValues::new(
-        format!("How often each classifier is right: {pair}"),
+        format!("How often is each classifier right? {pair}"),
         found().map(Performance::words).collect(),
-        Axis::linear("share of right decisions, averaged over the classes"),
+        Axis::linear("share of correct decisions, averaged over the classes"),
     )
     .series(NamedSeries::new("balanced accuracy", values).intervals(intervals.0, intervals.1))
     .interval_meaning(format!("{} % interval", 100.0 * result.level));

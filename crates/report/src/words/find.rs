@@ -1,5 +1,7 @@
 //! `hadar find` as text: what to take and on which conditions, what else meets, and why the others do not.
 
+pub mod rows;
+
 use crate::text::columns::{Columns, left, right};
 use crate::text::footing::warnings;
 use crate::text::numbers::{between, listed, significant};

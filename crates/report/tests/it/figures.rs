@@ -295,7 +295,7 @@ fn four_panels_stand_over_each_other() {
     // The first panel is at the top, and one legend tells of all.
     let at = |title: &str| svg.find(title).unwrap_or_else(|| panic!("{title}"));
     assert!(at("d over that demanded") < at("blur (pixels)") && at("blur (pixels)") < at("speed at contact"));
-    assert_eq!(svg.matches("a camera").count(), 1);
+    assert_eq!(svg.matches(">a camera<").count(), 1);
 }
 
 fn heat_map() -> impl Strategy<Value = Figure> {

@@ -160,9 +160,9 @@ fn named_values_show_every_name_from_the_top_and_a_symbol_for_every_value() {
         assert_eq!(baselines(&svg, words).len(), 1, "{words}");
     }
     // One series needs no name, more do; without threshold nothing is too alike.
-    assert!(!svg.contains("camera calibrated"));
+    assert!(!svg.contains(">camera calibrated<"));
     let two = render_svg(&two_series(figure.clone()).into()).expect("an SVG");
-    assert!(two.contains("camera calibrated") && two.contains("gain unknown"));
+    assert!(two.contains(">camera calibrated<") && two.contains(">gain unknown<"));
     let plain = render_svg(&NamedValues { threshold: None, ..figure }.into()).expect("an SVG");
     assert!(!plain.contains("required") && !plain.contains("too alike"));
 }

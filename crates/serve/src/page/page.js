@@ -188,6 +188,7 @@ function show({ scenario, form, answer, error }, { scenario: before, edits, full
   // A change that is refused leaves the text: what was typed for it is taken back.
   if (edits.length > 0 && error && scenario === before) signature = "";
   text = scenario;
+  forgetFound();
   if (at("scenario").value !== text) at("scenario").value = text;
   if (form) showForm(form);
   if (full || error) keep(text, form, answer);

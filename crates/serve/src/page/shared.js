@@ -36,7 +36,10 @@ function pictureOf([name, svg]) {
   const title = parsed.querySelector("title")?.textContent ?? name;
   parsed.setAttribute("role", "img");
   parsed.setAttribute("aria-label", title);
-  return element("figure", { className: "picture", tabIndex: 0, role: "group", "aria-label": title }, document.importNode(parsed, true));
+  const drawing = document.importNode(parsed, true);
+  const figure = element("figure", { className: "picture", tabIndex: 0, role: "group", "aria-label": title }, drawing);
+  readable(figure, figure, drawing);
+  return figure;
 }
 
 function save(name, kind, content) {

@@ -60,6 +60,38 @@ fn a_field_that_is_set_is_in_the_text_and_in_the_answer() {
     );
 }
 
+/// The cameras that meet a scenario are those of `hadar find`; a choice that is taken is answered as the list says.
+#[test]
+fn cameras_are_searched_for_the_scene_of_the_page() {
+    let text = SCENARIO.replace("[camera]\npreset = \"flir-a325sc\"\n", "")
+        + "[find]\ncameras = [\"flir-lepton*\", \"flir-a325sc\"]\n";
+    let searched = |scenario: &str| -> Json {
+        let (status, answer) = post("/find", &json!({ "scenario": scenario }));
+        assert_eq!(status, 200, "{answer}");
+        serde_json::from_str(&answer).unwrap()
+    };
+    let found = searched(&text);
+    let rows = found["answer"]["rows"].as_array().unwrap();
+    assert!(rows.iter().any(|row| row["camera"] == "flir-lepton-3.5"), "{found}");
+    let open = Scenario::from_toml(&text.replace("[bands]\nstep = \"20 cm^-1\"\n", ""), None).unwrap();
+    let library = Library::embedded().unwrap();
+    let own = hadar_study::find::find(&open, &Default::default(), &library, Default::default()).unwrap();
+    assert_eq!(found["answer"]["sentence"], hadar_report::find::sentence(&own));
+    // The camera and the bands of the page are left open, and its other tables stay.
+    assert_eq!(searched(&format!("{text}[camera]\npreset = \"flir-a325sc\"\n")), found);
+    let met = |row: &Json| row["told"].as_str().is_some_and(|told| told.starts_with("meets"));
+    for row in rows {
+        let Some(scenario) = row["scenario"].as_str() else { continue };
+        let answer = asked(&json!({ "scenario": scenario }));
+        assert_eq!(answer["answer"]["met"], met(row), "{row}");
+    }
+    for wrong in ["[target", "", "[target]\nmaterial = \"skin\"\n[find.filters]\nfrom = \"/etc/passwd\"\n"] {
+        let answer = searched(wrong);
+        assert!(answer["answer"].is_null() && answer["error"]["message"].is_string(), "{answer}");
+        assert!(!answer["error"]["message"].as_str().unwrap().contains("root"), "{answer}");
+    }
+}
+
 /// Whether a file is there or not, readable or not, cannot be told from outside: no key of a scenario reaches one.
 #[test]
 fn no_key_reads_a_file() {

@@ -110,14 +110,14 @@ impl Confusion {
         self.decisions.iter().map(|row| row.iter().sum()).collect()
     }
 
-    /// Share of right decisions of each class.
+    /// Share of correct decisions of each class.
     #[must_use]
     pub fn shares(&self) -> Vec<f64> {
         let share = |(class, spectra): (usize, f64)| self.decisions[class][class] / spectra.max(1.0);
         self.spectra().into_iter().enumerate().map(share).collect()
     }
 
-    /// Balanced accuracy: the mean over the classes of the share of right decisions.
+    /// Balanced accuracy: the mean over the classes of the share of correct decisions.
     #[must_use]
     pub fn accuracy(&self) -> f64 {
         let shares = self.shares();

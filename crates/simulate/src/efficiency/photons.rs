@@ -44,7 +44,7 @@ impl PhotonShare {
     /// the statistical distance is `distance`; interval at `level`.
     ///
     /// # Errors
-    /// No trials, more right decisions than trials, a distance that is not positive, a level outside (0, 1).
+    /// No trials, more correct decisions than trials, a distance that is not positive, a level outside (0, 1).
     pub fn of(right: f64, trials: u64, distance: f64, level: f64) -> Result<Self> {
         check::positive("statistical distance", distance, "")?;
         if !(level > 0.0 && level < 1.0) {
@@ -53,7 +53,7 @@ impl PhotonShare {
         let n = check::positive("number of decisions", trials as f64, "")?;
         if !(0.0..=n).contains(&right) {
             let expected = format!("between 0 and the {trials} made");
-            return Err(Error::out_of_range("number of right decisions", right, "", expected));
+            return Err(Error::out_of_range("number of correct decisions", right, "", expected));
         }
         let interval = Interval::wilson(right, trials, level);
         let share = |p: f64| -> Result<Option<f64>> {

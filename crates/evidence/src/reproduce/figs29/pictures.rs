@@ -64,7 +64,7 @@ fn kernels(shown: &Shown) -> Plot {
         table.push_numbers(&row);
     }
     let mut figure = LineFigure::new(
-        "What a value of the estimate sees of the true response",
+        "Which part of the true response does a value of the estimate see?",
         Axis::linear("wavenumber of the true response (cm⁻¹)"),
         Axis::linear("share (resolving kernel)"),
     )

@@ -74,7 +74,7 @@ pub fn errors(result: &Thermometry) -> Plot {
         .rule(Rule::horizontal(0.0, ""))
         .series(Series::points(label, celsius.clone(), scaled(&own)).colour(colour));
     let figure = LineFigure::new(
-        format!("How far from the truth {} is read", result.target),
+        format!("Bias: how far from the truth is {} read?", result.target),
         true_temperature(),
         Axis::linear("mean error (K)"),
     )

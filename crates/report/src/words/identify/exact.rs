@@ -22,7 +22,13 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
     let _ = writeln!(
         out,
         "  {:<width$}  {:>9}  {:>18}  {:>11}  {:>11}  {:>9}  {:>17}",
-        "alternative", "photons", "right decisions", "limit Phi(d)", "two-sided", "local", "rigorous limits"
+        "alternative",
+        "photons",
+        "correct decisions",
+        "limit Phi(d)",
+        "two-sided",
+        "local",
+        "rigorous limits"
     );
     let shown = |pair: &&ExactPair| pair.limit < CERTAIN || pair.balanced < CERTAIN;
     let certain = found.pairs.iter().filter(|pair| !shown(pair)).count();
@@ -47,7 +53,7 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
         out.push('\n');
     }
     if certain > 0 {
-        let _ = writeln!(out, "  {certain} more, of limit and right decisions both 1.000 to three digits");
+        let _ = writeln!(out, "  {certain} more, of limit and correct decisions both 1.000 to three digits");
     }
     if let Some(library) = &found.library {
         let _ = writeln!(
@@ -68,13 +74,13 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
         );
     }
     out.push_str(
-        "  right decisions: averaged over the target's state and the alternative's nearest; the rigorous limits are those of\n  the best test between these two known states, which no test exceeds\n",
+        "  correct decisions: averaged over the target's state and the alternative's nearest; the rigorous limits are those of\n  the best test between these two known states, which no test exceeds\n",
     );
     if found.pairs.iter().any(|pair| pair.lattice.is_some()) {
         let target = &study.target().name;
         let _ = writeln!(
             out,
-            "  Algorithm 1: share of right decisions with {target} true (not averaged), all states on a mesh"
+            "  Algorithm 1: share of correct decisions with {target} true (not averaged), all states on a mesh"
         );
     }
     out.push('\n');

@@ -26,11 +26,11 @@ pub struct ExactPair {
     pub error_lower: f64,
     /// Upper bound of the probability of error; `error_lower` is the lower one.
     pub error_upper: f64,
-    /// Simulated share of right decisions, averaged over the two states.
+    /// Simulated share of correct decisions, averaged over the two states.
     pub balanced: f64,
-    /// Confidence interval of the balanced share of right decisions, 0 to 1.
+    /// Confidence interval of the balanced share of correct decisions, 0 to 1.
     pub balanced_interval: Interval,
-    /// Share of right decisions with the target true, and with the alternative true.
+    /// Share of correct decisions with the target true, and with the alternative true.
     pub classes: [f64; 2],
     /// Number of trials of both materials together.
     pub trials: u64,

@@ -47,7 +47,7 @@ pub(super) fn contrast(found: &Found) -> Plot {
         table.push_numbers(&[*x, columns[0].3[i], columns[1].3[i], columns[2].3[i], columns[3].3[i]]);
     }
     let mut figure = LineFigure::new(
-        "A ruler of no length where the target looks like the air",
+        "No range is measured where the target looks like the air",
         Axis::linear("temperature of the target less that of the air (K)"),
         Axis::log("least error of 100 m (m)"),
     )

@@ -42,7 +42,7 @@ pub(super) fn materials(rows: &[Row]) -> Plot {
     let x: Vec<f64> = rows.iter().map(|row| row.0).collect();
     let y = |pick: &dyn Fn(&Row) -> f64| rows.iter().map(pick).collect::<Vec<f64>>();
     let mut figure = LineFigure::new(
-        "Right materials against what the photons allow",
+        "How many materials are right, and how many do the photons allow?",
         Axis::log("photons of a pixel"),
         Axis::linear("right materials").range(0.0, 1.0),
     )

@@ -127,7 +127,7 @@ pub(super) fn against_distances(lines: &[Line]) -> Plot {
     let figure = LineFigure::new(
         "What a test achieves, against what the distances promise",
         Axis::log("statistical distance √N·d₀").range(0.01, 30.0),
-        Axis::linear("right decisions").range(0.45, 1.02),
+        Axis::linear("correct decisions").range(0.45, 1.02),
     )
     .subtitle(
         "Every pair twice: at its nearest and at its local distance. Test of best fits, temperature and \
@@ -159,8 +159,8 @@ pub(super) fn against_estimates(lines: &[Line]) -> Plot {
     let (p, low, high) = (of(|l| l.fitted.value), of(|l| l.fitted.low), of(|l| l.fitted.high));
     let figure = LineFigure::new(
         "The two-sided estimate follows the test, the local distance does not",
-        Axis::linear("predicted share of right decisions").range(0.48, 1.02),
-        Axis::linear("simulated share of right decisions").range(0.48, 1.02),
+        Axis::linear("predicted share of correct decisions").range(0.48, 1.02),
+        Axis::linear("simulated share of correct decisions").range(0.48, 1.02),
     )
     .subtitle("All pairs at nearest distances √N·d₀ of 0.5, 1 and 2; bars are 95 % intervals.")
     .series(

@@ -83,7 +83,7 @@ pub(super) fn decision_figures(decided: &[Decided]) -> Vec<Figure> {
         let reach = best.interval.half_width();
         let same = (best.probability - 0.8435).abs() <= reach.hypot(0.007);
         figures.push(Figure {
-            what: "largest share of right decisions (limit Φ(1) = 0.8413)",
+            what: "largest share of correct decisions (limit Φ(1) = 0.8413)",
             expected: "0.8435 ± 0.007",
             found: format!("{:.4} ± {reach:.4}", best.probability),
             verdict: if same { "agrees" } else { "differs by more than chance" },

@@ -123,9 +123,9 @@ pub(super) fn decisions(decided: &[Decided]) -> Plot {
     let of = |pick: fn(&Decided) -> f64| decided.iter().map(pick).collect::<Vec<f64>>();
     let (p, low, high) = (of(|d| d.probability), of(|d| d.interval.low), of(|d| d.interval.high));
     let figure = LineFigure::new(
-        "Simulated decisions against what is said of them",
-        Axis::linear("predicted share of right decisions").range(0.48, 1.02),
-        Axis::linear("simulated share of right decisions").range(0.70, 0.88),
+        "Simulated decisions against their limits",
+        Axis::linear("predicted share of correct decisions").range(0.48, 1.02),
+        Axis::linear("simulated share of correct decisions").range(0.70, 0.88),
     )
     .subtitle(format!(
         "{} random pairs, each with the photons at which the nearest distance is 1; bars are 95 % intervals.",

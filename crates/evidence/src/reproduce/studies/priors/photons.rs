@@ -82,7 +82,7 @@ impl Task {
         Pair { emissivity: &self.skin, alternative: &self.aluminium, state }
     }
 
-    /// Share of right decisions of the Bayes test with `photons` photons, both states drawn from the priors: ± 0.005, 95 %.
+    /// Share of correct decisions of the Bayes test with `photons` photons, both states drawn from the priors: ± 0.005, 95 %.
     pub(super) fn simulated(&self, celsius: f64, lighting: f64, photons: f64, seed: u64) -> Result<f64> {
         let scene = &self.scene;
         let state = scene.state(celsius, lighting)?;

@@ -54,7 +54,7 @@ pub(super) fn readme(
     format!(
         "# What priors do\n\n\
          Skin or aluminium? 536 bands (715 to 1250 cm⁻¹, step 1), surroundings at 20 °C, photon noise only, \
-         temperature and lighting V of either unknown. All photon numbers are for {:.1} % right decisions \
+         temperature and lighting V of either unknown. All photon numbers are for {:.1} % correct decisions \
          (statistical distance 1). Where target and surroundings have one temperature and V = 1, every surface \
          sends the same light: no number of photons distinguishes anything. With a prior on the temperature the \
          target is a little off equilibrium nearly always, and the number becomes finite.\n\n\
