@@ -2,7 +2,8 @@
 
 A block ```` ```console ```` has commands after `$ ` and what they print. `...` alone on a line stands for any lines, `[...]`
 for the rest of one (seconds, commits). A block ```` ```toml file=NAME ```` writes that file. The blocks of a page run one after
-the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one.
+the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one. `<!-- picture: FILE -->` before a picture: it is
+that file of this folder. Figures in the prose of a tutorial must be in what its commands print: figures.py.
 
     python3 docs/commands.py HADAR             compare; exit code 1 if anything differs
     python3 docs/commands.py HADAR --update    write what is printed into the pages, dots kept
@@ -17,10 +18,16 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import figures
+
 SRC = Path(__file__).resolve().parent / "src"
 BLOCK = re.compile(r"^```(?:(console)|\w+ file=(\S+))\n(.*?)^```$", re.M | re.S)
+PICTURE = re.compile(r"^<!-- picture: (\S+) -->\n!\[[^\]]*\]\(([^)]+)\)", re.M)
 DOTS = "..."
 SECONDS = 300
+# Pages whose figures in the prose are held against what is printed, or against a table of the reports.
+TUTORIALS = ["index.md", "tutorials/*.md"]
+OF_REPORTS = {"ledger.md": SRC.parents[1] / "reports/ledger.csv"}
 
 
 def matches(expected, printed):
@@ -83,7 +90,7 @@ def commands(block):
 
 def run_page(path, program, update):
     """Runs a page; returns how many commands ran, and what differs."""
-    text, done, differs = path.read_text(), [], []
+    text, done, differs, everything = path.read_text(), [], [], []
     with tempfile.TemporaryDirectory() as scratch:
         tools, folder = Path(scratch, "bin"), Path(scratch, "page")
         tools.mkdir()
@@ -103,6 +110,7 @@ def run_page(path, program, update):
                 ran = subprocess.run(["bash", "-c", command], timeout=SECONDS, **alone)
                 printed = ran.stdout if not ran.stdout or ran.stdout.endswith("\n") else ran.stdout + "\n"
                 done.append(command)
+                everything.append(printed)
                 if not matches(expected, printed):
                     difference = difflib.unified_diff(expected.splitlines(), printed.splitlines(), "guide", "program", lineterm="")
                     differs.append(f"{path.name}: {written}" + "\n".join(difference))
@@ -110,8 +118,19 @@ def run_page(path, program, update):
             return f"```console\n{content}```"
 
         new = BLOCK.sub(run, text)
+        for made, shown in PICTURE.findall(text):
+            drawn, kept = Path(folder, made).read_bytes(), Path(path.parent, shown)
+            if not kept.exists() or kept.read_bytes() != drawn:
+                differs.append(f"{path.name}: the picture {shown} is another than {made}")
+                if update:
+                    kept.write_bytes(drawn)
     if update and new != text:
         path.write_text(new)
+    if path.name in OF_REPORTS:
+        everything.append(OF_REPORTS[path.name].read_text())
+    if path.name in OF_REPORTS or any(path.relative_to(SRC).match(pattern) for pattern in TUTORIALS):
+        unfounded = figures.unfounded(new if update else text, "".join(everything))
+        differs += [f"{path.name}:{sentence}" for sentence in unfounded]
     return len(done), differs
 
 

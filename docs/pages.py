@@ -3,7 +3,7 @@
 * `$...$` and `$$...$$` become MathML, which browsers show without fonts, scripts or network; `\\tag{S27}` is the number in the paper.
 * Pictures of the repository, `../../reports/...`, are put into the page.
 * `<!-- made: ledger -->`, `symbols`, `terms`, `equations`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain --all` says,
-  `accuracy` by the table of reports/accuracy.
+  `accuracy` by the table of reports/accuracy; `rows`, `compared`, `reproduced`, `chosen`, `missed` and `wrong` by numbers of rows of the ledger.
 * A link to a file that is not there fails the build.
 
 mdBook hands over `[context, book]` as JSON and takes the book back. `pages.py check` does the same to all pages without mdBook. Needs Python 3.11 and latex2mathml.
@@ -103,6 +103,16 @@ def table(head, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows] + ["\n</div>"])
 
 
+def verdicts():
+    with (REPORTS / "ledger.csv").open(newline="") as file:
+        return [row["verdict"] for row in csv.DictReader(file)]
+
+
+def count(*chosen):
+    """The number of rows of the ledger with one of these verdicts."""
+    return lambda: str(sum(verdict in chosen for verdict in verdicts()))
+
+
 def ledger():
     """The ledger by verdict, each row with the command that makes it again."""
     folders = {}
@@ -116,7 +126,7 @@ def ledger():
     if strange := {row["verdict"] for row in rows} - known:
         raise ValueError(f"reports/ledger.csv: verdicts without a place in the page: {strange}")
     counts = [(title, sum(row["verdict"] == verdict for row in rows)) for verdict, title in VERDICTS]
-    parts = [table(["verdict", "rows"], [(title, str(count)) for title, count in counts])]
+    parts = [table(["verdict", "rows"], [(title, str(number)) for title, number in counts])]
     for verdict, title in VERDICTS:
         chosen = [
             (
@@ -130,7 +140,7 @@ def ledger():
             for row in rows
             if row["verdict"] == verdict
         ]
-        parts += [f"## {title}", table(["place", "quantity", "paper", "ours", "why", "made by `hadar reproduce`"], chosen)]
+        parts += [f"### {title}", table(["place", "quantity", "paper", "ours", "why", "made by `hadar reproduce`"], chosen)]
     return "\n\n".join(parts)
 
 
@@ -213,7 +223,9 @@ def accuracy():
     return re.search(r"(^\|.*\n)+", text, re.M)[0]
 
 
-TABLES = {"accuracy": accuracy, "ledger": ledger, "symbols": symbols, "terms": terms, "equations": numbered, "keys": keys, "warnings": warnings, "results": results}
+COMPARED = {"reproduced": "reproduced", "chosen": "reproduced under a stated choice", "missed": "not reproduced", "wrong": "error in the paper"}
+COUNTS = {name: count(verdict) for name, verdict in COMPARED.items()} | {"compared": count(*COMPARED.values()), "rows": lambda: str(len(verdicts()))}
+TABLES = {"accuracy": accuracy, "ledger": ledger, "symbols": symbols, "terms": terms, "equations": numbered, "keys": keys, "warnings": warnings, "results": results} | COUNTS
 
 
 def page(text, folder):
