@@ -178,7 +178,7 @@ fn counts(ledger: &[Line]) -> String {
         of(&[Verdict::NotReproduced])
     );
     for (verdict, words) in [
-        (Verdict::PaperInError, "in error in the paper"),
+        (Verdict::PaperInError, "are errors in the paper"),
         (Verdict::TooFewToSay, "left open by too few experiments"),
     ] {
         if of(&[verdict]) > 0 {

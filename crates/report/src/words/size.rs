@@ -82,6 +82,7 @@ fn of_pixels(finding: &Finding, reached: f64) -> String {
 /// Of an object: that all of its pixels decide together.
 fn by_pixels(finding: &Finding) -> String {
     match finding.pixels.filter(|_| finding.of_object) {
+        Some(1.0) => " by the one pixel on it".into(),
         Some(pixels) => format!(" by the {} pixels on it together", in_number(pixels)),
         None => String::new(),
     }
