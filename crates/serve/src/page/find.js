@@ -42,7 +42,7 @@ function showFound({ sentence, rows, text: printed }) {
     "tr", {}, element("th", { scope: "row" }, one.camera),
     element("td", {}, element("strong", {}, one.told), ...(one.why ? [element("small", {}, ` ${one.why}`)] : [])),
     ...[one.distance, one.lens, one.filters, one.frames, one.time, one.price].map((value) => cell(value || "-")),
-    element("td", {}, ...(one.scenario ? [button("Take it", () => taken(one.scenario), { className: "small", "aria-label": `Take ${one.camera} with ${one.lens}` })] : [])),
+    element("td", {}, ...(one.scenario ? [button("Take it", () => taken(one.scenario), { className: "small", "aria-label": `Take it: ${one.camera} with ${one.lens}` })] : [])),
   )));
   at("find-text").textContent = printed;
   at("found").hidden = false;

@@ -8,7 +8,7 @@ use hadar_study::Condition;
 use hadar_study::find::{Choice, FindAnswer, Why};
 use serde::Serialize;
 
-/// A camera, with what is before it.
+/// A camera as a page lists it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Row {
     /// The name of the camera.
@@ -17,11 +17,11 @@ pub struct Row {
     pub told: &'static str,
     /// The first condition of a yes and how many more there are, or why the camera does not meet.
     pub why: String,
-    /// f-number and focal length.
+    /// f-number and focal length of its lens.
     pub lens: String,
-    /// Its filters.
+    /// Names of its filters, or their wavelengths.
     pub filters: String,
-    /// Frames that are added up.
+    /// Number of frames that are added up.
     pub frames: String,
     /// Time until all is read.
     pub time: String,
