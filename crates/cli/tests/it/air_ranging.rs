@@ -135,7 +135,9 @@ fn a_target_like_the_air_has_no_distance() {
     assert!(codes.contains(&&"distance-not-seen".into()), "{codes:?}");
     let outcome = folder.run(&["range", "a.toml"]);
     assert!(
-        outcome.stdout.starts_with("At 80.0 m no band holds information on the distance: the target looks like the air")
+        outcome.stdout.starts_with(
+            "At 80.0 m no band holds information on the distance: the target looks like the air"
+        )
     );
     // Two bands and two unknowns.
     let few = GREY
