@@ -78,7 +78,7 @@ pub struct Circumstances<'a> {
     /// Time after which a decision must stand, s.
     pub time_s: Option<f64>,
     /// Counts of the fullest reading.
-    pub brightest: &'a (dyn Fn(&Trial) -> Result<f64> + Sync),
+    pub brightest: &'a dyn Fn(&Trial) -> Result<f64>,
 }
 
 /// Longest wavelength of bands, at the edge of the outermost, m.

@@ -14,7 +14,6 @@ use super::caps::{Circumstances, Limit, limits};
 use super::solve::{CameraTask, CapCode, Quantity, Solution};
 use crate::error::Result;
 use crate::order;
-use crate::parallel;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 /// How finely a curve is traced.
@@ -33,8 +32,6 @@ impl Resolution {
     pub const COARSE: Self = Self { points: 11, halvings: 3 };
 }
 
-/// Parts of a curve that are traced at once.
-const PARTS: usize = 4;
 /// f-numbers, as far as lenses are made; factors around the camera's own value of the others.
 const SLOWEST_F_NUMBER: f64 = 8.0;
 const PIXELS: f64 = 8.0;
@@ -149,22 +146,20 @@ fn range(task: &CameraTask<'_>, quantity: Quantity, alone: Option<f64>) -> [f64;
     }
 }
 
-/// Solves a task for a quantity; it may follow the last solution, near which the next one is.
-pub type Solver<'a> = Box<dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution> + 'a>;
-
-/// Traces a curve between its boundaries, several parts of it at once. `solver` makes a solver for a part; `as_now` is the statistical
-/// distance of the camera as it is, `alone` the value of the first quantity that alone meets the demand.
+/// Traces a curve between its boundaries. `solve` solves a task for a quantity; `as_now` is the statistical distance
+/// of the camera as it is,
+/// `alone` the value of the first quantity that alone meets the demand.
 ///
 /// # Errors
 /// Those of `solve` and of the limits.
-pub fn trace<'s>(
+pub fn trace(
     task: &CameraTask<'_>,
     pair: (Quantity, Quantity),
     as_now: f64,
     alone: Option<f64>,
     given: &Circumstances<'_>,
     resolution: Resolution,
-    solver: &(dyn Fn() -> Solver<'s> + Sync),
+    solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
 ) -> Result<TradeOff> {
     let (x, y) = pair;
     let [low, high] = range(task, x, alone);
@@ -180,21 +175,13 @@ pub fn trace<'s>(
     places.sort_by(f64::total_cmp);
     places.dedup_by(|a, b| near(*a, *b));
 
-    let at = |solve: &mut Solver<'_>, at| point(task, pair, at, as_now, given, solve);
-    // So many whatever the number of threads, since a solver follows from point to point.
-    let parts: Vec<&[f64]> = places.chunks(places.len().div_ceil(PARTS).max(1)).collect();
-    let traced = parallel::booked(parts.len(), |part| {
-        let mut solve = solver();
-        parts[part].iter().map(|place| at(&mut solve, *place)).collect::<Result<Vec<Found>>>()
-    })?;
-    let mut found = traced.concat();
+    let mut found = Vec::with_capacity(places.len());
+    for at in places {
+        found.push(point(task, pair, at, as_now, given, solve)?);
+    }
     for holds in [|point: &Point| point.y.is_some(), |point: &Point| point.within_limits.is_some()] {
-        let steps: Vec<[f64; 2]> = found.windows(2).filter_map(|pair| edge(pair, holds)).collect();
-        let edges = parallel::booked(steps.len(), |step| {
-            let mut solve = solver();
-            halved(steps[step], &exact, holds, resolution.halvings, &mut |place| at(&mut solve, place))
-        })?;
-        found.extend(edges.concat());
+        let mut at = |at| point(task, pair, at, as_now, given, solve);
+        found.extend(edges(&found, &exact, holds, resolution.halvings, &mut at)?);
         order::ascending(&mut found, |(point, _)| point.x);
     }
 
@@ -219,38 +206,38 @@ pub fn trace<'s>(
 /// A point of a curve, and the limits on the second quantity there.
 type Found = (Point, Vec<Limit>);
 
-/// Where something holds and, beside it, where it does not; none where both are alike.
-fn edge(pair: &[Found], holds: fn(&Point) -> bool) -> Option<[f64; 2]> {
-    let [(a, _), (b, _)] = pair else { return None };
-    match (holds(a), holds(b)) {
-        (true, false) => Some([a.x, b.x]),
-        (false, true) => Some([b.x, a.x]),
-        _ => None,
-    }
-}
-
-/// The last point of a step at which something holds and the first at which it does not, to a part of the step; not where they are
+/// The last points at which something holds and the first at which it does not, to a part of a step; not where they are
 /// known.
-fn halved(
-    [mut inside, mut outside]: [f64; 2],
+fn edges(
+    found: &[Found],
     known: &[f64],
     holds: fn(&Point) -> bool,
     halvings: usize,
     at: &mut dyn FnMut(f64) -> Result<Found>,
 ) -> Result<Vec<Found>> {
-    let (mut last, mut first) = (None, None);
-    for _ in 0..halvings {
-        let middle = (inside * outside).sqrt();
-        let tried = at(middle)?;
-        if holds(&tried.0) {
-            (inside, last) = (middle, Some(tried));
-        } else {
-            (outside, first) = (middle, Some(tried));
+    let mut edges = Vec::new();
+    for pair in found.windows(2) {
+        let [(a, _), (b, _)] = pair else { continue };
+        let (mut inside, mut outside) = match (holds(a), holds(b)) {
+            (true, false) => (a.x, b.x),
+            (false, true) => (b.x, a.x),
+            _ => continue,
+        };
+        let (mut last, mut first) = (None, None);
+        for _ in 0..halvings {
+            let middle = (inside * outside).sqrt();
+            let tried = at(middle)?;
+            if holds(&tried.0) {
+                (inside, last) = (middle, Some(tried));
+            } else {
+                (outside, first) = (middle, Some(tried));
+            }
         }
+        // What is known exactly needs no neighbour inside.
+        edges.extend(last.filter(|(point, _)| !known.iter().any(|at| (point.x / at - 1.0).abs() < SAME)));
+        edges.extend(first);
     }
-    // What is known exactly needs no neighbour inside.
-    let is_known = |point: &Point| known.iter().any(|at| (point.x / at - 1.0).abs() < SAME);
-    Ok(last.filter(|(point, _)| !is_known(point)).into_iter().chain(first).collect())
+    Ok(edges)
 }
 
 /// One point, and the limits on the second quantity there.
@@ -260,7 +247,7 @@ fn point(
     at: f64,
     as_now: f64,
     given: &Circumstances<'_>,
-    solve: &mut Solver<'_>,
+    solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
 ) -> Result<Found> {
     let trial = task.forward(x, at);
     let here = CameraTask { camera: &trial.camera, distance_m: trial.distance_m, ..task.clone() };
@@ -315,7 +302,11 @@ fn record(lines: &mut Vec<LimitLine>, limit: &Limit, at: f64) {
 }
 
 /// One quantity solved for; of a speed the exposure is the one that is varied, not the least one.
-fn solved(task: &CameraTask<'_>, quantity: Quantity, solve: &mut Solver<'_>) -> Result<Solution> {
+fn solved(
+    task: &CameraTask<'_>,
+    quantity: Quantity,
+    solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
+) -> Result<Solution> {
     let solution = solve(task, if quantity == Quantity::Speed { Quantity::Exposure } else { quantity })?;
     if quantity != Quantity::Speed {
         return Ok(solution);
@@ -363,9 +354,15 @@ mod tests {
         let given =
             Circumstances { bands: &bands, speed_m_s: Some(10.0), time_s: None, brightest: &|_| Ok(0.0) };
         let alone = task.solve(x, shot).unwrap().value;
-        trace(&task, (x, y), shot(&task.own()).unwrap(), alone, &given, Resolution::FINE, &|| {
-            Box::new(|task, quantity| task.solve(quantity, shot))
-        })
+        trace(
+            &task,
+            (x, y),
+            shot(&task.own()).unwrap(),
+            alone,
+            &given,
+            Resolution::FINE,
+            &mut |task, quantity| task.solve(quantity, shot),
+        )
         .unwrap()
     }
 

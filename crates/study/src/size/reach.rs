@@ -113,11 +113,6 @@ impl<'a> Reach<'a> {
         Self { study, alternative, own, elsewhere: None, state: None, few_counts: false }
     }
 
-    /// Leaves the state that was followed last, so that what comes next does not depend on what was before.
-    pub(crate) fn forget(&mut self) {
-        (self.state, self.few_counts) = (None, false);
-    }
-
     /// The statistical distance of a trial, its nearest state followed from the trial before.
     pub(crate) fn followed(&mut self, trial: &Trial) -> Result<f64> {
         let start = self.state.take();

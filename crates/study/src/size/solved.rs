@@ -13,7 +13,6 @@ use super::{Solutions, Study, Surface};
 use crate::Shortfall;
 use hadar::error::Result;
 use hadar::instrument::Camera;
-use hadar::parallel;
 use hadar::policy::caps::{self, Circumstances, Limit};
 use hadar::policy::{CameraTask, CapCode, Quantity, Solution, Trial};
 
@@ -24,7 +23,7 @@ impl Study {
     /// What limits figures of the camera beside the statistical distance.
     pub(crate) fn circumstances<'a>(
         &'a self,
-        brightest: &'a (dyn Fn(&Trial) -> Result<f64> + Sync),
+        brightest: &'a dyn Fn(&Trial) -> Result<f64>,
     ) -> Circumstances<'a> {
         let requirement = &self.scenario.requirement;
         Circumstances {
@@ -57,25 +56,21 @@ impl Study {
         let brightest = |trial: &Trial| self.brightest(trial);
         let given = self.circumstances(&brightest);
         let targets = self.other_targets();
-        let reaches = || {
-            let mut others = Vec::new();
-            for study in std::iter::once(self).chain(&targets) {
-                let is_new = |other: &&Surface| {
-                    !std::ptr::eq(study, self) || other.emissivity != alternative.emissivity
-                };
-                others.extend(self.all_alternatives().filter(is_new).map(|other| Reach::new(study, other)));
-            }
-            (Reach::new(self, alternative), others)
-        };
-        let solved = parallel::booked_with(quantities.len(), reaches, |(first, others), i| {
-            first.forget();
-            others.iter_mut().for_each(Reach::forget);
-            let mut found = solve_all(first, others, &task, quantities[i])?;
+        let mut first = Reach::new(self, alternative);
+        let mut others = Vec::new();
+        for study in std::iter::once(self).chain(&targets) {
+            let is_new =
+                |other: &&Surface| !std::ptr::eq(study, self) || other.emissivity != alternative.emissivity;
+            others.extend(self.all_alternatives().filter(is_new).map(|other| Reach::new(study, other)));
+        }
+        let mut solved = Vec::with_capacity(quantities.len());
+        for &quantity in quantities {
+            let mut found = solve_all(&mut first, &mut others, &task, quantity)?;
             if let Some(value) = found.value {
-                found.caps = caps::broken(quantities[i], value, &task, &given)?;
+                found.caps = caps::broken(quantity, value, &task, &given)?;
             }
-            Ok((quantities[i], found))
-        })?;
+            solved.push((quantity, found));
+        }
         Ok(Solutions(solved))
     }
 

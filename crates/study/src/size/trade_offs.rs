@@ -61,11 +61,16 @@ impl Study {
             .and_then(|(_, found)| found.value.or(found.necessary));
         // What is proved of the camera is what is solved for, a little more than is asked: so the camera itself does as now.
         let as_now = result.verdict.lower.unwrap_or(0.0) * (1.0 - 2.0 * SURELY);
-        let solver = || -> trade_off::Solver<'_> {
-            let mut reach = Reach::new(self, alternative);
-            Box::new(move |task, quantity| reach.solve(task, quantity))
-        };
-        let curve = trade_off::trace(&self.task(camera), pair, as_now, alone, &given, resolution, &solver)?;
+        let mut reach = Reach::new(self, alternative);
+        let curve = trade_off::trace(
+            &self.task(camera),
+            pair,
+            as_now,
+            alone,
+            &given,
+            resolution,
+            &mut |task, quantity| reach.solve(task, quantity),
+        )?;
         Ok(Some(curve).filter(TradeOff::has_solution))
     }
 }
