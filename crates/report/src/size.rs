@@ -79,31 +79,6 @@ pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &
     Ok(drawn)
 }
 
-/// How finely curves are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Detail {
-    /// For a picture that stays.
-    Fine,
-    /// For one that is drawn anew in a moment, while a slider moves.
-    Coarse,
-}
-
-impl Detail {
-    const fn photon_numbers(self) -> usize {
-        match self {
-            Self::Fine => 81,
-            Self::Coarse => 41,
-        }
-    }
-
-    const fn trade_off(self) -> Resolution {
-        match self {
-            Self::Fine => Resolution::FINE,
-            Self::Coarse => Resolution::COARSE,
-        }
-    }
-}
-
 /// The two pictures that change with every figure of the camera: information against photons, and one trade-off.
 ///
 /// # Errors
@@ -112,16 +87,16 @@ pub fn followed(
     study: &Study,
     result: &Sizing,
     traded: Option<(Quantity, Quantity)>,
-    detail: Detail,
+    resolution: Resolution,
 ) -> Result<Bundle> {
     let limiting = rows::limiting(result).zip(study.alternative(&result.limiting));
     let plots = parallel::booked(2, |i| match i {
         0 => Ok(limiting
-            .map(|(pair, surface)| identifiability(study, result, pair, surface, detail))
+            .map(|(pair, surface)| identifiability(study, result, pair, surface, resolution))
             .transpose()?
             .flatten()),
         _ => {
-            let curve = traded.map(|pair| study.trade_off(result, pair, detail.trade_off())).transpose()?;
+            let curve = traded.map(|pair| study.trade_off(result, pair, resolution)).transpose()?;
             Ok(curve.flatten().map(|curve| trade_off::trade_off(&curve, result)))
         }
     })?;
@@ -136,7 +111,7 @@ fn identifiability(
     result: &Sizing,
     pair: &PairResult,
     surface: &Surface,
-    detail: Detail,
+    resolution: Resolution,
 ) -> Result<Option<Plot>> {
     if result.requirement.photons_bounds[0].is_none() {
         return Ok(None);
@@ -150,7 +125,7 @@ fn identifiability(
         required_distance: study.required_distance(),
     };
     let [nearest, local] = [pair.distance_nearest, pair.distance_local];
-    let curves = study.information_curves(surface, nearest, local, detail.photon_numbers())?;
+    let curves = study.information_curves(surface, nearest, local, 2 * resolution.points - 1)?;
     Ok(Some(figures::identifiability(&curves, &pair.target, &pair.alternative, &marks)))
 }
 
@@ -161,7 +136,7 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
         result.pairs.iter().zip(study.alternatives()).find(|(pair, _)| pair.alternative == result.limiting);
     let Some((pair, surface)) = limiting else { return Ok(drawn) };
     let (target, other) = (pair.target.as_str(), pair.alternative.as_str());
-    drawn.extend(identifiability(study, result, pair, surface, Detail::Fine)?);
+    drawn.extend(identifiability(study, result, pair, surface, Resolution::FINE)?);
     if let Some((curve, object)) = study.object_curve(surface)?.zip(result.object.as_ref()) {
         let required = result.requirement.distance;
         drawn.push(figures::object(&curve, object, [target, other], required));

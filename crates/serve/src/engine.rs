@@ -11,10 +11,11 @@ use hadar::error::Result;
 use hadar::inputs::{self, Inputs, inputs_of};
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
+use hadar::policy::trade_off::Resolution;
 use hadar_report::bundle::About;
 use hadar_report::json;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
-use hadar_report::size::{self, Detail, rows};
+use hadar_report::size::{self, rows};
 use hadar_report::text::{between, photons_between, significant};
 use hadar_report::words::Say;
 use hadar_report::words::probability::probability;
@@ -255,7 +256,8 @@ fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
     let pairs = study.traded_off();
     let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
     let pair = pairs.iter().find(wanted).or(pairs.first());
-    let detail = if ask.full { Detail::Fine } else { Detail::Coarse };
+    // While a slider moves, coarse curves.
+    let resolution = if ask.full { Resolution::FINE } else { Resolution::COARSE };
     let met = result.verdict.met;
     Ok(Answer {
         met,
@@ -266,7 +268,7 @@ fn shown(study: &Study, ask: &Ask) -> Result<Answer> {
         pairs: result.pairs.iter().map(pair_shown).collect(),
         conditions: result.verdict.conditions.iter().map(Said::from).collect(),
         warnings: result.warnings.iter().map(Said::from).collect(),
-        pictures: size::followed(study, &result, pair.copied(), detail)?.drawings()?,
+        pictures: size::followed(study, &result, pair.copied(), resolution)?.drawings()?,
         trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
         trade_off: pair.map(|pair| pair.1.key().to_owned()),
         text: ask.full.then(|| size::text(&result, study)),

@@ -4,7 +4,7 @@
 //! fixed lens with that of the scenario's own camera if it states one, else with those that a document names for them.
 
 use crate::engine::Engine;
-use crate::rules::told;
+use crate::said::told;
 use crate::size_limit::{self, Command};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};

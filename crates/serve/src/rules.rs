@@ -2,7 +2,7 @@
 
 use crate::engine::Engine;
 use crate::packs::{self, Pack};
-use crate::said::{Said, Told};
+use crate::said::{Said, told};
 use crate::size_limit::{self, Command};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
@@ -64,15 +64,6 @@ impl PreparedReforms {
     pub(crate) const fn is_quick(&self) -> bool {
         self.0.is_err()
     }
-}
-
-/// What the page gets.
-#[derive(Debug, Serialize)]
-struct Answered<T> {
-    /// The answer; none where there is an error.
-    answer: Option<T>,
-    /// What is wrong.
-    error: Option<Told>,
 }
 
 /// An answer as it is shown.
@@ -241,13 +232,6 @@ fn asked_day(on: Option<&str>) -> Result<Option<Date>> {
     let wrong =
         || Error::malformed(format!("`{text}` is no day"), "write year, month and day, as in 2029-09-01");
     day(text).map(Some).ok_or_else(wrong)
-}
-
-pub(crate) fn told<T: Serialize>(answer: Result<T>) -> Result<String> {
-    json::line(&match answer {
-        Ok(answer) => Answered { answer: Some(answer), error: None },
-        Err(error) => Answered { answer: None, error: Some(Told::from(&error)) },
-    })
 }
 
 fn rests_on(answer: &RuleAnswer) -> Vec<RestsOn> {

@@ -1,6 +1,7 @@
 //! Warnings, conditions and mistakes as a page shows them.
 
-use hadar::error::Error;
+use hadar::error::{Error, Result};
+use hadar_report::json;
 use hadar_report::words::Say;
 use hadar_report::words::warnings::of_code;
 use hadar_study::Condition;
@@ -46,4 +47,21 @@ impl From<&Error> for Told {
         };
         Self { message: error.to_string(), line: place.line, key: place.key }
     }
+}
+
+/// What the page gets.
+#[derive(Debug, Serialize)]
+struct Answered<T> {
+    /// The answer; none where there is an error.
+    answer: Option<T>,
+    /// What is wrong.
+    error: Option<Told>,
+}
+
+/// An answer, or what is wrong, as JSON.
+pub(crate) fn told<T: Serialize>(answer: Result<T>) -> Result<String> {
+    json::line(&match answer {
+        Ok(answer) => Answered { answer: Some(answer), error: None },
+        Err(error) => Answered { answer: None, error: Some(Told::from(&error)) },
+    })
 }

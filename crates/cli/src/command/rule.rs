@@ -168,7 +168,7 @@ fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     Ok(code(args, &answer))
 }
 
-/// How exact must a surrogate target be?.
+/// How exact a surrogate target must be.
 fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Global) -> Result<u8> {
     let bar = global.progress("stand-ins");
     let answer = study.stand_in(library, on, &|done, all| bar.set(done, all))?;

@@ -44,6 +44,29 @@ function readable(figure, target, svg) {
     return off < best.off ? { i, off } : best;
   }, { i: -1, off: Infinity });
 
+  const valueAt = ([, isLog, first, last], part) => {
+    const value = first + part * (last - first);
+    return isLog ? 10 ** value : value;
+  };
+  // The point of a series that is nearest across, if it is near.
+  function point(x, xs, ys, part) {
+    const { i, off } = nearest(x, xs, part);
+    return off < 0.03 ? { at: xs[i], value: ys[i] } : {};
+  }
+  // Where a drawn line is at a place: straight between its points, on the scales of the axes. Between points without a value there is none.
+  function along(x, y, xs, ys, part) {
+    let isWithin = false;
+    for (let i = 1; i < xs.length; i += 1) {
+      const [a, b] = [share(x, xs[i - 1]), share(x, xs[i])];
+      if (a === null || b === null || part < Math.min(a, b) || part > Math.max(a, b)) continue;
+      isWithin = true;
+      const [low, high] = [share(y, ys[i - 1]), share(y, ys[i])];
+      if (low === null || high === null || a === b) continue;
+      return { at: valueAt(x, part), value: valueAt(y, low + (part - a) / (b - a) * (high - low)) };
+    }
+    return isWithin ? { at: valueAt(x, part), value: null } : {};
+  }
+
   // The panel, and the place within it as shares of its width and height, from the left and from below.
   let panel = 0;
   let place = { x: 0.5, y: 0.5 };
@@ -55,16 +78,18 @@ function readable(figure, target, svg) {
     const line = (x1, y1, x2, y2) => marked("line", { x1, y1, x2, y2, stroke: "#1A1A1A", "stroke-width": scale, "stroke-dasharray": 4 * scale });
     const ring = (cx, cy) => marked("circle", { cx, cy, r: 4 * scale, stroke: "#1A1A1A", "stroke-width": 1.5 * scale, fill: "#FFFFFF" });
     if (curves) {
-      const found = curves.map(([label, xs, ys]) => ({ label, xs, ys, ...nearest(x, xs, place.x) })).filter((one) => one.off < 0.03);
-      if (found.length === 0) return;
-      const value = found.reduce((best, one) => one.off < best.off ? one : best);
+      const here = valueAt(x, place.x);
+      const found = curves.map(([label, xs, ys, isLine]) => ({ label, ...(isLine ? along(x, y, xs, ys, place.x) : point(x, xs, ys, place.x)) }))
+        .filter((one) => one.at !== undefined);
       line(px(place.x), py(0), px(place.x), py(1));
-      const parts = found.map(({ label, xs, ys, i }) => {
-        const high = share(y, ys[i]);
-        if (high !== null && high >= 0 && high <= 1) ring(px(share(x, xs[i])), py(high));
-        return `${label}: ${number(ys[i])}`;
+      const parts = found.map(({ label, at, value }) => {
+        const high = share(y, value);
+        if (high !== null && high >= 0 && high <= 1) ring(px(share(x, at)), py(high));
+        // A point beside the line says where it is.
+        const beside = at === here ? "" : ` at ${number(at, 4)}`;
+        return `${label}${label && ": "}${number(value)}${beside}`;
       });
-      said.textContent = `${named(x[0], value.xs[value.i], 4)}. ${y[0]}: ${parts.join("; ")}`;
+      said.textContent = `${named(x[0], here, 4)}. ${parts.length > 0 ? `${y[0]}: ${parts.join("; ")}` : "Nothing is drawn here."}`;
     } else if (columns) {
       const [column, row] = [nearest(x, columns, place.x).i, nearest(y, rows, place.y).i];
       ring(px(share(x, columns[column])), py(share(y, rows[row])));

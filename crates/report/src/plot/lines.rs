@@ -86,7 +86,9 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
         bottom = area.bottom;
         draw_panel(&mut scene, part, &x, y, area);
         let axes = [(figure.x.title.as_str(), &x.ruler), (part.panel.y.title.as_str(), &y.ruler)];
-        let curves = part.panel.series.iter().map(|one| (one.label.as_str(), &one.x[..], &one.y[..]));
+        let is_line = |one: &Series| one.style != Style::Points;
+        let curves =
+            part.panel.series.iter().map(|one| (one.label.as_str(), [&one.x[..], &one.y], is_line(one)));
         scene.readable.push(Readable::curves(area.sides(), axes, curves));
         if i == 0 {
             x.draw_secondary(&mut scene, &area);

@@ -2,14 +2,15 @@
 //!
 //! An SVG file carries this as JSON in its `<metadata>`, which no viewer shows; `html/readings.js` reads it in a page. Numbers have four
 //! digits, one more than is printed. Sides of a panel (left, top, right, bottom) are in logical pixels; an axis is its title, whether it is
-//! logarithmic, and its first and last value on that scale. A curve of more points than [`MOST_POINTS`] is thinned, a map of more cells than [`MOST_CELLS`]
+//! logarithmic, and its first and last value on that scale; a series has its name, its positions, its values, and whether it may be read
+//! between them. A curve of more points than [`MOST_POINTS`] is thinned, a map of more cells than [`MOST_CELLS`]
 //! has none.
 
 use super::axis::{Ruler, Scale};
 use super::text;
 use serde_json::{Value, json};
 
-const MOST_POINTS: usize = 200;
+const MOST_POINTS: usize = 600;
 const MOST_CELLS: usize = 5000;
 
 /// A panel whose numbers can be read off.
@@ -17,17 +18,18 @@ const MOST_CELLS: usize = 5000;
 pub(super) struct Readable(Value);
 
 impl Readable {
-    /// Curves, by name, over a horizontal axis.
+    /// Series by name over a horizontal axis, and whether a line joins their points.
     pub(super) fn curves<'a>(
         sides: [f64; 4],
         [x, y]: [(&str, &Ruler); 2],
-        curves: impl Iterator<Item = (&'a str, &'a [f64], &'a [f64])>,
+        curves: impl Iterator<Item = (&'a str, [&'a [f64]; 2], bool)>,
     ) -> Self {
-        let curves = curves.filter(|(name, ..)| !name.is_empty()).map(|(name, x, y)| {
+        let curves = curves.map(|(name, [x, y], is_line)| {
             let step = x.len().div_ceil(MOST_POINTS).max(1);
             let thinned =
                 |values: &[f64]| -> Vec<Value> { values.iter().step_by(step).map(rounded).collect() };
-            json!([text::clean(name), thinned(x), thinned(y)])
+            // Between points that were left out a line may go anywhere.
+            json!([text::clean(name), thinned(x), thinned(y), is_line && step == 1])
         });
         Self(
             json!({ "at": sides.map(|side| digits(side, 5)), "x": axis(x), "y": axis(y), "curves": curves.collect::<Vec<_>>() }),
@@ -106,11 +108,11 @@ mod tests {
         let area = [10.0, 20.0, 110.0, 70.5];
         let x = Ruler::fit(Scale::Log, Some((1.0, 1000.0)), std::iter::empty(), 0.0);
         let y = Ruler::fit(Scale::Linear, Some((0.0, 0.5)), std::iter::empty(), 0.0);
-        let curve = ("a <b>", [1.0, 12_345.678].as_slice(), [f64::INFINITY, 0.123_456].as_slice());
+        let curve = ("a <b>", [&[1.0, 12_345.678][..], &[f64::INFINITY, 0.123_456]], true);
         let panel = Readable::curves(area, [("photons", &x), ("bits", &y)], std::iter::once(curve));
         assert_eq!(
             element(&[panel]),
-            "<metadata>[{\"at\":[10,20,110,70.5],\"curves\":[[\"a \\u003cb\\u003e\",[1,12350],[null,0.1235]]],\
+            "<metadata>[{\"at\":[10,20,110,70.5],\"curves\":[[\"a \\u003cb\\u003e\",[1,12350],[null,0.1235],true]],\
              \"x\":[\"photons\",true,0,3],\"y\":[\"bits\",false,0,0.5]}]</metadata>\n"
         );
     }
@@ -121,8 +123,11 @@ mod tests {
         let ruler = Ruler::fit(Scale::Linear, Some((0.0, 1.0)), std::iter::empty(), 0.0);
         let long: Vec<f64> = (0..10_000).map(f64::from).collect();
         let axes = [("x", &ruler), ("y", &ruler)];
-        let made = Readable::curves(area, axes, std::iter::once(("a", long.as_slice(), long.as_slice())));
-        assert_eq!(made.0["curves"][0][1].as_array().map(Vec::len), Some(MOST_POINTS));
+        let made = Readable::curves(area, axes, std::iter::once(("a", [&long[..], &long], true)));
+        assert!(
+            made.0["curves"][0][1].as_array().is_some_and(|kept| (300..=MOST_POINTS).contains(&kept.len()))
+        );
+        assert_eq!(made.0["curves"][0][3], false);
         let places = [("x", &ruler, long.as_slice()), ("y", &ruler, &[1.0][..])];
         assert!(Readable::cells(area, places, ("z", &long)).is_none());
     }

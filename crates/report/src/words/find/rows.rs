@@ -5,7 +5,7 @@ use crate::text::numbers::{between, listed, significant};
 use crate::words::Say;
 use hadar::words::quantity;
 use hadar_study::Condition;
-use hadar_study::find::{Choice, FindAnswer, Why};
+use hadar_study::find::{Choice, Failed, FindAnswer, Why};
 use serde::Serialize;
 
 /// A camera as a page lists it.
@@ -33,8 +33,11 @@ pub struct Row {
     pub scenario: Option<String>,
 }
 
-/// Those that meet, the first first; those of which it is not shown; the others with the reason. Cameras that nobody can order, and of which
-/// figures or a lens are missing, are left out: how many, the text says.
+const UNDECIDED: &str = "undecided";
+const DOES_NOT_MEET: &str = "does not meet";
+
+/// Those that meet, the best first; undecided ones; the others with the reason. Cameras that nobody can order, and those of which figures or
+/// a lens are missing, are in the text alone.
 #[must_use]
 pub fn rows(found: &FindAnswer) -> Vec<Row> {
     let met = found.listed.iter().chain(&found.also).map(|choice| {
@@ -49,25 +52,21 @@ pub fn rows(found: &FindAnswer) -> Vec<Row> {
         }
     });
     let undecided = found.undecided.iter().map(|choice| {
-        chosen(choice, "undecided", "what is proved does not reach the distance, what was found does".into())
+        chosen(choice, UNDECIDED, "what is proved does not reach the distance, what was found does".into())
     });
     let near = found.near.as_ref().map(|near| &near.choice);
+    let is_near = |one: &&Failed| {
+        near.is_some_and(|near| near.camera == one.camera && Some(&near.lens) == one.lens.as_ref())
+    };
+    let reason = found.failed.iter().find(is_near);
     let nearest = near.map(|choice| {
-        let failed = found.failed.iter().find(|one| one.camera == choice.camera);
-        chosen(
-            choice,
-            "does not meet",
-            failed.map_or_else(String::new, |one| why(one, found.required_distance)),
-        )
+        let why = reason.map_or_else(String::new, |one| why(one, found.required_distance));
+        chosen(choice, reason.map_or(DOES_NOT_MEET, told), why)
     });
-    let is_shown = |why: &Why| !matches!(why, Why::Figures { .. } | Why::NoLens | Why::NotSold);
-    let others = found.failed.iter().filter(|one| {
-        is_shown(&one.why)
-            && near.is_none_or(|near| near.camera != one.camera || Some(&near.lens) != one.lens.as_ref())
-    });
-    let others = others.map(|one| Row {
+    let is_shown = |one: &&Failed| !matches!(one.why, Why::Figures { .. } | Why::NoLens | Why::NotSold);
+    let others = found.failed.iter().filter(|one| is_shown(one) && !is_near(one)).map(|one| Row {
         camera: one.camera.clone(),
-        told: if one.why == Why::Undecided { "undecided" } else { "does not meet" },
+        told: told(one),
         why: why(one, found.required_distance),
         lens: one.lens.as_ref().map(lens).unwrap_or_default(),
         filters: String::new(),
@@ -78,6 +77,10 @@ pub fn rows(found: &FindAnswer) -> Vec<Row> {
         scenario: None,
     });
     met.chain(undecided).chain(nearest).chain(others).collect()
+}
+
+fn told(failed: &Failed) -> &'static str {
+    if failed.why == Why::Undecided { UNDECIDED } else { DOES_NOT_MEET }
 }
 
 fn chosen(choice: &Choice, told: &'static str, why: String) -> Row {

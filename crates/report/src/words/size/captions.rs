@@ -46,7 +46,7 @@ pub(crate) fn trade_off(curve: &TradeOff, camera: &str) -> String {
     let allowed = curve.points.iter().any(|point| point.within_limits.is_some());
     let none = if allowed { "" } else { " No point shown is within all limits." };
     format!(
-        "All other figures as of {camera}. The signal suffices {side} the curve; dotted and grey lines are limits other than shot \
-         noise, of which λF alone forbids nothing.{none}"
+        "All other figures as of {camera}. The signal suffices {side} the curve. Dotted and grey lines are limits other than noise; \
+         that of diffraction, λF, is a warning alone.{none}"
     )
 }

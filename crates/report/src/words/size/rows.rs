@@ -47,7 +47,7 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
     let mut row = |label, value, key| rows.push(Row { label, value, key });
     row("photons at the detector", significant(camera.photons, 4), "camera.photons");
     let of_band = match camera.camera.frames {
-        1 => "electronic noise of a band reading",
+        1 => "electronic noise of a reading",
         _ => "electronic noise of a band",
     };
     row(of_band, format!("{} counts", significant(camera.noise_counts, 4)), "camera.noise_counts");

@@ -38,7 +38,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         };
         let _ = writeln!(out, "{name} in this scene");
         for row in rows::of_camera(result, study) {
-            let _ = writeln!(out, "  {:<34} {}", row.label, row.value);
+            let _ = writeln!(out, "  {:<33}  {}", row.label, row.value);
         }
         out.push('\n');
     }
@@ -46,7 +46,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
     if !of_object.is_empty() {
         let _ = writeln!(out, "All readings of the object together");
         for row in of_object {
-            let _ = writeln!(out, "  {:<34} {}", row.label, row.value);
+            let _ = writeln!(out, "  {:<33}  {}", row.label, row.value);
         }
         out.push('\n');
     }
@@ -153,9 +153,9 @@ pub(crate) fn solutions(result: &Sizing, units: Units) -> String {
             true => format!("{:<18} {now}{}", row.value, row.remark),
             false => row.value,
         };
-        let _ = writeln!(out, "  {:<34} {}", row.label, answer.trim_end());
+        let _ = writeln!(out, "  {:<33}  {}", row.label, answer.trim_end());
         for cap in row.caps {
-            let _ = writeln!(out, "  {:<34} {cap}", "");
+            let _ = writeln!(out, "  {:<33}  {cap}", "");
         }
     }
     out.push('\n');
@@ -178,7 +178,7 @@ fn sensitivity(result: &Sizing) -> String {
     let levers: Vec<String> = levers.collect();
     let levers = if levers.is_empty() { "nothing".into() } else { levers.join(", ") };
     let mut line = |label: &str, text: String| {
-        let _ = writeln!(out, "  {label:<34} {text}");
+        let _ = writeln!(out, "  {label:<33}  {text}");
     };
     line("1 % more of it changes d by", levers);
     let of = &found.emissivity;
