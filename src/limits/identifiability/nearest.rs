@@ -37,6 +37,7 @@ use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance, Unknowns};
 use crate::order;
 use crate::scene::{State, Surroundings};
+use crate::simd::LANES;
 use crate::spectrum::Bands;
 
 /// Bands that are enough for a first look.
@@ -93,7 +94,7 @@ impl<'a> NearestSolver<'a> {
         Self {
             comparison: Comparison::new(bands, surroundings, unknowns, range),
             table: None,
-            merging: Some(bands.len() / FEW_BANDS).filter(|count| *count > 1),
+            merging: Some(bands.len() / FEW_BANDS).map(in_chunks).filter(|count| *count > 1),
             memory: Memory::default(),
             tolerance: None,
         }
@@ -254,7 +255,7 @@ impl<'a> NearestSolver<'a> {
         enough: f64,
     ) -> Result<NearestDistance> {
         let target = self.comparison.aim(emissivity, alternative, state, metric)?;
-        let own_cost = self.comparison.cost(&target, state);
+        let own_cost = if enough > 0.0 { self.comparison.cost(&target, state) } else { f64::INFINITY };
         if own_cost < enough * enough && self.comparison.space.within_range(state) == *state {
             // The target's own state is near enough.
             let at_edge = self.comparison.space.edges(state);
@@ -274,8 +275,11 @@ impl<'a> NearestSolver<'a> {
         let starts = match (start, tolerance) {
             (Some(start), _) => vec![self.comparison.space.free_of(start, state)],
             // A proof finds other valleys by itself.
-            (None, Some(_)) => vec![state.clone()],
-            (None, None) => self.comparison.starts(&mut self.table, &target, own_cost, 0.0),
+            (None, Some(_)) => {
+                let downhill = self.comparison.downhill(&mut self.table, &target);
+                vec![downhill.unwrap_or_else(|| state.clone())]
+            }
+            (None, None) => self.comparison.starts(&mut self.table, &target, 0.0),
         };
         if self.descend_from(&target, starts, &mut best, enough) {
             return best.ok_or_else(nothing_in_range);
@@ -285,7 +289,7 @@ impl<'a> NearestSolver<'a> {
             if best.as_ref().is_none_or(|best| !best.is_proved_to(tolerance)) {
                 // Where it does not end, the search may know of one.
                 let before = best.as_ref().map_or(f64::INFINITY, |best| best.distance);
-                let starts = self.comparison.starts(&mut self.table, &target, own_cost, 0.0);
+                let starts = self.comparison.starts(&mut self.table, &target, 0.0);
                 self.descend_from(&target, starts, &mut best, enough);
                 if best.as_ref().is_some_and(|best| best.distance < before) {
                     self.prove(&target, &mut best, tolerance);
@@ -382,8 +386,7 @@ impl<'a> NearestSolver<'a> {
         reach: f64,
     ) -> Result<Vec<NearestDistance>> {
         let target = self.comparison.aim(emissivity, alternative, state, Metric::Counting(counting))?;
-        let own_cost = self.comparison.cost(&target, state);
-        let starts = self.comparison.starts(&mut self.table, &target, own_cost, reach);
+        let starts = self.comparison.starts(&mut self.table, &target, reach);
         let mut minima: Vec<NearestDistance> =
             starts.into_iter().map(|start| refine(&mut self.comparison, &target, start, None, 0.0)).collect();
         order::ascending(&mut minima, |a| a.distance);
@@ -399,6 +402,11 @@ impl<'a> NearestSolver<'a> {
         }
         Ok(distinct)
     }
+}
+
+/// No more than that, in whole chunks where there is one.
+fn in_chunks(count: usize) -> usize {
+    if count < LANES { count } else { count - count % LANES }
 }
 
 fn nothing_in_range() -> Error {

@@ -102,9 +102,13 @@ pub(super) struct Comparison<'a> {
     surface: Jacobian<'a>,
     pub(super) target: Jacobian<'a>,
     work: Workspace,
+    /// Lowest and highest wavenumber.
+    pub(super) range_cm1: (f64, f64),
     pub(super) blackbodies: Arc<Blackbodies>,
     /// The state that was compared last, and whether with columns.
     compared: Option<(State, bool)>,
+    /// The state whose terms were measured last, and their size.
+    measured: Option<(State, f64)>,
 }
 
 impl<'a> Comparison<'a> {
@@ -119,8 +123,10 @@ impl<'a> Comparison<'a> {
             surface: Jacobian::new(bands, surroundings),
             target: Jacobian::new(bands, surroundings),
             work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
+            range_cm1: bands.range_cm1(),
             blackbodies: Arc::default(),
             compared: None,
+            measured: None,
         }
     }
 
@@ -139,7 +145,7 @@ impl<'a> Comparison<'a> {
         if let Metric::Counting(counting) = metric {
             counting.check(self.target.bands().len())?;
         }
-        self.compared = None;
+        (self.compared, self.measured) = (None, None);
         self.target.evaluate(emissivity, alternative, state, &[], false);
         let total = crate::sum::sum(self.target.signal());
         // Per photon there must be some; counts may be none.
@@ -220,6 +226,11 @@ impl<'a> Comparison<'a> {
         let mut residual = vec![0.0; other.len()];
         quotients_into(target.counts, &self.work.separation, [&self.work.root, &other], &mut residual);
         (residual, other)
+    }
+
+    /// B(T′) and ∂B/∂T′ at the nodes, of the state that was compared last.
+    pub(super) fn radiances(&self) -> [&[f64]; 2] {
+        [self.surface.radiance(), self.surface.radiance_slope()]
     }
 
     /// Bands of the target in which a state counts as good as nothing.

@@ -10,6 +10,7 @@
 //! values. Priors add their squares, but those of the gain and of lighting beside it, which are not quadratic in that. With a known total
 //! of the lighting the full linearised problem is used instead.
 
+mod downhill;
 mod fit;
 mod table;
 mod whitened;
@@ -40,17 +41,16 @@ struct Start {
 }
 
 impl Comparison<'_> {
-    /// States to refine from: the target's own, which costs `own_cost`, and one for every minimum along T′. Left out
+    /// States to refine from: the target's own, and one for every minimum along T′. Left out
     /// are those that are both many times as costly as the cheapest and more than `reach` farther away.
     pub(super) fn starts(
         &mut self,
         table: &mut Option<EmissionTable>,
         target: &Target<'_>,
-        own_cost: f64,
         reach: f64,
     ) -> Vec<State> {
         let own = self.space.within_range(target.state);
-        let own_cost = if own == *target.state { own_cost } else { self.cost(target, &own) };
+        let own_cost = self.cost(target, &own);
         if !self.space.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
         }
@@ -110,7 +110,7 @@ impl Comparison<'_> {
         let mut top = table.step_of_emission(&weights, 4.0 * signal, low, high);
         if self.space.unknowns.contains(Nuisance::Gain) {
             // The scale says nothing of T′ then, only the shape: from deep in the Wien tail to Rayleigh–Jeans.
-            let (first, last) = self.target.bands().range_cm1();
+            let (first, last) = self.range_cm1;
             bottom = bottom.min(step_at((SECOND_RADIATION_CM_K * first / 60.0).max(low)));
             top = top.max(step_at((SECOND_RADIATION_CM_K * last * 100.0).min(high)));
         }
@@ -127,46 +127,17 @@ impl Comparison<'_> {
         grid: &[&Emission],
     ) -> Vec<Start> {
         crate::stop::check();
-        let lit: Vec<usize> = self
-            .space
-            .parameters
-            .iter()
-            .filter_map(|parameter| if let Parameter::Lighting(k) = parameter { Some(*k) } else { None })
-            .collect();
-        let objects = own.lighting.len();
-        let surroundings = self.target.surroundings();
-        let mut scattered: Vec<Vec<f64>> =
-            (0..objects).map(|k| whitened.scattered(thinned, &surroundings.object_signal(k, own))).collect();
-        // Scattered light of factors that are known.
-        let mut known = vec![0.0; whitened.signal.len()];
-        for k in (0..objects).filter(|k| !lit.contains(k)) {
-            for (known, scattered) in known.iter_mut().zip(&scattered[k]) {
-                *known += own.lighting[k] * scattered;
-            }
-        }
-        let free = lit.iter().map(|&k| std::mem::take(&mut scattered[k])).collect();
-        let known_sum: f64 = (0..objects).filter(|k| !lit.contains(k)).map(|k| own.lighting[k]).sum();
-        let gain = self.space.unknowns.contains(Nuisance::Gain);
-        // Thinned bands hold so much less of the photons; a prior counts beside them as it does beside all.
-        let share = 1.0 / thinned.stride as f64;
-        let prior = |wanted: Parameter| {
-            let found = self.priors(target).find(|(i, _)| self.space.parameters[*i] == wanted);
-            found.map_or([0.0; 2], |(_, weight)| [weight * weight * share, value(target.state, wanted)])
-        };
-        let of_surroundings: f64 = (0..objects)
-            .map(|k| (prior(Parameter::EnvironmentTemperature(k)), own.environment_k[k]))
+        let fit = self.fit(target, thinned, whitened, own);
+        let of_surroundings: f64 = (0..own.environment_k.len())
+            .map(|k| {
+                (
+                    self.thinned_prior(target, thinned, Parameter::EnvironmentTemperature(k)),
+                    own.environment_k[k],
+                )
+            })
             .map(|([square, centre], t)| square * (t - centre) * (t - centre))
             .sum();
-        let fit = Fit {
-            priors: lit.iter().map(|&k| prior(Parameter::Lighting(k))).collect(),
-            free,
-            lit,
-            known,
-            range: self.space.bounds(Parameter::Lighting(0)),
-            sum_limit: self.space.lighting_sum() - known_sum,
-            gain,
-        };
-        let [square, centre] = prior(Parameter::Temperature);
+        let [square, centre] = self.thinned_prior(target, thinned, Parameter::Temperature);
         let with_priors = |fitted: Fitted, temperature_k: f64| {
             let off = temperature_k - centre;
             Fitted {
@@ -174,7 +145,8 @@ impl Comparison<'_> {
                 slope: fitted.slope + square * off,
             }
         };
-        if let Some(fits) = fit.along(whitened, own, grid) {
+        if let Some(alone) = fit.alone(whitened, own) {
+            let fits: Vec<(f64, Fitted)> = grid.iter().map(|emission| alone.at(emission)).collect();
             let state = |i: usize| {
                 let mut state = State { temperature_k: grid[i].temperature_k, ..own.clone() };
                 if let Some(&k) = fit.lit.first() {
@@ -195,6 +167,49 @@ impl Comparison<'_> {
             })
             .unzip();
         minima(&fitted, |i| states[i].clone())
+    }
+
+    /// The other unknowns in thinned bands.
+    fn fit(&self, target: &Target<'_>, thinned: &Thinned, whitened: &Whitened, own: &State) -> Fit {
+        let lit: Vec<usize> = self
+            .space
+            .parameters
+            .iter()
+            .filter_map(|parameter| if let Parameter::Lighting(k) = parameter { Some(*k) } else { None })
+            .collect();
+        let objects = own.lighting.len();
+        let surroundings = self.target.surroundings();
+        let mut scattered: Vec<Vec<f64>> =
+            (0..objects).map(|k| whitened.scattered(thinned, &surroundings.object_signal(k, own))).collect();
+        // Scattered light of factors that are known.
+        let mut known = vec![0.0; whitened.signal.len()];
+        for k in (0..objects).filter(|k| !lit.contains(k)) {
+            for (known, scattered) in known.iter_mut().zip(&scattered[k]) {
+                *known += own.lighting[k] * scattered;
+            }
+        }
+        let free = lit.iter().map(|&k| std::mem::take(&mut scattered[k])).collect();
+        let known_sum: f64 = (0..objects).filter(|k| !lit.contains(k)).map(|k| own.lighting[k]).sum();
+        let gain = self.space.unknowns.contains(Nuisance::Gain);
+        Fit {
+            priors: lit
+                .iter()
+                .map(|&k| self.thinned_prior(target, thinned, Parameter::Lighting(k)))
+                .collect(),
+            free,
+            lit,
+            known,
+            range: self.space.bounds(Parameter::Lighting(0)),
+            sum_limit: self.space.lighting_sum() - known_sum,
+            gain,
+        }
+    }
+
+    /// w² and centre of a prior, w = 0 for none. Thinned bands hold so much less of the photons; it counts beside them as it does beside all.
+    fn thinned_prior(&self, target: &Target<'_>, thinned: &Thinned, wanted: Parameter) -> [f64; 2] {
+        let share = 1.0 / thinned.stride as f64;
+        let found = self.priors(target).find(|(i, _)| self.space.parameters[*i] == wanted);
+        found.map_or([0.0; 2], |(_, weight)| [weight * weight * share, value(target.state, wanted)])
     }
 
     /// Minima by full linearisation: a few steps in the other unknowns with T′ held.

@@ -4,8 +4,9 @@ use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
 use super::priors::PriorAt;
 use super::prover::{Goal, Prover, temperature_of};
-use super::sources::Spectrum;
+use super::sources::{Spectrum, neighbours_summed};
 use super::vectors::{Weights, pulls_into, weights_into};
+use super::view::View;
 use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
@@ -38,8 +39,9 @@ impl Prover<'_, '_> {
         let gain = if self.all.allowed.gain_free { state.gain } else { 1.0 };
         let amplitudes: Vec<f64> =
             (0..count).map(|s| if s == 0 { gain } else { gain * state.lighting[s - 1] }).collect();
-        let spectra: Vec<Spectrum> =
-            (0..count).map(|s| self.all.spectrum(s, temperature_of(state, s))).collect();
+        let own = self.all.sources.of(0, state.temperature_k, comparison.radiances());
+        let others = (1..count).map(|s| self.all.spectrum(s, temperature_of(state, s)));
+        let spectra: Vec<Spectrum> = std::iter::once(own).chain(others).collect();
         let bands = self.all.root.len();
         let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
         pulls_into(&residual, &other, &self.all.root, [&mut pull, &mut seen, &mut kept]);
@@ -49,6 +51,47 @@ impl Prover<'_, '_> {
         let mut weight = vec![0.0; bands];
         weights_into(Weights { root: &root, other: &seen, reach, most: None, weight: &mut weight });
         Minimum { amplitudes, spectra, pull, root, other: seen, weight, priors, reach, cost }
+    }
+
+    /// The same minimum with neighbouring bands counted as one, as a view has them; none where bands were left out, of which their
+    /// sums would know.
+    pub(super) fn minimum_in(view: &View<'_>, minimum: &Minimum, count: usize) -> Option<Minimum> {
+        crate::stop::check();
+        let bands = view.sources.bands.len();
+        let Minimum { root, other, pull, priors, reach, .. } = minimum;
+        if other[..bands].contains(&0.0) {
+            return None;
+        }
+        // r(y + s) = N − N₀, and −p s = r.
+        let pairs = pull.iter().zip(root.iter().zip(other));
+        let differences: Vec<f64> = pairs.map(|(p, (y, s))| -p * s * (y + s)).collect();
+        let squares: Vec<f64> = other.iter().map(|s| s * s).collect();
+        let [differences, squares] = [differences, squares].map(|x| neighbours_summed(&x[..bands], count));
+        let other: Vec<f64> = squares.iter().map(|square| square.sqrt()).collect();
+        let pairs = differences.iter().zip(view.root.iter().zip(&other));
+        let residual: Vec<f64> = pairs.map(|(d, (y, s))| if *s > 0.0 { d / (y + s) } else { 0.0 }).collect();
+        let pulls = residual.iter().zip(&other);
+        let pull: Vec<f64> = pulls.map(|(r, s)| if *s > 0.0 { -r / s } else { 0.0 }).collect();
+        let of_priors: f64 = priors.iter().map(|prior| prior.residual * prior.residual).sum();
+        let mut weight = vec![0.0; other.len()];
+        weights_into(Weights {
+            root: &view.root,
+            other: &other,
+            reach: *reach,
+            most: None,
+            weight: &mut weight,
+        });
+        Some(Minimum {
+            amplitudes: minimum.amplitudes.clone(),
+            spectra: minimum.spectra.iter().map(|own| view.sources.summed(own, count)).collect(),
+            pull,
+            root: view.root.clone(),
+            other,
+            weight,
+            priors: priors.clone(),
+            reach: *reach,
+            cost: dot(&residual, &residual) + of_priors,
+        })
     }
 
     /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
@@ -63,7 +106,7 @@ impl Prover<'_, '_> {
         let Minimum { amplitudes, spectra, cost, .. } = minimum;
         let temperature_k: Vec<f64> = spectra.iter().map(|spectrum| spectrum.temperature_k).collect();
         let (count, cost, enough) = (spectra.len(), *cost, goal.enough);
-        let nu = self.all.sources.bands.range_cm1();
+        let nu = self.all.sources.range_cm1;
         // Beside one unknown temperature the intervals that follow are cheaper than a second attempt.
         let skipped = usize::from(self.all.axes.len() == 1);
         for width in &WIDTHS[skipped..] {

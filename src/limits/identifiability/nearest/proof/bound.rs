@@ -125,7 +125,7 @@ impl Bounder {
         let missed = |axis: usize| {
             let cold = self.places.iter().position(|place| matches!(place, Place::Low(own) if *own == axis));
             let amplitude = cold.map_or(0.0, |cold| self.point[cold].max(HARDLY * self.most[axis]));
-            amplitude * square_of_product(&self.half[axis], &view.later.about_target.weight).sqrt()
+            amplitude * square_of_product(&self.half[axis], &view.in_boxes().about_target.weight).sqrt()
         };
         let parts: Vec<f64> = (0..view.axes.len()).map(missed).collect();
         (0..parts.len()).max_by(|&i, &j| parts[i].total_cmp(&parts[j])).unwrap_or(0)
@@ -135,7 +135,7 @@ impl Bounder {
     fn about_target(&mut self, view: &View<'_>, allowed: &Amplitudes, enough: f64) -> f64 {
         let Self { places, low, rise, half, most, whitened, rows, residuals, .. } = self;
         let Self { square, quadratic, hull, pieces, memory, missed: each, .. } = self;
-        let metric = &view.later.about_target;
+        let metric = &view.in_boxes().about_target;
         let m = places.len();
         put_products(whitened, [low, rise], view, places, &metric.weight);
         let mut along: Vec<f64> = whitened[..m].iter().map(|column| dot(column, &metric.shift)).collect();
@@ -219,7 +219,7 @@ impl Bounder {
             columns.iter_mut().for_each(|column| column.resize(view.root.len(), 0.0));
         }
         for s in 0..view.sources.list.len() {
-            if let Some(spectrum) = &view.later.fixed[s] {
+            if let Some(spectrum) = &view.fixed[s] {
                 pieces.put_known(s, spectrum);
                 places.push(Place::Fixed(s));
                 continue;
@@ -255,7 +255,7 @@ impl Bounder {
                     let width_k = bright.along - dim.along;
                     let limited = s > 0 && !view.allowed.gain_free;
                     let cap = if limited {
-                        largest_share(&view.later.brightest, &dim.counts, &dim.slope, width_k)
+                        largest_share(view.brightest(), &dim.counts, &dim.slope, width_k)
                     } else {
                         f64::INFINITY
                     };

@@ -49,8 +49,8 @@ pub(in super::super) struct Memory {
 /// What a proof works with.
 pub(super) struct Prover<'a, 'm> {
     /// How many neighbouring bands count as one for a first look, if any, and the pair in these once it was looked at.
-    merging: Option<usize>,
-    merged: Option<View<'a>>,
+    pub(super) merging: Option<usize>,
+    pub(super) merged: Option<View<'a>>,
     few: &'m mut Bounder,
     pub(super) all: View<'a>,
     pub(super) bounder: &'m mut Bounder,
@@ -236,7 +236,7 @@ impl<'a, 'm> Prover<'a, 'm> {
 }
 
 /// The pair with so many neighbouring bands counted as one, where any are.
-fn merged_into<'v, 'a>(
+pub(super) fn merged_into<'v, 'a>(
     merged: &'v mut Option<View<'a>>,
     all: &View<'a>,
     merging: Option<usize>,

@@ -21,7 +21,7 @@ use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::identifiability::space::LARGEST_LN_GAIN;
 use crate::planck;
 use crate::scene::Parameter;
-use crate::simd::{Chunk, LANES, dispatched, fold, padded};
+use crate::simd::{Chunk, LANES, added, dispatched, fold_all, padded};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
 use std::cell::OnceCell;
@@ -75,8 +75,8 @@ pub(super) struct Sources<'a> {
     merged: usize,
     /// Rounding of the target's own counts, as a share of them.
     own_rounding: f64,
-    /// ν₀.
-    lowest_cm1: f64,
+    /// The lowest wavenumber, ν₀, and the highest.
+    pub(super) range_cm1: (f64, f64),
 }
 
 /// hcν₀/kT beyond which radiances underflow.
@@ -85,10 +85,6 @@ const DARK: f64 = 690.0;
 const NOTHING: f64 = 1e-32;
 /// By how much of itself the rounding of what is colder may be larger before it is asked how much of the light that is.
 const SAME_ROUNDING: f64 = 0.5;
-
-fn lowest(nodes_cm1: &[f64]) -> f64 {
-    nodes_cm1.iter().copied().fold(f64::INFINITY, f64::min)
-}
 
 impl<'a> Sources<'a> {
     pub(super) fn new(
@@ -139,14 +135,8 @@ impl<'a> Sources<'a> {
         });
         let list = std::iter::once(surface).chain(lights).collect();
         let blackbodies = Arc::clone(&comparison.blackbodies);
-        let mut sources = Self {
-            bands,
-            list,
-            blackbodies,
-            merged: 1,
-            own_rounding: 0.0,
-            lowest_cm1: lowest(bands.nodes_cm1()),
-        };
+        let mut sources =
+            Self { bands, list, blackbodies, merged: 1, own_rounding: 0.0, range_cm1: comparison.range_cm1 };
         sources.own_rounding = sources.rounding_of(comparison, target);
         sources
     }
@@ -188,21 +178,27 @@ impl<'a> Sources<'a> {
 
     /// Source `s` at a temperature that other pairs look at, too.
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
-        self.of(s, temperature_k, &self.blackbodies.at(self.bands.nodes_cm1(), temperature_k))
+        let blackbody = self.blackbodies.at(self.bands.nodes_cm1(), temperature_k);
+        self.of(s, temperature_k, blackbody.each_ref().map(Vec::as_slice))
     }
 
     /// The same at one that is the pair's own.
     pub(super) fn own_spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
-        self.of(s, temperature_k, &Blackbodies::once(self.bands.nodes_cm1(), temperature_k))
+        let blackbody = Blackbodies::once(self.bands.nodes_cm1(), temperature_k);
+        self.of(s, temperature_k, blackbody.each_ref().map(Vec::as_slice))
     }
 
-    fn of(&self, s: usize, temperature_k: f64, blackbody: &[Vec<f64>; 2]) -> Spectrum {
+    /// The same of B and ∂B/∂T at the nodes.
+    pub(super) fn of(&self, s: usize, temperature_k: f64, blackbody: [&[f64]; 2]) -> Spectrum {
         crate::stop::check();
-        Spectrum::of(
-            temperature_k,
-            temperature_k,
-            blackbody.each_ref().map(|radiance| self.counted(s, radiance)),
-        )
+        Spectrum::of(temperature_k, temperature_k, blackbody.map(|radiance| self.counted(s, radiance)))
+    }
+
+    /// A spectrum with so many neighbouring bands counted as one.
+    pub(super) fn summed(&self, spectrum: &Spectrum, count: usize) -> Spectrum {
+        let summed = |counts: &[f64]| neighbours_summed(&counts[..self.bands.len()], count);
+        let [counts, slope] = [&spectrum.counts, &spectrum.slope].map(|counts| summed(counts));
+        Spectrum::of(spectrum.temperature_k, spectrum.along, [counts, slope])
     }
 
     /// The shape of a spectrum, and β; `None` where there is next to nothing.
@@ -212,7 +208,7 @@ impl<'a> Sources<'a> {
         if scale.is_nan() || scale < f64::MIN_POSITIVE {
             return None;
         }
-        let bend = planck::log_derivative(self.lowest_cm1, t);
+        let bend = planck::log_derivative(self.range_cm1.0, t);
         let counts: Vec<f64> = spectrum.counts.iter().map(|counts| counts / scale).collect();
         let slopes = spectrum.slope.iter().zip(&spectrum.counts);
         let slope: Vec<f64> =
@@ -222,7 +218,7 @@ impl<'a> Sources<'a> {
 
     /// β at a temperature.
     pub(super) fn scale(&self, temperature_k: f64) -> f64 {
-        planck::photon_radiance(self.lowest_cm1, temperature_k)
+        planck::photon_radiance(self.range_cm1.0, temperature_k)
     }
 
     /// The temperature below which a source sends next to nothing of so many counts, whatever the gain and with the `brightest`
@@ -234,23 +230,23 @@ impl<'a> Sources<'a> {
         let most: f64 =
             nodes.enumerate().map(|(j, (nu, e))| 2.0 * weight(j) * e * planck::mode_density(*nu)).sum();
         let x = (most / counts).ln() - NOTHING.ln() + LARGEST_LN_GAIN + brightest.max(1.0).ln();
-        (x.is_finite() && x < DARK).then(|| SECOND_RADIATION_CM_K * self.lowest_cm1 / x.max(1.0))
+        (x.is_finite() && x < DARK).then(|| SECOND_RADIATION_CM_K * self.range_cm1.0 / x.max(1.0))
     }
 
     /// hcν/kT at the lowest wavenumber.
     pub(super) fn lowest_x(&self, temperature_k: f64) -> f64 {
-        SECOND_RADIATION_CM_K * self.lowest_cm1 / temperature_k
+        SECOND_RADIATION_CM_K * self.range_cm1.0 / temperature_k
     }
 
     /// The same in the middle of the bands.
     pub(super) fn middle_x(&self, temperature_k: f64) -> f64 {
-        let (first, last) = self.bands.range_cm1();
+        let (first, last) = self.range_cm1;
         SECOND_RADIATION_CM_K * 0.5 * (first + last) / temperature_k
     }
 
     /// How many times as bright one temperature is as another one in the middle of the bands; 1 where that is no number.
     pub(super) fn brightness(&self, temperature_k: f64, other_k: f64) -> f64 {
-        let (first, last) = self.bands.range_cm1();
+        let (first, last) = self.range_cm1;
         let [own, other] = [temperature_k, other_k].map(|t| planck::photon_radiance(0.5 * (first + last), t));
         let ratio = own / other;
         if ratio > 0.0 && ratio.is_finite() { ratio } else { 1.0 }
@@ -258,7 +254,7 @@ impl<'a> Sources<'a> {
 
     /// Rounding of spectra from this temperature on, as a share of them ([`crate::planck`]).
     pub(super) fn rounding(&self, temperature_k: f64) -> f64 {
-        let (_, last) = self.bands.range_cm1();
+        let (_, last) = self.range_cm1;
         self.rounding_of_merging()
             + 4e-16 * (10.0 + (SECOND_RADIATION_CM_K * last / temperature_k).min(2.0 * DARK))
     }
@@ -269,6 +265,11 @@ impl<'a> Sources<'a> {
 
     fn counted(&self, s: usize, radiance: &[f64]) -> Vec<f64> {
         let (bands, strength) = (self.bands.len(), &self.list[s].strength);
+        if self.merged > 1 && self.bands.one_node_per_band() {
+            let mut counts = vec![0.0; whole(bands.div_ceil(self.merged))];
+            sums_of_products_into([radiance, strength], self.merged, &mut counts);
+            return counts;
+        }
         let mut counts = vec![0.0; whole(bands)];
         if self.bands.one_node_per_band() {
             product_into(radiance, strength, &mut counts);
@@ -381,19 +382,51 @@ pub(super) fn whole(bands: usize) -> usize {
 /// Neighbours summed, in whole chunks.
 pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Vec<f64> {
     let mut sums = vec![0.0; whole(bands.len().div_ceil(count))];
-    sums_into(bands, count, &mut sums);
+    sums_of_products_into([bands, &vec![1.0; bands.len()]], count, &mut sums);
     sums
 }
 
+/// Groups that are summed at a time.
+const GROUPS: usize = 16;
+
+/// Sums of so many neighbouring products each, in whole chunks.
+fn sums_of_products_into(factors: [&[f64]; 2], count: usize, sums: &mut [f64]) {
+    let bands = factors[0].len();
+    for (some, sums) in sums.chunks_mut(GROUPS).enumerate() {
+        let mut groups = [[0.0; LANES]; GROUPS];
+        let first = (some * GROUPS * count).min(bands);
+        products_by_group(factors.map(|x| &x[first..]), count, &mut groups[..sums.len()]);
+        folded_into(&groups[..sums.len()], sums);
+    }
+}
+
 dispatched! {
-    fn sums_into<'a>(bands: &'a [f64], count: usize, sums: &'a mut [f64]) -> () {
-        for (sum, bands) in sums.iter_mut().zip(bands.chunks(count)) {
-            let (chunks, rest) = bands.as_chunks::<LANES>();
-            let mut lanes: Chunk = padded(rest);
-            for chunk in chunks {
-                lanes = std::array::from_fn(|i| lanes[i] + chunk[i]);
+    /// Lanes of the sums of so many neighbouring products each.
+    fn products_by_group<'a>(factors: [&'a [f64]; 2], count: usize, groups: &'a mut [Chunk]) -> () {
+        let [a, b] = factors;
+        let ((a_chunks, _), (b_chunks, _)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+        let per_group = count / LANES;
+        let whole = if per_group * LANES == count { (a_chunks.len() / per_group).min(groups.len()) } else { 0 };
+        let chunks = a_chunks.chunks_exact(per_group.max(1)).zip(b_chunks.chunks_exact(per_group.max(1)));
+        for (lanes, (a, b)) in groups[..whole].iter_mut().zip(chunks) {
+            for (a, b) in a.iter().zip(b) {
+                *lanes = added(*a, *b, *lanes);
             }
-            *sum = fold(&lanes);
         }
+        // Groups that are no whole chunks, and the last one.
+        let rest = (whole * count).min(a.len());
+        let (a, b) = (a[rest..].chunks(count), b[rest..].chunks(count));
+        for (lanes, (a, b)) in groups[whole..].iter_mut().zip(a.zip(b)) {
+            for (a, b) in a.chunks(LANES).zip(b.chunks(LANES)) {
+                *lanes = added(padded(a), padded(b), *lanes);
+            }
+        }
+    }
+}
+
+dispatched! {
+    /// The sums of lanes, apart from what fills them: else that is compiled for the pairs that folding asks for.
+    fn folded_into<'a>(groups: &'a [Chunk], sums: &'a mut [f64]) -> () {
+        fold_all(groups, 1.0, sums);
     }
 }

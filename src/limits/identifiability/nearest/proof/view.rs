@@ -6,9 +6,10 @@
 use super::amplitudes::Amplitudes;
 use super::metric::Metric;
 use super::priors::Priors;
-use super::sources::{Sources, Spectrum, whole};
+use super::sources::{Source, Sources, Spectrum, whole};
 use super::vectors::largest_share;
 use crate::sum::dot;
+use std::cell::OnceCell;
 
 /// Rounding of a length, as a share of its terms, besides that of Planck's function.
 const ROUNDING: f64 = 1e-15;
@@ -49,16 +50,14 @@ pub(super) struct View<'a> {
     pub(super) shaped: Vec<Option<f64>>,
     /// Temperatures below which the axes send next to nothing.
     dark_k: Vec<f64>,
-    pub(super) later: Later,
+    /// Spectra of the sources of known temperature, once a box was looked at: where few bands suffice, all of them are never looked at.
+    pub(super) fixed: Vec<Option<Spectrum>>,
+    brightest: OnceCell<Vec<f64>>,
+    in_boxes: OnceCell<InBoxes>,
 }
 
-/// What only a look at these bands needs: where few bands suffice, all of them are never looked at.
-#[derive(Default)]
-pub(super) struct Later {
-    /// Spectra of the sources of known temperature.
-    pub(super) fixed: Vec<Option<Spectrum>>,
-    /// The counts that each band can have within reach.
-    pub(super) brightest: Vec<f64>,
+/// What only bounds over all amplitudes need.
+pub(super) struct InBoxes {
     pub(super) about_target: Metric,
     /// N/y of every band, 0 where y is.
     pub(super) share: Vec<f64>,
@@ -86,7 +85,7 @@ impl<'a> View<'a> {
         let shaped = axes.iter().zip(&mut dark_k).map(|(&s, dark_k)| {
             let range = s.checked_sub(1).map_or([1.0; 2], |k| allowed.ranges[k]);
             let is_known = !allowed.gain_free && range[0] >= range[1];
-            let dark = sources.dark_k(s, sent, range[1].min(allowed.sum)).filter(|_| !is_known);
+            let dark = if is_known { None } else { sources.dark_k(s, sent, range[1].min(allowed.sum)) };
             *dark_k = dark.unwrap_or(0.0);
             // Where the amplitude hangs on another one's, the shape hardly tells of that.
             let own = match s {
@@ -97,7 +96,6 @@ impl<'a> View<'a> {
         });
         let shaped = shaped.collect();
         let rounding = ROUNDING + 2.0 * sources.rounding_of_target();
-        let later = Later::default();
         Self {
             sources,
             allowed,
@@ -111,31 +109,40 @@ impl<'a> View<'a> {
             rounding,
             shaped,
             dark_k,
-            later,
+            fixed: Vec::new(),
+            brightest: OnceCell::new(),
+            in_boxes: OnceCell::new(),
         }
     }
 
     /// Makes sure of what only a look at these bands needs.
     pub(super) fn look(&mut self) {
         crate::stop::check();
-        if !self.later.fixed.is_empty() {
+        if !self.fixed.is_empty() {
             return;
         }
-        let reach = self.reach;
-        let fixed =
-            self.sources.list.iter().enumerate().map(|(s, source)| {
-                (!source.free()).then(|| self.sources.spectrum(s, source.temperature_k[0]))
-            });
-        let brightest = self.root.iter().zip(&self.noise);
-        let brightest = brightest.map(|(y, v)| (y + reach) * (y + reach) * (1.0 + 1e-9) - v);
-        let share = self.root.iter().zip(&self.counts);
-        let share = share.map(|(y, n)| if *y > 0.0 { n / y } else { 0.0 });
-        self.later = Later {
-            share: share.collect(),
-            fixed: fixed.collect(),
-            brightest: brightest.collect(),
-            about_target: Metric::about_target(&self.root, &self.counts, reach),
+        let known = |(s, source): (usize, &Source)| {
+            (!source.free()).then(|| self.sources.spectrum(s, source.temperature_k[0]))
         };
+        self.fixed = self.sources.list.iter().enumerate().map(known).collect();
+    }
+
+    /// The counts that each band can have within reach.
+    pub(super) fn brightest(&self) -> &[f64] {
+        self.brightest.get_or_init(|| {
+            let bands = self.root.iter().zip(&self.noise);
+            bands.map(|(y, v)| (y + self.reach) * (y + self.reach) * (1.0 + 1e-9) - v).collect()
+        })
+    }
+
+    /// What bounds over all amplitudes need, made once.
+    pub(super) fn in_boxes(&self) -> &InBoxes {
+        self.in_boxes.get_or_init(|| {
+            let share = self.root.iter().zip(&self.counts);
+            let share = share.map(|(y, n)| if *y > 0.0 { n / y } else { 0.0 });
+            let about_target = Metric::about_target(&self.root, &self.counts, self.reach);
+            InBoxes { about_target, share: share.collect() }
+        })
     }
 
     /// Makes sure of the spectrum at an end of an interval.
@@ -149,7 +156,7 @@ impl<'a> View<'a> {
             return;
         }
         let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
-        let most = largest_share(&self.later.brightest, &spectrum.counts, &spectrum.slope, 0.0);
+        let most = largest_share(self.brightest(), &spectrum.counts, &spectrum.slope, 0.0);
         let shape = if self.shaped[axis].is_some() { self.sources.shape(&spectrum) } else { None };
         self.ends[axis][place] = Some(End { spectrum, shape, most });
     }
@@ -210,8 +217,10 @@ impl<'a> View<'a> {
 
     /// The spectrum of a source at a temperature of the pair's own.
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
-        match self.later.fixed.get(s) {
+        match self.fixed.get(s) {
             Some(Some(spectrum)) => spectrum.clone(),
+            // That of a known temperature is the same for every pair.
+            _ if !self.sources.list[s].free() => self.sources.spectrum(s, temperature_k),
             _ => self.sources.own_spectrum(s, temperature_k),
         }
     }

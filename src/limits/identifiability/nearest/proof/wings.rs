@@ -10,10 +10,11 @@ mod quadratic;
 use self::quadratic::{About, Weighed};
 use super::bound::Mixture;
 use super::closing::Minimum;
-use super::prover::{Goal, Prover};
+use super::prover::{Goal, Prover, merged_into};
 use super::region::Region;
 use super::sources::Spectrum;
 use super::vectors::largest_share;
+use super::view::View;
 use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
@@ -94,6 +95,40 @@ impl Side {
     }
 }
 
+/// Bounds of intervals by the quadratic about the best state, in these bands.
+struct Alone<'s> {
+    view: &'s View<'s>,
+    about: About<'s>,
+    with: Weighed,
+    source: usize,
+    /// The spectrum at the farther end of the interval before, or where that did not suffice at its nearer one.
+    known: Option<Spectrum>,
+}
+
+impl<'s> Alone<'s> {
+    fn new(view: &'s View<'s>, minimum: &'s Minimum, source: usize) -> Option<Self> {
+        let about = About::new(view, minimum, source)?;
+        let with = about.weighed(minimum.weight.clone());
+        Some(Self { view, about, with, source, known: None })
+    }
+
+    /// The bound of one, its nearer end first; none where all from there on is out of reach.
+    fn bound(&mut self, [from, to]: [f64; 2], enough: f64) -> Option<f64> {
+        let sources = &self.view.sources;
+        let near = self.known.take().filter(|known| known.temperature_k == from);
+        let near = near.unwrap_or_else(|| sources.spectrum(self.source, from));
+        let bright = || largest_share(self.view.brightest(), &near.counts, &near.slope, 0.0);
+        if to > from && bright() < self.about.amplitude {
+            return None;
+        }
+        let far = sources.spectrum(self.source, to);
+        let ends = if to < from { [&far, &near] } else { [&near, &far] };
+        let lower = self.about.bound(&self.with, ends, sources.rounding(ends[0].temperature_k), enough);
+        self.known = Some(if lower >= enough { far } else { near });
+        Some(lower)
+    }
+}
+
 impl Prover<'_, '_> {
     /// What lies beyond the faces; `None` where more temperatures than one are unknown, or none.
     pub(super) fn wings(
@@ -104,7 +139,6 @@ impl Prover<'_, '_> {
         goal: Goal,
     ) -> Option<Wings> {
         let &[s] = &self.all.axes[..] else { return None };
-        self.all.look();
         let own_k = minimum.spectra[s].temperature_k;
         let face = faces.map_or([own_k; 2], |faces| faces[0]);
         let first = NARROW * own_k / self.all.sources.middle_x(own_k).max(1.0);
@@ -118,10 +152,22 @@ impl Prover<'_, '_> {
             })
         };
         let mut walked = Vec::new();
-        if let Some(about) = self.quadratic(minimum, s) {
-            let with = about.weighed(minimum.weight.clone());
+        let merged = merged_into(&mut self.merged, &self.all, self.merging).zip(self.merging);
+        let merged = merged.and_then(|(view, count)| Some((Self::minimum_in(view, minimum, count)?, &*view)));
+        let mut in_few = merged.as_ref().and_then(|(minimum, view)| Alone::new(view, minimum, s));
+        let mut in_all = if in_few.is_none() { Alone::new(&self.all, minimum, s) } else { None };
+        if in_few.is_some() || in_all.is_some() {
             for side in sides(self.all.sources.list[s].temperature_k) {
-                walked.push(side.walk(enough, self.alone(&about, &with, s, enough)));
+                walked.push(side.walk(enough, |ends| {
+                    if let Some(in_few) = &mut in_few {
+                        let lower = in_few.bound(ends, enough)?;
+                        if lower >= enough {
+                            return Some(lower);
+                        }
+                    }
+                    in_all = in_all.take().or_else(|| Alone::new(&self.all, minimum, s));
+                    in_all.as_mut().map_or(Some(0.0), |in_all| in_all.bound(ends, enough))
+                }));
             }
         } else {
             for side in sides(self.range(0, warm)) {
@@ -142,31 +188,6 @@ impl Prover<'_, '_> {
             }
         }
         Some(wings)
-    }
-
-    /// Bounds of intervals by the quadratic about the best state.
-    fn alone<'s>(
-        &'s self,
-        about: &'s About<'s>,
-        with: &'s Weighed,
-        s: usize,
-        enough: f64,
-    ) -> impl FnMut([f64; 2]) -> Option<f64> {
-        let sources = &self.all.sources;
-        let mut known: Option<Spectrum> = None;
-        move |[from, to]| {
-            let near = known.take().filter(|known| known.temperature_k == from);
-            let near = near.unwrap_or_else(|| sources.spectrum(s, from));
-            let bright = || largest_share(&self.all.later.brightest, &near.counts, &near.slope, 0.0);
-            if to > from && bright() < about.amplitude {
-                return None;
-            }
-            let far = sources.spectrum(s, to);
-            let ends = if to < from { [&far, &near] } else { [&near, &far] };
-            let lower = about.bound(with, ends, sources.rounding(ends[0].temperature_k), enough);
-            known = Some(if lower >= enough { far } else { near });
-            Some(lower)
-        }
     }
 
     /// Bounds of intervals over all amplitudes: in all bands from the best ones on, and where there was enough to spare first in bands

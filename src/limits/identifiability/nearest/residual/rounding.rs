@@ -5,7 +5,7 @@
 
 use super::{Comparison, NO_GAIN, Separation, Target, is_other_scale};
 use crate::scene::State;
-use crate::simd::{LANES, dispatched, fold, padded};
+use crate::simd::{Chunk, LANES, dispatched, fold, padded};
 use crate::units::SECOND_RADIATION_CM_K;
 
 /// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
@@ -23,7 +23,7 @@ impl Comparison<'_> {
         distance: f64,
     ) -> (f64, f64) {
         let terms = self.terms(target, state);
-        let (_, last_cm1) = self.target.bands().range_cm1();
+        let (_, last_cm1) = self.range_cm1;
         let coldest = state.environment_k.iter().copied().fold(state.temperature_k, f64::min);
         let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(target.state.temperature_k);
         let x = x.min(LARGEST_X);
@@ -40,6 +40,17 @@ impl Comparison<'_> {
 
     /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
     fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        match &self.measured {
+            Some((known, terms)) if known == state => *terms,
+            _ => {
+                let terms = self.terms_anew(target, state);
+                self.measured = Some((state.clone(), terms));
+                terms
+            }
+        }
+    }
+
+    fn terms_anew(&mut self, target: &Target<'_>, state: &State) -> f64 {
         crate::stop::check();
         self.separate(target, state, false);
         if is_other_scale(target.state.gain, state.gain) {
@@ -75,20 +86,24 @@ impl Comparison<'_> {
 dispatched! {
     /// Σ (κ(term + more · S′)/(√(N + σ²) + √(N′ + σ²)))², over bands in which there is any.
     fn square_of_terms<'a>(counts: f64, bands: [&'a [f64]; 4], more: f64) -> f64 {
-        let [terms, signal, root, noise] = bands;
+        let parts = bands.map(|x| x.as_chunks());
         let mut lanes = [0.0; LANES];
-        let chunks = |x: &'a [f64]| x.chunks(LANES).map(padded);
-        let bands = chunks(terms).zip(chunks(signal)).zip(chunks(root).zip(chunks(noise)));
-        for ((terms, signal), (root, noise)) in bands {
-            for k in 0..LANES {
-                let sum = root[k] + counts.mul_add(signal[k], noise[k]).sqrt();
-                let term = counts * more.mul_add(signal[k], terms[k]) / sum;
-                let term = if sum > 0.0 { term } else { 0.0 };
-                lanes[k] = term.mul_add(term, lanes[k]);
-            }
+        for c in 0..parts[0].0.len() {
+            lanes = squared_terms(counts, parts.map(|(chunks, _)| chunks[c]), more, lanes);
         }
+        let lanes = squared_terms(counts, parts.map(|(_, rest)| padded(rest)), more, lanes);
         fold(&lanes)
     }
+}
+
+#[inline(always)]
+fn squared_terms(counts: f64, [terms, signal, root, noise]: [Chunk; 4], more: f64, lanes: Chunk) -> Chunk {
+    std::array::from_fn(|k| {
+        let sum = root[k] + counts.mul_add(signal[k], noise[k]).sqrt();
+        let term = counts * more.mul_add(signal[k], terms[k]) / sum;
+        let term = if sum > 0.0 { term } else { 0.0 };
+        term.mul_add(term, lanes[k])
+    })
 }
 
 dispatched! {

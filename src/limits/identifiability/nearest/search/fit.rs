@@ -62,13 +62,8 @@ impl Fit {
         (state, Fitted { cost: dot(&residual, &residual) + of_priors, slope })
     }
 
-    /// Along a grid, for at most one unknown factor and no gain: the factor and the fit at each T′. `None` if the scene is not of this kind.
-    pub(super) fn along(
-        &self,
-        whitened: &Whitened,
-        own: &State,
-        grid: &[&Emission],
-    ) -> Option<Vec<(f64, Fitted)>> {
+    /// For at most one unknown factor and no gain: what does not hang on T′. `None` if the scene is not of this kind.
+    pub(super) fn alone(&self, whitened: &Whitened, own: &State) -> Option<Alone> {
         crate::stop::check();
         if self.gain || self.free.len() > 1 {
             return None;
@@ -85,16 +80,10 @@ impl Fit {
             add(&mut column, own.gain, free);
         }
         add(&mut scaled, own.gain, strength);
-        let size = dot(&column, &column);
-        let [square, centre] = self.priors.first().copied().unwrap_or_default();
-        let size = size + square;
+        let prior = self.priors.first().copied().unwrap_or_default();
+        let size = dot(&column, &column) + prior[0];
         let reach = if size > 0.0 { 1.0 / size } else { 0.0 };
-        let fits = grid.iter().map(|emission| {
-            let [value, slope] = emission.spectra();
-            let spectra = Spectra { goal: &goal, strength: &scaled, value, slope };
-            fit_one(spectra, &column, reach, [square, centre], [low, high])
-        });
-        Some(fits.map(|(factor, cost, slope)| (factor, Fitted { cost, slope })).collect())
+        Some(Alone { goal, column, strength: scaled, reach, prior, limits: [low, high] })
     }
 
     /// Factors within their range and sum, for the scale the target has.
@@ -134,6 +123,28 @@ impl Fit {
         }
         let [low, high] = self.range;
         (gain, fitted[1..].iter().map(|p| (p / gain).clamp(low, high)).collect())
+    }
+}
+
+/// A fit of at most one factor.
+pub(super) struct Alone {
+    /// What the alternative has to send besides light of known factors, and W(1 − e′)εB of the unknown one.
+    goal: Aligned,
+    column: Aligned,
+    strength: Aligned,
+    /// 1/‖column‖², 0 for no column, with the prior's w² in that.
+    reach: f64,
+    prior: [f64; 2],
+    limits: [f64; 2],
+}
+
+impl Alone {
+    /// The factor and the fit at one T′.
+    pub(super) fn at(&self, emission: &Emission) -> (f64, Fitted) {
+        let [value, slope] = emission.spectra();
+        let spectra = Spectra { goal: &self.goal, strength: &self.strength, value, slope };
+        let (factor, cost, slope) = fit_one(spectra, &self.column, self.reach, self.prior, self.limits);
+        (factor, Fitted { cost, slope })
     }
 }
 

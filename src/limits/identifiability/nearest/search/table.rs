@@ -120,9 +120,6 @@ impl EmissionTable {
             let stride = (STEPS_PER_E * SPACING / (1.0 + x)).max(1.0) as usize;
             chosen.push((step + stride).min(*steps.end()));
         }
-        for &step in &chosen {
-            self.even(step);
-        }
         let reach = temperature_at(*steps.start())..=temperature_at(*steps.end());
         let nearby = scene_k.iter().flat_map(|t| AROUND.map(|share| t * (1.0 + share)));
         let ends = [low_k, high_k].into_iter().filter(|end| reach.contains(end));
@@ -139,18 +136,11 @@ impl EmissionTable {
                 })
                 .collect();
         }
+        for &step in &chosen {
+            self.banded(emissivity, step);
+        }
         let bands = &self.thinned.bands;
         if !bands.one_node_per_band() {
-            if self.emissivity != emissivity {
-                self.emissivity = emissivity.to_vec();
-                let all = self.even.iter_mut().flatten().chain(&mut self.around);
-                all.for_each(|emission| emission.banded = None);
-            }
-            for &step in &chosen {
-                if let Some(Some(emission)) = self.even.get_mut(step) {
-                    emission.band(bands, emissivity);
-                }
-            }
             self.around.iter_mut().for_each(|emission| emission.band(bands, emissivity));
         }
         let even = chosen.iter().filter_map(|&step| self.even.get(step)?.as_ref());
@@ -161,6 +151,24 @@ impl EmissionTable {
         order::ascending(&mut all, |a| a.temperature_k);
         all.dedup_by(|a, b| a.temperature_k == b.temperature_k);
         (&self.thinned, all)
+    }
+
+    /// The emission at a step of the grid, of an alternative of this emissivity at the thinned nodes.
+    pub(super) fn banded(&mut self, emissivity: &[f64], step: usize) -> &Emission {
+        self.even(step);
+        let bands = &self.thinned.bands;
+        let is_banded = !bands.one_node_per_band();
+        if is_banded && self.emissivity != emissivity {
+            self.emissivity = emissivity.to_vec();
+            let all = self.even.iter_mut().flatten().chain(&mut self.around);
+            all.for_each(|emission| emission.banded = None);
+        }
+        let nodes = bands.nodes_cm1();
+        let emission = self.even[step].get_or_insert_with(|| Emission::of(nodes, temperature_at(step)));
+        if is_banded {
+            emission.band(bands, emissivity);
+        }
+        emission
     }
 
     fn even(&mut self, step: usize) -> &Emission {

@@ -84,7 +84,7 @@ impl Bounder {
                 add_into(*amount, &half[axis], slack);
             }
         }
-        let [cost, by_own] = slopes(of_bands(view, [counts, slack]), &view.later.share, pull);
+        let [cost, by_own] = slopes(of_bands(view, [counts, slack]), &view.in_boxes().share, pull);
         rows.clear();
         residuals.clear();
         view.priors.put_pieces(pieces, |constant, entries| {
@@ -99,7 +99,7 @@ impl Bounder {
     pub(super) fn without_chords(&mut self, view: &View<'_>) -> f64 {
         let Self { counts, slack, pull, .. } = self;
         slack.fill(0.0);
-        slopes(of_bands(view, [counts, slack]), &view.later.share, pull)[0]
+        slopes(of_bands(view, [counts, slack]), &view.in_boxes().share, pull)[0]
     }
 
     /// The bound by the tangent at the point, and how far below the cost there it falls but for rounding.

@@ -24,7 +24,7 @@ pub(super) fn rises(places: &[Place]) -> impl Iterator<Item = usize> {
 /// The spectrum of a piece.
 pub(super) fn column<'s>(view: &'s View<'_>, [low, rise]: [&'s [Vec<f64>]; 2], place: Place) -> &'s [f64] {
     match place {
-        Place::Fixed(s) => view.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
+        Place::Fixed(s) => view.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
         Place::Low(axis) => &low[axis],
         Place::Rise(axis) => &rise[axis],
     }

@@ -16,9 +16,9 @@
 
 use super::super::bound::CLEAR;
 use super::super::closing::Minimum;
-use super::super::prover::Prover;
 use super::super::sources::{Spectrum, half_sag};
 use super::super::vectors::{counts_into, product_into, square_of_product, square_of_quotient};
+use super::super::view::View;
 use crate::identifiability::rectangle::OverRectangle;
 use crate::simd::{Chunk, LANES, dispatched, fold};
 use crate::sum::dot;
@@ -59,11 +59,11 @@ pub(super) struct Weighed {
     grain: f64,
 }
 
-impl Prover<'_, '_> {
-    /// The quadratic about a minimum; `None` where more amplitudes are free.
-    pub(super) fn quadratic<'m>(&'m self, minimum: &'m Minimum, s: usize) -> Option<About<'m>> {
-        let amplitude = self.all.held(s)?;
-        let allowed = &self.all.allowed;
+impl<'m> About<'m> {
+    /// The quadratic about a minimum, both in these bands; `None` where more amplitudes are free.
+    pub(super) fn new(view: &'m View<'_>, minimum: &'m Minimum, s: usize) -> Option<Self> {
+        let amplitude = view.held(s)?;
+        let allowed = &view.allowed;
         let open: Vec<usize> = (0..allowed.ranges.len()).filter(|&k| allowed.tied(k).is_none()).collect();
         let mut lit = None;
         let (light, range) = match open[..] {
@@ -80,9 +80,8 @@ impl Prover<'_, '_> {
         };
         let pull_lit = light.map_or(0.0, |light| dot(&minimum.pull, light));
         let mut seen = vec![0.0; minimum.other.len()];
-        counts_into(&minimum.other, &self.all.noise, &mut seen);
-        let (own, counts, rounding) =
-            (&minimum.spectra[s].counts[..], &self.all.counts[..], self.all.rounding);
+        counts_into(&minimum.other, &view.noise, &mut seen);
+        let (own, counts, rounding) = (&minimum.spectra[s].counts[..], &view.counts[..], view.rounding);
         let prior = |source: Option<usize>, of_temperature: bool, units: f64| {
             let row = minimum.priors.iter();
             let mut row =
@@ -91,7 +90,7 @@ impl Prover<'_, '_> {
         };
         let (of_axis, of_light) = (prior(Some(s), true, amplitude), prior(lit, false, 1.0));
         let of_priors = minimum.priors.iter().map(|row| row.residual * row.residual).sum();
-        Some(About {
+        Some(Self {
             minimum,
             own,
             own_k: minimum.spectra[s].temperature_k,
@@ -107,9 +106,7 @@ impl Prover<'_, '_> {
             rounding,
         })
     }
-}
 
-impl About<'_> {
     pub(super) fn weighed(&self, weight: Vec<f64>) -> Weighed {
         let mut lit = vec![0.0; weight.len()];
         if let Some(light) = self.light {

@@ -1,6 +1,7 @@
 //! Bounds of intervals against states drawn at random within them, for each kind of walk, with all the amplitudes that are free.
 
-use super::super::prover::{Memory, Prover};
+use super::super::prover::{Memory, Prover, merged_into};
+use super::Alone;
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::residual::{Comparison, Metric};
 use crate::identifiability::nearest::{NearestSolver, StateRange};
@@ -24,9 +25,9 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
     let mut draw = move || random.random::<f64>();
     let bands = Bands::uniform(720.0, 1240.0, 20.0).unwrap();
     let nodes = bands.nodes_cm1().to_vec();
-    let (mut within, mut told) = ([0; 6], [0; 6]);
+    let (mut within, mut told, mut told_together) = ([0; 6], [0; 6], 0);
     for trial in 0..150 {
-        let kind = trial % SETS.len();
+        let (kind, round) = (trial % SETS.len(), trial / SETS.len());
         let set = SETS[kind];
         let is_unknown = |nuisance| set.contains(&nuisance);
         let object = EnvironmentObject { temperature_k: 250.0 + 70.0 * draw(), emissivity: None };
@@ -38,7 +39,7 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
         };
         let (own, other) = (wave(), wave());
         let mut unknowns = Unknowns::new(set.iter().copied()).unwrap();
-        if trial % 2 == 0 {
+        if round % 2 == 0 {
             for nuisance in set {
                 let unit = if *nuisance == Nuisance::Lighting { 0.1 } else { 10.0 };
                 unknowns = unknowns.prior(*nuisance, unit * 10f64.powf(-2.0 * draw())).unwrap();
@@ -54,9 +55,9 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
         let target = comparison.aim(&own, &other, &state, metric).unwrap();
         let reach = best.distance * (1.0 + 3.0 * draw().powi(2));
         let mut memory = Memory::default();
-        let mut prover = Prover::new(&comparison, None, &mut memory, &target, reach);
+        let merging = [None, Some(3), Some(8)][round % 3];
+        let mut prover = Prover::new(&comparison, merging, &mut memory, &target, reach);
         let minimum = prover.minimum(&mut comparison, &target, &best.state);
-        prover.all.look();
         let s = prover.all.axes[0];
         let axis_k = |state: &State| if s == 0 { state.temperature_k } else { state.environment_k[0] };
         for _ in 0..12 {
@@ -65,15 +66,20 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
             let ends =
                 if draw() < 0.5 { ends } else { [ends[0], ends[0] * (1.0 + 0.2 * far * (draw() - 0.5))] };
             let enough = best.distance * best.distance;
-            let lower = match prover.quadratic(&minimum, s) {
-                Some(about) => {
-                    let with = about.weighed(minimum.weight.clone());
-                    prover.alone(&about, &with, s, enough)(ends)
-                }
+            let mut bounds = Vec::new();
+            if let Some(view) = merged_into(&mut prover.merged, &prover.all, merging) {
+                let minimum = Prover::minimum_in(view, &minimum, merging.unwrap());
+                let alone = minimum.as_ref().and_then(|minimum| Alone::new(view, minimum, s));
+                bounds.extend(alone.map(|mut alone| alone.bound(ends, enough)));
+            }
+            told_together +=
+                usize::from(bounds.iter().any(|bound| bound.is_some_and(|lower| lower >= enough)));
+            bounds.push(match Alone::new(&prover.all, &minimum, s) {
+                Some(mut alone) => alone.bound(ends, enough),
                 None => prover.mixed(&minimum, s, enough, |_, _| false)(ends),
-            };
+            });
             // Too bright already: no state beyond the nearer end is within reach.
-            let lower = lower.unwrap_or(reach * reach);
+            let lower = bounds.into_iter().map(|lower| lower.unwrap_or(reach * reach)).fold(0.0, f64::max);
             told[kind] += usize::from(lower >= enough);
             for _ in 0..300 {
                 let mut at = best.state.clone();
@@ -103,4 +109,5 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
     }
     assert!(within.iter().all(|count| *count > 2_000), "{within:?}");
     assert!(told.iter().all(|count| *count > 20), "{told:?}");
+    assert!(told_together > 50, "{told_together}");
 }
