@@ -59,7 +59,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// The main job: verdict on a camera, requirement, margins, what would have to change
+    /// Judge a camera for a task: verdict, requirement, margins, what would have to change
     Size(size::SizeArgs),
     /// What can be distinguished: the target from every alternative, all materials from each other, and by which bands
     ///
@@ -72,17 +72,17 @@ enum Command {
     Rule(rule::RuleArgs),
     /// How well depth can be measured: bounds of stereo ranging from a scene or a heat cube
     Range(range::RangeArgs),
-    /// A heat cube as material, temperature and lighting of every pixel, and where the photons do not tell
+    /// Decompose a heat cube: material, temperature and lighting of every pixel, and what stays undecided
     Decompose(decompose::DecomposeArgs),
-    /// Emissivities out of a heat cube: a library where none was measured, with its errors
+    /// Emissivities from a heat cube: a library where none was measured, with its errors
     Library(library::LibraryArgs),
-    /// What blackbodies and cubes tell of a camera: response, radiance with its errors, noise, stripes
+    /// Calibrate a camera by blackbodies and cubes: response, radiance with its errors, noise, stripes
     Calibrate(calibrate::CalibrateArgs),
-    /// Render a scene as a heat cube, with what is true of every pixel
+    /// Render a scene as a heat cube, with the true state of every pixel
     Render(render::RenderArgs),
-    /// Draw spectra, train and judge classifiers, and hold them against the limit
+    /// Draw spectra, train and judge classifiers, and compare them with the limit
     Simulate(simulate::SimulateArgs),
-    /// Many scenes or cameras: a file's keys varied, a row of a table for each, resumed where it was left
+    /// Many scenes or cameras: vary keys of a file, with a table row for each; resumes where it stopped
     Sweep(sweep::SweepArgs),
     #[command(flatten)]
     Evidence(evidence::Question),
@@ -90,23 +90,23 @@ enum Command {
     Materials(materials::MaterialsArgs),
     /// The known cameras: list, show, compare
     Cameras(cameras::CamerasArgs),
-    /// Two reports or two answers held against each other: what was asked, the verdict, figures that moved, warnings; exit code 0
+    /// Compare two reports or two answers: what was asked, the verdict, figures that moved, warnings; exit code 0
     /// where they are the same, 1 where they differ, 2 where one cannot be read
     Diff(diff::DiffArgs),
-    /// A report made again from what it says it was made of, every file compared byte by byte; exit code 0 where all are the same, 1
+    /// Make a report again from its recorded inputs and compare every file byte by byte; exit code 0 where all are the same, 1
     /// where one is not
     Verify(verify::VerifyArgs),
-    /// The main job as a page in the browser of this machine: a form, the verdict, pictures that follow a slider
+    /// `hadar size` as a page in the browser of this machine: a form, the verdict, pictures that follow a slider
     Serve(serve::ServeArgs),
-    /// What a shell needs to complete commands and flags; to be sourced, or written where it looks for it
+    /// Print the script by which a shell completes commands and flags; source it, or save it where the shell looks
     Completions(shell::CompletionsArgs),
     /// The manual page; with --out one for each command
     Man(shell::ManArgs),
-    /// What a key of a file, a warning, a key of the JSON or a command means
+    /// Explain a term, a key of a file, a warning, a key of the JSON or a command
     Explain(explain::ExplainArgs),
     /// The keys of files as a JSON schema, by which editors complete and check them
     Schema(explain::SchemaArgs),
-    /// Write a commented file to begin with, that runs as it is
+    /// Write a commented file to begin with; it runs as it is
     Init(init::InitArgs),
 }
 

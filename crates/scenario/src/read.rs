@@ -222,7 +222,8 @@ pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
             (Some(detection), Some(false_alarm), _) => Reliability::Rates { detection, false_alarm },
             (Some(probability), None, _) => Reliability::DetectionProbability(probability),
             (None, Some(_), _) => {
-                let found = "false alarms without a detection_probability: whoever finds nothing has none";
+                let found =
+                    "false alarms without a detection_probability: a test that finds nothing has none";
                 let instead = "write detection_probability = 0.9 beside it";
                 return Err(section.fail("false_alarm_probability", Error::malformed(found, instead)));
             }

@@ -82,10 +82,7 @@ impl std::iter::Sum for Takes {
 pub fn time(text: &str) -> Result<Duration> {
     let seconds = Dimension::Time.parse(text)?;
     Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero()).ok_or_else(|| {
-        Error::malformed(
-            format!("`{text}` is no time that anything could take"),
-            "write it as 90 s, 5 min or 2 h",
-        )
+        Error::malformed(format!("`{text}` is not a valid duration"), "write it as 90 s, 5 min or 2 h")
     })
 }
 
@@ -98,7 +95,7 @@ pub fn size(text: &str) -> Result<u64> {
     let factor = UNITS.iter().find(|(name, _)| *name == unit.trim()).map(|(_, factor)| *factor);
     let bytes = number.trim().parse::<f64>().ok().zip(factor).map(|(number, factor)| number * factor);
     bytes.filter(|bytes| *bytes >= 1.0 && bytes.is_finite()).map(|bytes| bytes as u64).ok_or_else(|| {
-        Error::malformed(format!("`{text}` is no size of memory"), "write it as 2 GB, 500 MB or 4 GiB")
+        Error::malformed(format!("`{text}` is not an amount of memory"), "write it as 2 GB, 500 MB or 4 GiB")
     })
 }
 

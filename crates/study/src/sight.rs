@@ -165,7 +165,7 @@ impl Study {
         };
         if scenario.is_of_object() && scenario.target.pixels.is_none() && scenario.target.size_m.is_none() {
             let instead = "write size = \"0.5 m\" and distance = \"30 m\" in [target], or pixels = 400";
-            return refuse("requirement.of", "an object of which nobody says how large it is", instead);
+            return refuse("requirement.of", "the size of the object is not stated", instead);
         }
         if scenario.target.size_m.is_some() {
             if scenario.target.distance_m.is_none() {
@@ -178,11 +178,7 @@ impl Study {
             if self.behind.is_none() {
                 let instead =
                     "write [background] with temperature = \"15 degC\" (and a material, else a blackbody)";
-                return refuse(
-                    "target.size",
-                    "a size, but nothing is said of what is behind the target",
-                    instead,
-                );
+                return refuse("target.size", "a size, but what is behind the target is not stated", instead);
             }
         } else if self.behind.is_some() {
             let instead = "write size = \"0.5 m\" in [target]; without it the target fills the pixel";

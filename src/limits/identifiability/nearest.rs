@@ -47,6 +47,8 @@ const SAME_STATE: f64 = 1e-4;
 
 /// Distances that no scene has: what is compared sends less than numbers hold.
 const BEYOND: f64 = 1e100;
+/// Distances below which nothing is proved: products of their squares with the target's counts come to an end of numbers.
+const SMALLEST: f64 = 1e-75;
 
 /// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
 const FIRST_BOXES: u64 = 60;
@@ -208,7 +210,8 @@ impl<'a> NearestSolver<'a> {
         // That none is nearer must be so whatever rounding has added to the distance about which it is proved.
         let reach = limit / (1.0 - relative_error.min(0.5));
         let found = proof::nearer_than(&mut self.comparison, with, target, [limit, reach], known, boxes);
-        if found == Nearer::Nowhere && relative_error > 0.5 { Nearer::Undecided } else { found }
+        let is_sure = relative_error <= 0.5 && limit >= SMALLEST;
+        if found == Nearer::Nowhere && !is_sure { Nearer::Undecided } else { found }
     }
 
     /// Downhill from the target's own state to a minimum, or to the first state that is nearer than `limit`. Other minima are not
@@ -289,7 +292,8 @@ impl<'a> NearestSolver<'a> {
             if best.as_ref().is_none_or(|best| !best.is_proved_to(tolerance)) {
                 // Where it does not end, the search may know of one.
                 let before = best.as_ref().map_or(f64::INFINITY, |best| best.distance);
-                let starts = self.comparison.starts(&mut self.table, &target, 0.0);
+                let mut starts = self.comparison.starts(&mut self.table, &target, 0.0);
+                starts.push(state.clone());
                 self.descend_from(&target, starts, &mut best, enough);
                 if best.as_ref().is_some_and(|best| best.distance < before) {
                     self.prove(&target, &mut best, tolerance);
@@ -323,7 +327,7 @@ impl<'a> NearestSolver<'a> {
                     }
                     // No bound is nearer to the distance than this is known.
                     let surely = best.lower.min(best.distance * (1.0 - relative_error));
-                    best.lower = if surely > 0.0 { surely } else { 0.0 };
+                    best.lower = if surely > 0.0 && best.distance >= SMALLEST { surely } else { 0.0 };
                     let is_rounding =
                         best.distance <= NOTHING_OF_TERMS * terms || relative_error > NOTHING_BUT_ROUNDING;
                     let own = || self.comparison.against_nothing(&target);
@@ -352,7 +356,8 @@ impl<'a> NearestSolver<'a> {
             let candidate = refine(&mut self.comparison, target, start, best.as_ref(), enough);
             iterations += candidate.iterations;
             let found = candidate.distance < enough;
-            if best.as_ref().is_none_or(|best| candidate.distance < best.distance) {
+            // Nor is what is no number in the way of what comes later.
+            if best.as_ref().is_none_or(|best| candidate.distance < best.distance || best.distance.is_nan()) {
                 *best = Some(candidate);
             }
             if let Some(best) = best {

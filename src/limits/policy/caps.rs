@@ -109,7 +109,7 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
                     if exposures > 1 { format!(" for all {exposures} exposures") } else { String::new() };
                 let speed = significant(speed, 3);
                 let reason = if longest > 0.0 {
-                    format!("in longer the target moves a pixel at {speed} m/s{all}")
+                    format!("in a longer one the target moves a pixel at {speed} m/s{all}")
                 } else {
                     format!(
                         "the target moves a pixel at {speed} m/s while {exposures} frames pass, however short the exposures"
@@ -145,12 +145,12 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
             let step = camera.quantisation_step_counts().unwrap_or(0.0);
             let floor = camera.read_noise_counts.hypot(step / 12f64.sqrt());
             if floor > 0.0 {
-                push(CapCode::LowestNoise, floor, true, "read noise and steps of the converter stay".into());
+                push(CapCode::LowestNoise, floor, true, "read noise and quantisation remain".into());
             }
         }
         Quantity::Speed => {
             if let Some(speed) = given.speed_m_s {
-                push(CapCode::Motion, speed, true, "this speed is demanded".into());
+                push(CapCode::Motion, speed, true, "this speed is required".into());
             }
         }
         Quantity::Frames => {
@@ -161,7 +161,7 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
             push(CapCode::Impractical, most, false, reason);
             if let Some(time_s) = given.time_s {
                 let most = f64::from(camera.frames_within(time_s, bands));
-                let reason = format!("more are not read within {}", in_unit(time_s, "s"));
+                let reason = format!("more cannot be read within {}", in_unit(time_s, "s"));
                 push(CapCode::DecisionTime, most, false, reason);
             }
         }
@@ -171,7 +171,7 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
                 (given.speed_m_s, Motion::of(camera, trial.distance_m), trial.distance_m)
             {
                 let least = z * motion.blur_pixels(speed, camera.sweep_s(given.bands.len()));
-                push(CapCode::Motion, least, true, "nearer the target moves by a pixel".into());
+                push(CapCode::Motion, least, true, "closer, the target moves by a pixel".into());
             }
         }
     }
@@ -182,7 +182,7 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
             CapCode::FullWell,
             value,
             is_least,
-            format!("the pixel is full at {} counts", significant(full, 2)),
+            format!("the pixel saturates at {} counts", significant(full, 2)),
         );
     }
     Ok(limits)

@@ -47,7 +47,7 @@ impl CameraTask<'_> {
             // A larger pixel sees more photons, and fewer pixels see the object.
             Quantity::Pixel if self.of_object && self.size_m.is_some() => {
                 let reason =
-                    "the size of the pixel changes how many of them see the object: try others".to_owned();
+                    "the number of pixels on the object depends on their size: try other sizes".to_owned();
                 return Ok(Solution::new(None, self.camera.pixel_m, f64::NAN, Some(reason)));
             }
             Quantity::Exposure | Quantity::Pixel | Quantity::FNumber | Quantity::Noise => {}
@@ -79,7 +79,7 @@ impl CameraTask<'_> {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
                 }
                 Quantity::Noise if !self.camera.pattern.is_none() => {
-                    "shot noise, patterns of the array and what else adds noise are too much: no detector is quiet enough"
+                    "shot noise, patterns of the array and other noise are too large: no detector is quiet enough"
                         .into()
                 }
                 Quantity::Exposure => "no exposure that was tried is long enough".into(),
@@ -110,7 +110,8 @@ impl CameraTask<'_> {
         Ok(Solution::new(Some(value), camera, reached, None))
     }
 
-    /// The least whole number of frames that will do: by halving, since more of them are never worse.
+    /// The least whole number of frames that will do, since more of them are never worse: d grows as the root of the frames where nothing
+    /// lasts from one to the next, and every third step is by halves.
     fn solve_frames(&self, mut distance: impl FnMut(&Trial) -> Result<f64>) -> Result<Solution> {
         let camera = f64::from(self.camera.frames);
         let mut at = |frames: u32| distance(&self.forward(Quantity::Frames, f64::from(frames)));
@@ -131,14 +132,20 @@ impl CameraTask<'_> {
             return Ok(Solution::new(None, camera, ceiling, Some(why.to_owned())));
         }
         let (mut few, mut many, mut reached) = (0, u32::MAX, ceiling);
-        while many - few > 1 {
-            let middle = few + (many - few) / 2;
-            let d = at(middle)?;
-            if enough(d) {
-                (many, reached) = (middle, d);
+        let (mut frames, mut d) = (self.camera.frames, at(self.camera.frames)?);
+        for step in 0.. {
+            if enough(d) && frames <= many {
+                (many, reached) = (frames, d);
             } else {
-                few = middle;
+                few = few.max(frames);
             }
+            if many - few <= 1 {
+                break;
+            }
+            let guess = f64::from(frames) * (self.required * (1.0 - 1e-9) / d).powi(2);
+            let next = if step % 3 == 2 { few.midpoint(many) } else { guess.ceil() as u32 };
+            frames = next.clamp(few + 1, many - 1);
+            d = at(frames)?;
         }
         Ok(Solution::new(Some(f64::from(many)), camera, reached, None))
     }
@@ -147,7 +154,7 @@ impl CameraTask<'_> {
     fn solve_speed(&self, distance: impl FnMut(&Trial) -> Result<f64>) -> Result<Solution> {
         let camera = self.value(Quantity::Speed);
         let Some(motion) = Motion::of(self.camera, self.distance_m) else {
-            let reason = "the scenario does not say target.distance".to_owned();
+            let reason = "target.distance is not stated".to_owned();
             return Ok(Solution::new(None, camera, f64::NAN, Some(reason)));
         };
         let exposure = self.solve(Quantity::Exposure, distance)?;

@@ -26,10 +26,10 @@ enum Kind {
     ///
     /// Cubes hold a band for each filter. The reference object of a scene is taken off, and the wheel's vignetting is found.
     Response(response::ResponseArgs),
-    /// The noise of the samples out of the cube: photons per unit, electronic noise, variance of each band
+    /// The noise of the samples from the cube: photons per unit, electronic noise, variance of each band
     ///
-    /// Of two or more frames of one scene by what they differ by; of a single frame of three bands or more by what neighbours differ
-    /// by that other bands do not see.
+    /// From the differences of two or more frames of one scene; from a single frame of three bands or more by the differences of
+    /// neighbours that other bands do not show.
     Noise(noise::NoiseArgs),
     /// Lines whose gain and offset are off, found and taken out: the cube without its stripes
     ///

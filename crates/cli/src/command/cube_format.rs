@@ -5,7 +5,7 @@ use hadar_report::cube_format::CubeFormat;
 
 #[derive(Debug, Args)]
 pub(super) struct CubeFormatArgs {
-    /// As what cubes are written
+    /// File format of written cubes
     #[arg(long, value_enum, default_value_t = Format::Npy)]
     cube_format: Format,
 }
@@ -14,7 +14,7 @@ pub(super) struct CubeFormatArgs {
 enum Format {
     /// NPY files
     Npy,
-    /// ENVI files, whose header says the bands
+    /// ENVI files, whose header lists the bands
     Envi,
 }
 

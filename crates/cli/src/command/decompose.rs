@@ -16,13 +16,13 @@ use std::process::ExitCode;
 pub(super) struct DecomposeArgs {
     /// The decomposition scenario (TOML): [cube], [bands], [[environment]], [library]
     scenario: PathBuf,
-    /// How pixels are taken apart
+    /// Method of decomposition
     #[arg(long, value_enum, default_value_t = By::Ml)]
     method: By,
     /// What is done with pixels and bands that are found to be bad: cube.bad of the scenario
     #[arg(long, value_enum)]
     bad: Option<FoundBad>,
-    /// How many of the most probable materials of a pixel are written with their posteriors
+    /// Number of the most probable materials of a pixel that are written with their posteriors
     #[arg(long, value_name = "K", default_value_t = CANDIDATES as u8, value_parser = clap::value_parser!(u8).range(1..=MOST_RANKED as i64))]
     candidates: u8,
 }
@@ -54,7 +54,7 @@ pub(super) enum By {
     AnalyticInverse,
     /// Temperature and emissivity alone, as if nothing were scattered
     Te,
-    /// The blackbody that sends as much in all bands together, as a thermal camera says
+    /// The blackbody of equal radiance in all bands together, as a thermal camera reads
     GreyBody,
 }
 

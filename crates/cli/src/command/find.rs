@@ -15,7 +15,7 @@ pub(super) struct FindArgs {
     /// Scenario file or rule (TOML) without a camera, with what may be chosen in [find]; `-` for standard input
     #[arg(value_name = "QUESTION")]
     question: PathBuf,
-    /// Exit with code 3 unless a camera meets under no condition but those of --accept
+    /// Exit with code 3 unless a camera meets the requirement under no condition except those of --accept
     #[arg(long)]
     check: bool,
     /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them

@@ -44,7 +44,7 @@ pub struct Global {
     /// replaced, the others stay
     #[arg(long)]
     pub(super) force: bool,
-    /// Put a value in the place of the file's own, as in camera.exposure="5 ms" or environment[0].lighting=0.3; may be given several
+    /// Replace a value of the file, as in camera.exposure="5 ms" or environment[0].lighting=0.3; may be given several
     /// times
     #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub(super) set: Vec<Setting>,

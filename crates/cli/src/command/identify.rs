@@ -17,7 +17,7 @@ const EXACT: &str = "Simulated decisions";
 
 #[derive(Debug, Args)]
 pub(super) struct IdentifyArgs {
-    /// Scenario files (TOML), `-` for standard input; of several one table, a row for each
+    /// Scenario files (TOML), `-` for standard input; several give one table, a row for each
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
     /// The distance that decides, instead of the scenario's
@@ -41,7 +41,7 @@ pub(super) struct IdentifyArgs {
     /// Which bands matter, and the best K contiguous filters, or fewer that do as well
     #[arg(long, value_name = "K", help_heading = BANDS)]
     filters: Option<usize>,
-    /// Simulate the maximum-likelihood decision over all states, and hold it against the limits
+    /// Simulate the maximum-likelihood decision over all states, and compare it with the limits
     #[arg(long, help_heading = EXACT)]
     exact: bool,
     /// How counts scatter in the simulation (default: gaussian with a noisy camera, else poisson)
@@ -59,7 +59,7 @@ pub(super) struct IdentifyArgs {
     /// Photons at which the hardest pair is distinguished on average over the priors of the scenario
     #[arg(long)]
     average: bool,
-    /// Answer only whether the camera distinguishes the target from every alternative; exit with code 3 unless it does under no condition but those of --accept
+    /// Answer only whether the camera distinguishes the target from every alternative; exit with code 3 unless it does under no condition except those of --accept
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact", "average"])]
     check: bool,
     /// With --check: codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them

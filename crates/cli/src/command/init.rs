@@ -33,15 +33,15 @@ enum For {
     Rule,
     /// Depth by two cameras before a street
     Range,
-    /// Distance by the air between
+    /// Distance from the air between
     Air,
     /// Classifiers against the limit
     Simulate,
     /// A scene as a heat cube
     Render,
-    /// A heat cube taken apart, with a scene to make one
+    /// Decomposition of a heat cube, with a scene to make one
     Decompose,
-    /// A library out of a heat cube, with a scene to make one
+    /// A library from a heat cube, with a scene to make one
     Library,
 }
 

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct RangeArgs {
-    /// Ranging scenarios (TOML), `-` for standard input; of several one table, a row for each
+    /// Ranging scenarios (TOML), `-` for standard input; several give one table, a row for each
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
     /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound? By air: fit N spectra

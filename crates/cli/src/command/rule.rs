@@ -21,12 +21,12 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct RuleArgs {
-    /// Rule files (TOML), `-` for standard input: scenarios with [envelope], cameras = [...] or [[camera]] tables, and [rule]; of
-    /// several one table, a row for each
+    /// Rule files (TOML), `-` for standard input: scenarios with [envelope], cameras = [...] or [[camera]] tables, and [rule];
+    /// several give one table, a row for each
     #[arg(required_unless_present = "verify", value_name = "RULE")]
     rules: Vec<PathBuf>,
-    /// Exit with code 3 unless every camera meets the rule; without --out a line a camera, each decided by the first scene that
-    /// does
+    /// Exit with code 3 unless every camera meets the rule; without --out one line per camera, each decided by the first scene
+    /// that suffices
     #[arg(long)]
     check: bool,
     /// With --check: one camera that meets the rule is enough
@@ -50,16 +50,16 @@ pub(super) struct RuleArgs {
     /// Judge every clause with a vehicle cell by cell, speed by speed and light by light, [[grid]]: the table that a maker hands in
     #[arg(long, conflicts_with_all = ["check", "test", "sources", "stand_in", "reforms", "figures", "on", "accept"])]
     grid: bool,
-    /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
+    /// Compute a certificate again, certificate.json of a report, and check that its inputs and its statements are the same
     #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "reforms", "figures", "grid", "on"])]
     verify: Option<PathBuf>,
     /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
     #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition, conflicts_with = "verify")]
     accept: Vec<String>,
-    /// Cameras to be judged in the place of the rule's own, by name: the program's, or those of --cameras; may be given several times
+    /// Cameras to judge instead of the rule's own, by name: the program's, or those of --cameras; may be given several times
     #[arg(long, value_name = "NAME", conflicts_with_all = ["verify", "sources", "test"])]
     judge: Vec<String>,
-    /// Ask about a day: a rule that does not hold on it says so
+    /// Day to ask about: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = day)]
     on: Option<Date>,
 }

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ServeArgs {
-    /// The scenario that the page begins with, or the rule that the page for rules does, `-` for standard input; default: that of
+    /// The scenario that the page begins with, or the rule for the page of rules, `-` for standard input; default: that of
     /// `hadar init size`
     scenario: Option<PathBuf>,
     /// Port on 127.0.0.1; 0 takes any that is free

@@ -20,7 +20,7 @@ const CURVE_POINTS: usize = 101;
 pub(super) struct SimulateArgs {
     /// The scenario file (TOML)
     scenario: PathBuf,
-    /// Who takes part: likelihood-ratio, best-fits, discriminant, logistic, network (default: all)
+    /// Classifiers that take part: likelihood-ratio, best-fits, discriminant, logistic, network (default: all)
     #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Classifiers")]
     classifiers: Vec<String>,
     /// Spectra of each class: a quarter for training, a quarter for validation, half for the test
@@ -56,7 +56,7 @@ pub(super) struct SimulateArgs {
     /// Write the spectra that classifiers are judged on into the report of --out, with the classes' states and mean counts
     #[arg(long, help_heading = "Spectra")]
     save_spectra: bool,
-    /// Draw the likelihood ratio itself instead of spectra: far quicker where it alone takes part, and as good
+    /// Draw the likelihood ratio itself instead of spectra: far quicker where it alone takes part, and as accurate
     #[arg(long, help_heading = "Spectra")]
     skip_spectra: bool,
     /// Read the target's temperature instead: by maximum likelihood and by thermal imaging at true temperatures

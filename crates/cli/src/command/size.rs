@@ -15,10 +15,10 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct SizeArgs {
-    /// Scenario files (TOML), `-` for standard input; of several one table, a row for each
+    /// Scenario files (TOML), `-` for standard input; several give one table, a row for each
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
-    /// Exit with code 3 unless the requirement is met under no condition but those of --accept; without --out a 'no' alone, by the
+    /// Exit with code 3 unless the requirement is met under no condition except those of --accept; without --out a 'no' alone, by the
     /// cheapest proofs
     #[arg(long)]
     check: bool,

@@ -50,10 +50,10 @@ pub(super) struct SweepArgs {
     /// The distance that decides, instead of the scenario's
     #[arg(long)]
     by: Option<global::By>,
-    /// How pixels are taken apart where rows are heat cubes
+    /// Method of decomposition where rows are heat cubes
     #[arg(long, value_enum, default_value_t = decompose::By::Ml)]
     method: decompose::By,
-    /// Compute every n-th row alone, from the i-th on; the last shard that ends writes the table
+    /// Compute only every n-th row, from the i-th on; the last shard to end writes the table
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: String,
     /// Write the table of the rows that are there, and compute none of the others

@@ -20,7 +20,7 @@ impl Say for Assumed {
 impl Say for Proviso {
     fn say(&self) -> String {
         let (time, way) = (quantity(self.time_s, "s"), length(self.way_m));
-        format!("its {} frames can be registered ({time}, a way of {way})", self.frames)
+        format!("its {} frames can be registered ({time}, {way} of travel)", self.frames)
     }
 }
 
@@ -83,15 +83,15 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "flicker_fraction" => "all of its noise averages out over the exposures".into(),
         "fixed_pattern" => {
             return format!(
-                "correction leaves no pattern of pixels, rows and columns, and no offset, that frames do not average away ({} not stated)",
+                "the correction leaves no fixed pattern of pixels, rows or columns and no lasting offset ({} not stated)",
                 taken.trim_start_matches("0 (").trim_end_matches(')')
             );
         }
         "readout" => format!("its readout is {taken}"),
         "frame_rate" => "exposures follow each other without a pause".into(),
         "full_well" => match counts {
-            Some(counts) => format!("{} counts do not fill a pixel", significant(counts, 2)),
-            None => "no pixel is full".into(),
+            Some(counts) => format!("{} counts do not saturate a pixel", significant(counts, 2)),
+            None => "no pixel saturates".into(),
         },
         "dark_rate" => "it counts nothing in the dark".into(),
         "read_noise" => "reading it adds no noise".into(),
@@ -108,18 +108,18 @@ impl Say for Condition {
             Self::RegisteredFrames(proviso) => proviso.say(),
             Self::StillScene { time_s } => format!("nothing moves for {}", quantity(*time_s, "s")),
             Self::Constants { emissivities: [one, other] } => format!(
-                "real surfaces are as the one number of each says ({one} and {other}), which no surface was measured to be"
+                "real surfaces have the constant emissivities entered ({one} and {other}), which were not measured"
             ),
             Self::Emissivities { error, share_met } => format!(
                 "the emissivities are known better than to {error} rms ({} of draws with such errors meet the requirement)",
                 share(*share_met)
             ),
             Self::SharedErrors { error, distance, undone: false } => format!(
-                "the emissivities are as entered (with errors of {error} rms, which all pixels share, d is {} at most, and enough)",
+                "the emissivities are as entered (with errors of {error} rms, shared by all pixels, d is {} at most, still enough)",
                 significant(*distance, 2)
             ),
             Self::SharedErrors { error, distance, .. } => format!(
-                "the emissivities are known better than to {error} rms (with such errors, which all pixels share, d is {} at most)",
+                "the emissivities are known better than to {error} rms (with such errors, shared by all pixels, d is {} at most)",
                 significant(*distance, 2)
             ),
             Self::ErrorsCorrelated { length_cm1 } => {
@@ -131,16 +131,16 @@ impl Say for Condition {
                 significant(bearing_rad.to_degrees(), 2)
             ),
             Self::PatternOfEachBand => {
-                "the pattern of the array is another one in each band, as a correction behind each filter leaves it".into()
+                "the fixed pattern differs from band to band, as after a correction behind each filter".into()
             }
             Self::PatternOfEachPixel => {
-                "rows and columns of the array have no noise in common beyond a pixel of a window".into()
+                "row and column noise is independent between the pixels of a window".into()
             }
             Self::PixelsByLens => {
-                "as many pixels are on the target as pixel and focal length say, which the field of view contradicts".into()
+                "the pixels on the target are counted by pixel and focal length, which the field of view contradicts".into()
             }
             Self::AlikePixels { pixels } => format!(
-                "the {} pixels that are added up are found, and all of them see the same of the target",
+                "the {} pixels that are added up are identified, and all see the target in the same state",
                 in_number(*pixels)
             ),
             Self::FrameNoise { figures } => format!(
@@ -152,7 +152,7 @@ impl Say for Condition {
             Self::Spoiled { by } => {
                 format!("it does not matter that {}", super::shortfall::clauses(std::slice::from_ref(by)))
             }
-            Self::NoLimit => "the paper's local distance is believed, which is no limit".into(),
+            Self::NoLimit => "the paper's local distance, which is no limit, can be trusted".into(),
             Self::Bunching { occupancy } => format!(
                 "the bunching of thermal photons is left out ({} photons per mode)",
                 significant(*occupancy, 2)
@@ -162,13 +162,13 @@ impl Say for Condition {
             }
             Self::FillsPixel { footprint_m: None } => "the target fills a pixel at its distance".into(),
             Self::Modelled { bands } => {
-                format!("a camera of one band reads {bands} bands at once, as no such camera does")
+                format!("a camera with one band reads {bands} bands at once, which none can do")
             }
             Self::BeyondRange { outside, bands } => {
-                format!("the figures of the detector hold beyond its range too ({outside} of {bands} bands)")
+                format!("the detector's figures also hold outside its range ({outside} of {bands} bands)")
             }
             Self::Sampled { width_cm1 } => {
-                format!("bands up to {} cm^-1 wide are as their centres", significant(*width_cm1, 3))
+                format!("bands up to {} cm^-1 wide can be sampled at their centres", significant(*width_cm1, 3))
             }
             Self::InOnePixel { fill } => {
                 format!("the target, which fills {} of a pixel, lies in the middle of one", share(*fill))
@@ -181,27 +181,27 @@ impl Say for Condition {
                 "the filters neither emit nor reflect radiation onto the sensor (sensor_temperature is not stated)".into()
             }
             Self::FilterAngle { before_lens: true, .. } => {
-                "the target is near the axis: at an angle filters before the lens pass shorter waves".into()
+                "the target is near the axis: off axis, filters before the lens pass shorter wavelengths".into()
             }
             Self::FilterAngle { before_lens: false, sine } => format!(
-                "the filters pass in a beam of up to {:.0} degrees what they pass at right angles (place is not stated)",
+                "the filters transmit the same at up to {:.0} degrees as at normal incidence (place is not stated)",
                 sine.asin().to_degrees()
             ),
             Self::NoAir => "the air on the path absorbs nothing".into(),
             Self::NoSurroundings => "no surroundings illuminate the target".into(),
             Self::DarkRest { share: rest } => format!(
-                "up to {} of the hemisphere above the target, which no object fills, are black and cold",
+                "up to {} of the hemisphere above the target is filled by no object and sends no radiation",
                 share(*rest)
             ),
             Self::Waits { time_s } => {
                 format!("the decision may wait {} until all is read", quantity(*time_s, "s"))
             }
-            Self::EmissivityKnown => "the emissivity of what is measured is exactly as entered".into(),
-            Self::OneScene => "what is ranged has the texture of the one scene that is rendered".into(),
+            Self::EmissivityKnown => "the emissivity of the measured surface is exactly as entered".into(),
+            Self::OneScene => "real objects have the texture of the one scene that is rendered".into(),
             Self::SurroundingsKnown => "the temperatures of the surroundings are known".into(),
             Self::Calibrated => "the gain of the camera is known".into(),
             Self::Extrapolated { materials } => {
-                format!("spectra go on beyond their tables as they are guessed to ({})", listed(materials))
+                format!("spectra continue beyond their tables as extrapolated ({})", listed(materials))
             }
             Self::LeftOut { materials } => {
                 format!("the omitted materials never occur ({})", listed(materials))
@@ -223,7 +223,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "registered-frames",
-        "Frames are added up while something moves at the demanded speed: they must be laid over each other first.",
+        "Frames are added up while something moves at the required speed: they must be registered first.",
         "Take fewer frames, or make sure that they can be registered.",
     ],
     [
@@ -238,43 +238,43 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "emissivities",
-        "Errors of the emissivities as they usually are would undo the answer.",
+        "Errors of the emissivities of the usual size would undo the answer.",
         "Measure these emissivities, and state sensitivity.emissivity_error.",
     ],
     [
         "shared-emissivity-errors",
-        "Nobody states how well the emissivities are known: all pixels of an object share their errors, and no number of pixels or frames \
+        "How well the emissivities are known is not stated: all pixels of an object share their errors, and no number of pixels or frames \
          averages them away.",
-        "Measure these emissivities, and state sensitivity.emissivity_error, which the verdict then has in it.",
+        "Measure these emissivities, and state sensitivity.emissivity_error, which the verdict then includes.",
     ],
     [
         "errors-correlated",
-        "Over which length errors of the emissivities are correlated is not stated.",
+        "The correlation length of errors of the emissivities is not stated.",
         "State sensitivity.correlation together with the error.",
     ],
     [
         "extrapolated",
-        "Bands lie beyond where a spectrum was measured, and extrapolate = \"hold\" or \"linear\" guesses what is there.",
-        "Choose bands that the spectra cover, or measure farther.",
+        "Bands lie outside the measured range of a spectrum, which extrapolate = \"hold\" or \"linear\" continues by a guess.",
+        "Choose bands that the spectra cover, or measure a wider range.",
     ],
     [
         "nobody-crosses",
-        "Only the vehicle moves: who crosses blurs more, and is outside the view of a slow vehicle's camera.",
+        "Only the vehicle moves: a crossing target blurs more, and is outside the view of a slow vehicle's camera.",
         "State [stop] crossing_speed (0 for a target that does not move) and offset.",
     ],
     [
         "in-view",
-        "Whether who crosses is in the view until the decision is not known.",
+        "Whether a crossing target is in view until the decision is not known.",
         "State camera.field_of_view, or pixels.",
     ],
     [
         "pattern-of-each-band",
-        "Patterns of the array are taken as independent between bands; one offset in all of them is another noise, which may be worse or better.",
+        "Fixed patterns are taken as independent between bands; an offset common to all bands may be worse or better.",
         "Correct the non-uniformity behind every filter.",
     ],
     [
         "pattern-of-each-pixel",
-        "Row and column noise is taken as another one in every pixel; what a whole column of a window has in common moves a disparity farther.",
+        "Row and column noise is taken as independent in every pixel; noise common to a whole column of a window shifts a disparity more.",
         "Take out stripes first (`hadar calibrate stripes`), and state what is left as camera.fixed_pattern.",
     ],
     [
@@ -284,17 +284,17 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "alike-pixels",
-        "The counts of all pixels of an object are added up: they must be known to be its own, and see the same of it.",
+        "The counts of all pixels of an object are added up: they must be known to lie on it, and all see it in one state.",
         "Segment the image first; ask of one pixel (requirement.of = \"pixel\") where the object is of several materials or temperatures.",
     ],
     [
         "frame-noise",
-        "Nobody states what rows, columns and frames have in common from frame to frame, which the pixels of an object do not average away.",
-        "State camera.temporal_row_noise, temporal_column_noise and frame_noise, by the sheet or by `hadar calibrate noise`.",
+        "Temporal noise of rows, columns and frames is not stated; the pixels of an object do not average it away.",
+        "State camera.temporal_row_noise, temporal_column_noise and frame_noise, from the data sheet or `hadar calibrate noise`.",
     ],
     [
         "image",
-        "Distances alone are compared, and the image is spoiled: by motion, a full well, or a decision that comes too late.",
+        "Only distances are compared, but the image fails: by motion blur, saturation, or a decision that comes too late.",
         "Shorten the exposure, or ask `hadar size`, which judges the image.",
     ],
     [
@@ -304,7 +304,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "photon-bunching",
-        "The bunching of thermal photons would decide, and is left out.",
+        "The bunching of thermal photons is neglected, but would change the verdict.",
         "Write camera.photon_bunching = true.",
     ],
     [
@@ -314,22 +314,22 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "modelled",
-        "The camera has one band, and its entry models it as if it read all bands at once, as no such camera does.",
+        "The camera has one band, and its entry models it as reading all bands at once, which no such camera can.",
         "Write camera.readout = \"sequential\" for filters before it, one after the other.",
     ],
     [
         "beyond-range",
-        "Bands lie for the most part beyond the range in which the figures of the detector are stated.",
+        "Some bands lie mostly outside the range in which the detector's figures are stated.",
         "Narrow the bands, or state a camera.spectral_range that holds them.",
     ],
     [
         "bands-sampled",
-        "Wide bands of a grid or of rows are taken at their centres, which may see what the whole band does not.",
+        "Wide bands of a grid or of rows are sampled at their centres, which may differ from the mean over the band.",
         "Write bands.integrate = true, or the bands as ranges.",
     ],
     [
         "in-one-pixel",
-        "The target does not fill its pixel, and is taken to lie in one.",
+        "The target is smaller than a pixel, and is taken to lie within one.",
         "Keep a margin for targets between pixels, or magnify.",
     ],
     [
@@ -344,7 +344,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "filter-angle",
-        "An interference filter passes shorter waves at an angle; it is taken to pass at every angle of the beam what it passes at right angles.",
+        "An interference filter passes shorter wavelengths at an angle; its transmission at normal incidence is used for the whole beam.",
         "Write place = \"sensor\" and index in [bands] (or find.filters): the transmission is then averaged over the cone of the lens; before the lens keep the target near the axis.",
     ],
     ["no-air", "There is no air on the path.", "Write [atmosphere] with model = \"us-standard\"."],
@@ -360,27 +360,27 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "acquisition-time",
-        "Nobody states how long the decision may take: all bands of all frames are read first.",
+        "How long the decision may take is not stated: all bands of all frames are read first.",
         "Write requirement.time.",
     ],
     [
         "calibrated",
-        "The gain of the camera is not among the unknowns, and so is known.",
-        "Write \"gain\" into unknown.nuisances where it is not.",
+        "The gain of the camera is not among the unknowns: it is taken as known.",
+        "Add \"gain\" to unknown.nuisances if it is unknown.",
     ],
     [
         "surroundings-known",
-        "The temperatures of what is around the target are not among the unknowns, and so are known.",
-        "Write \"environment-temperature\" into unknown.nuisances where they are not.",
+        "The temperatures of the surroundings are not among the unknowns: they are taken as known.",
+        "Add \"environment-temperature\" to unknown.nuisances if they are unknown.",
     ],
     [
         "emissivity-known",
-        "The emissivity of what is measured is exactly as entered: what it may be off by is not in the bound of the temperature.",
+        "The emissivity of the measured surface is taken as exact: its error is not included in the bound of the temperature.",
         "Write [sensitivity] with emissivity_error: the clause is undecided then.",
     ],
     [
         "one-scene",
-        "A distance is known as well as the texture allows, and the texture is that of the one scene that is rendered.",
+        "How well a distance is known depends on the texture, which is that of the one rendered scene.",
         "Accept it, or ask `hadar range` about scenes of your own.",
     ],
     [
@@ -401,8 +401,8 @@ pub(crate) fn yes(conditions: &[Condition]) -> String {
     match (open.next(), open.count()) {
         (None, _) => "yes".into(),
         (Some(one), 0) => format!("yes, if {}", one.say()),
-        (Some(one), 1) => format!("yes, if {}, and on 1 more condition", one.say()),
-        (Some(one), more) => format!("yes, if {}, and on {more} more conditions", one.say()),
+        (Some(one), 1) => format!("yes, if {}, and under 1 more condition", one.say()),
+        (Some(one), more) => format!("yes, if {}, and under {more} more conditions", one.say()),
     }
 }
 

@@ -66,7 +66,7 @@ fn distilled(result: &Decomposed) -> String {
             significant(of.noise, 2)
         );
     }
-    out.push_str("  Residues that are no noise are attributed to the sky; radiation of objects that are not listed as surroundings is contained in them.\n\n");
+    out.push_str("  Residues beyond the noise are attributed to the sky; radiation of objects that are not listed as surroundings is contained in them.\n\n");
     out
 }
 
@@ -81,10 +81,7 @@ fn constants(result: &Decomposed) -> String {
     if all.is_empty() || !result.method.has_likelihood() {
         return String::new();
     }
-    format!(
-        " {} {each}, which no surface was measured to be: decisions for and against rest on it.",
-        listed(all)
-    )
+    format!(" {} {each}, which was not measured: decisions for and against rest on it.", listed(all))
 }
 
 fn sentence(result: &Decomposed) -> String {

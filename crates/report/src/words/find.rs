@@ -26,17 +26,14 @@ pub fn text(found: &FindAnswer) -> String {
         out += &bought(best);
         out += &conditions::paragraph(best.conditions(), true);
     }
-    let head = "Beaten by none in ";
+    let head = "Pareto-optimal in ";
     let merits: Vec<&str> = merits(found).iter().map(|merit| merit.name()).collect();
-    out += &table(&format!("{head}{}, the first first", listed(&merits)), &found.listed);
+    out += &table(&format!("{head}{}, sorted in this order", listed(&merits)), &found.listed);
     out += &of_others(found);
-    out += &table("The best of every other camera that meets", &found.also);
-    out += &table(
-        "Undecided: what is proved does not reach the distance, what was found does",
-        &found.undecided,
-    );
+    out += &table("The best of every other camera that meets the requirement", &found.also);
+    out += &table("Undecided: d reaches the requirement by the search, not by the proof", &found.undecided);
     if let Some(near) = &found.near {
-        out += &table("The nearest", std::slice::from_ref(&near.choice));
+        out += &table("The closest", std::slice::from_ref(&near.choice));
         out += &solutions(&near.sizing, Units::of(&found.scenario.source));
     }
     out += &failures(found);
@@ -59,7 +56,7 @@ pub fn sentence(found: &FindAnswer) -> String {
         let near = found.near.as_ref().map_or_else(String::new, |near| {
             let choice = &near.choice;
             let d = significant(choice.upper, 3);
-            format!(" The nearest is {}: d is {d} at most.", called(choice))
+            format!(" The closest is {}: d is {d} at most.", called(choice))
         });
         if !found.undecided.is_empty() {
             let cameras: Vec<&str> = found.undecided.iter().map(|choice| choice.camera.as_str()).collect();
@@ -85,25 +82,25 @@ pub fn sentence(found: &FindAnswer) -> String {
         Some(Merit::Price) if best.price.is_some() => {
             match found.listed.iter().chain(&found.also).all(|one| one.price.is_some()) {
                 true => "The cheapest that meets",
-                false => "The cheapest of those whose price is known that meets",
+                false => "The cheapest of known price that meets",
             }
         }
-        Some(Merit::Price) => "No price is known of any; the first by the rest that meets",
+        Some(Merit::Price) => "No price is known; the best by the other criteria that meets",
         Some(Merit::Time) => "The fastest that meets",
-        Some(Merit::Filters) => "That with the fewest filters that meets",
-        Some(Merit::Aperture) => "That with the smallest lens that meets",
+        Some(Merit::Filters) => "The one with the fewest filters that meets",
+        Some(Merit::Aperture) => "The one with the smallest lens that meets",
         None => "What meets",
     };
     let first = match &found.rule {
         Some(_) => format!("{first} the rule in all of its scenes is"),
-        None => format!("{first} is"),
+        None => format!("{first} the requirement is"),
     };
     let open: Vec<&Condition> = Condition::open(best.conditions()).collect();
     let subject = match open.split_first() {
         None => String::new(),
         Some((one, [])) => format!(", if {}", one.say()),
-        Some((one, [_])) => format!(", if {}, and on 1 more condition", one.say()),
-        Some((one, rest)) => format!(", if {}, and on {} more conditions", one.say(), rest.len()),
+        Some((one, [_])) => format!(", if {}, and under 1 more condition", one.say()),
+        Some((one, rest)) => format!(", if {}, and under {} more conditions", one.say(), rest.len()),
     };
     format!(
         "{first} {}{}{subject}.",
@@ -233,10 +230,10 @@ fn of_others(found: &FindAnswer) -> String {
     for choice in found.listed.iter().skip(1).chain(&found.also) {
         let more: Vec<String> = codes(choice).into_iter().filter(|code| !of_best.contains(code)).collect();
         if !more.is_empty() {
-            let _ = writeln!(out, "  {} too if {}", called(choice), listed(&more));
+            let _ = writeln!(out, "  {}: {}", called(choice), listed(&more));
         }
     }
-    if out.is_empty() { out } else { format!("Conditions beyond those of the first\n{out}\n") }
+    if out.is_empty() { out } else { format!("Further conditions of the others\n{out}\n") }
 }
 
 /// Why the others do not meet.
@@ -280,25 +277,25 @@ pub fn why(failed: &Failed, required: f64) -> String {
             )
         }
         Why::Refused { because } => because.clone(),
-        Why::NotSold => "nobody can order it".into(),
+        Why::NotSold => "it is not sold as a camera".into(),
         Why::AllFilters { frames_would_do: true } => {
-            format!("not with all filters at once and the most frames; more frames would do{short}")
+            format!("fails even with all filters at once and the most frames; more frames would do{short}")
         }
         Why::AllFilters { frames_would_do: false } => {
-            format!("not with all filters at once, and no number of frames would do{short}")
+            format!("fails even with all filters at once, for any number of frames{short}")
         }
         Why::Distance { filters, frames, all_judged, is_cut } => {
             let searched = if *all_judged { "" } else { " among those that were searched" };
             let frames = if *frames == 1 { "1 frame".into() } else { format!("{frames} frames") };
             let filters = if *filters == 1 { "1 filter".into() } else { format!("up to {filters} filters") };
-            let cut = if *is_cut { ", and more take too long for the time or for what moves" } else { "" };
-            format!("no choice of {filters} and {frames} does{searched}{cut}{short}")
+            let cut = if *is_cut { ", and more exceed the time or the motion allowed" } else { "" };
+            format!("no choice of {filters} and {frames} suffices{searched}{cut}{short}")
         }
-        Why::Time { takes_s } => format!("its fewest readings take {}", quantity(*takes_s, "s")),
+        Why::Time { takes_s } => format!("even its fewest readings take {}", quantity(*takes_s, "s")),
         Why::Motion => "the target moves by a pixel or more while its bands are exposed".into(),
-        Why::FullWell => "a reading overflows its full well at the exposure that is fixed".into(),
+        Why::FullWell => "a reading exceeds the full well at the fixed exposure".into(),
         Why::Undecided => "undecided".into(),
-        Why::NotAsAWhole => "its best choice distinguishes every pair and does not meet the requirement as a whole: compute it with `hadar size` or `hadar rule`".into(),
+        Why::NotAsAWhole => "its best choice distinguishes every pair but does not meet the requirement as a whole: check it with `hadar size` or `hadar rule`".into(),
     }
 }
 
@@ -312,7 +309,7 @@ fn missing(found: &FindAnswer) -> String {
     if !not_sold.is_empty() {
         let _ = writeln!(
             out,
-            "Not looked at, since nobody can order them as cameras: {}. Name one in find.cameras to ask it.\n",
+            "Not considered, since they are not sold as cameras: {}. Name one in find.cameras to include it.\n",
             listed(&not_sold)
         );
     }
@@ -333,7 +330,7 @@ fn missing(found: &FindAnswer) -> String {
         }
     }
     if !blocks.is_empty() {
-        let head = "No document states all of these; write what they have in place of the dots into a file for --cameras";
+        let head = "No document states all of these figures; replace the dots, and save this as a file for --cameras";
         let _ = writeln!(out, "{head}\n{blocks}");
     }
     out
@@ -344,19 +341,19 @@ fn footing(found: &FindAnswer) -> String {
     let Some(spec) = &found.scenario.find else { return String::new() };
     let put = match &found.rule {
         Some(_) => format!(
-            "what meets was held against the whole rule as `hadar rule` does, after a search in {} of its scenes",
+            "what meets was checked against the whole rule as by `hadar rule`, after a search in {} of its scenes",
             found.scenes
         ),
         None => "every camera that meets was checked by `hadar size` with its scenario".into(),
     };
     let mut notes = vec![
         format!("{put}; a price is a class of one piece where a public page states one"),
-        "more filters are exposed one after the other; of an equal number of filters the most informative are taken"
+        "several filters are exposed one after the other; of all choices of as many filters the most informative is taken"
             .to_owned(),
     ];
     match &spec.filters.from {
         FilterSupply::Any { step_um } => notes.push(format!(
-            "filters are ideal, with edges at multiples of {} um: no maker sells such",
+            "filters are ideal, with edges at multiples of {} um, which no maker sells",
             significant(*step_um, 3)
         )),
         FilterSupply::List(hadar_scenario::FilterList::Catalogue) => notes.push(
@@ -366,12 +363,12 @@ fn footing(found: &FindAnswer) -> String {
     }
     if !found.filters_left_out.is_empty() {
         notes.push(format!(
-            "not looked at, since a spectrum of the scene does not cover them: {}",
+            "filters not considered, since a spectrum of the scene does not cover them: {}",
             listed(&found.filters_left_out)
         ));
     }
     if found.exposures_tried {
-        notes.push("where a well would overflow, exposures are tried in steps of 2, each with the filters that do not fill it".into());
+        notes.push("where a pixel would saturate, exposures a factor 2 apart are tried, each with the filters that do not saturate it".into());
     }
     let lines: Vec<String> = notes.iter().map(|note| format!("  {note}\n")).collect();
     format!("Assumptions\n{}", lines.concat())

@@ -166,7 +166,7 @@ impl Say for Certified {
                 "proved: the operating envelope contains a scene in which the spectra do not differ".into()
             }
             Proof::DenseSearch => {
-                "searched, not proved: the best of a dense search and its refinements".into()
+                "searched, not proved: the lowest value of a dense search with refinements".into()
             }
             Proof::BranchAndBound => format!("proved by branch and bound to {} %", fixed(percent, 2)),
             Proof::Bounded => {
@@ -187,9 +187,7 @@ impl Say for Definition {
             ),
             Self::Temperature { coverage_factor, error_k, without_emissivity_errors } => {
                 let unasked = match without_emissivity_errors {
-                    true => {
-                        " (errors of the emissivities are not carried into it: no camera is said to meet it)"
-                    }
+                    true => " (errors of the emissivities are not included: no camera is judged to meet it)",
                     false => "",
                 };
                 format!(
@@ -211,10 +209,10 @@ impl Say for Definition {
                     words::share(*share)
                 );
                 if *without_air {
-                    out += " (the air of the rule is not in it: no camera is said to meet it)";
+                    out += " (the air of the rule is not included: no camera is judged to meet it)";
                 }
                 if *without_uncertainty {
-                    out += " (uncertain figures are not carried into it: no camera that has some is said to meet it)";
+                    out += " (uncertain figures are not propagated: no camera that has any is judged to meet it)";
                 }
                 out
             }
@@ -248,7 +246,7 @@ impl Say for LightTime {
             Self::Sharp { frames, speed_m_s, distance_m, units } => {
                 let frames = if *frames > 1 { format!("{frames} frames, each ") } else { String::new() };
                 let (speed, distance) = (units.speed(*speed_m_s), units.length(*distance_m));
-                format!("{frames}as long as less than a pixel of blur allows at {speed} and {distance}")
+                format!("{frames}as long as blur stays below a pixel at {speed} and {distance}")
             }
             Self::LongestIntegration => "the longest integration among the cameras".into(),
         }
@@ -260,7 +258,7 @@ impl Say for EmissivityError {
     fn say(&self) -> String {
         let percent = 100.0 * self.0;
         format!(
-            "errors of {percent} % in the emissivities, independent from band to band, make up more than the distance, \
+            "errors of {percent} % in the emissivities, independent from band to band, exceed the distance, \
              whatever the camera"
         )
     }
@@ -301,10 +299,10 @@ pub(crate) fn in_words_of_kind(kind: &str) -> &str {
     match kind {
         "tell-apart" => "distinguishes materials",
         "false-alarm" => "no false alarm",
-        "contrast" => "sees that something is there",
+        "contrast" => "detects an object",
         "resolution" => "pixels on the target",
-        "temperature-error" => "knows a temperature",
-        "depth-error" => "knows a distance",
+        "temperature-error" => "measures a temperature",
+        "depth-error" => "measures a distance",
         other => other,
     }
 }

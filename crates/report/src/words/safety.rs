@@ -90,7 +90,10 @@ pub(super) fn beside_draws(all: &[SafetyOfTarget]) -> String {
     if all.is_empty() {
         return String::new();
     }
-    format!("By what is proved of the scenario's camera, whatever is drawn\n{}\n", indented(&of_target(all)))
+    format!(
+        "By what is proved of the scenario's camera, independent of the draws\n{}\n",
+        indented(&of_target(all))
+    )
 }
 
 fn indented(lines: &str) -> String {

@@ -34,13 +34,14 @@ pub(crate) const BESIDES_IF: &str = "as if in force: yes, if";
 pub(crate) const SIDE_BY_SIDE: &str = "Rules side by side";
 
 /// Below that title.
-pub(crate) const LEAST_OR_SPOILED: &str = "The least margin of all clauses and scenes; a camera whose picture is spoiled fails whatever its margin.";
+pub(crate) const LEAST_OR_SPOILED: &str =
+    "The least margin of all clauses and scenes; a camera whose image is spoiled fails whatever its margin.";
 
 /// What a marked name of them means.
 pub(crate) const NOT_ALL: &str = "not every rule is met";
 
 /// Below their table.
-pub(crate) const IN_BRACKETS: &str = "  in brackets: least margin, above 1 where the demand is met, or what spoils the picture, and the clause of it; - : the rule does not name the camera\n";
+pub(crate) const IN_BRACKETS: &str = "  in brackets: least margin, above 1 where the demand is met, or what spoils the image, and the clause of it; - : the rule does not name the camera\n";
 
 /// Which cameras meet all rules.
 pub(crate) fn before_all(
@@ -64,7 +65,7 @@ pub(crate) fn before_all(
 }
 
 /// That one name stands for several cameras.
-pub(crate) const NOT_THE_SAME: &str = "  cameras of one name with other figures are others, each of the rule in brackets; `--judge` holds the same camera against all\n";
+pub(crate) const NOT_THE_SAME: &str = "  cameras of one name but different figures are listed apart, with their rule in brackets; `--judge` judges one camera by all rules\n";
 
 /// A camera of a name that one of another rule has too.
 pub(crate) fn of_rule(camera: &str, law: &str) -> String {

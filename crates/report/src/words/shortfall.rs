@@ -16,12 +16,12 @@ pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
     ],
     [
         "temperature-error",
-        "the temperature of the target is not known as well as demanded",
+        "the temperature of the target is not known as accurately as required",
         "more light, less noise, more bands, or an emissivity that is better known",
     ],
     [
         "depth-error",
-        "the distance is not known as well as demanded in the share of windows that is demanded",
+        "the distance is not known as accurately as required in the required share of windows",
         "a longer baseline or focal length, larger windows, less noise",
     ],
     [
@@ -31,18 +31,18 @@ pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
     ],
     [
         "motion-blur",
-        "the picture of the target moves by a pixel or more while all bands are exposed",
+        "the image of the target moves by a pixel or more while all bands are exposed",
         "a shorter exposure, bands that are read together, a shorter focal length or a lower speed",
     ],
     [
         "motion-unknown",
-        "a speed is demanded, and nobody says how far the target is: whether its picture is blurred cannot be said, which counts as not met",
+        "a speed is required, but the distance of the target is not stated: its motion blur is unknown, which counts as not met",
         "state target.distance or envelope.distance",
     ],
     [
         "out-of-view",
-        "the target, on its way across, is not in the camera's view in time for the decision",
-        "a wider field of view (field_of_view), or a lowest speed of the vehicle from which the target is in view",
+        "a crossing target is not in the camera's view in time for the decision",
+        "a wider field of view (field_of_view), or a minimum speed of the vehicle at which the target is in view",
     ],
     [
         "full-well",
@@ -58,7 +58,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 13] = [
     ["impractical", "no camera is built or used like that", "change another quantity"],
     [
         "lowest-noise",
-        "read noise and the steps of the converter leave more noise than that, whatever the detector",
+        "read noise and quantisation alone exceed this noise, whatever the detector",
         "change another quantity",
     ],
 ];
@@ -73,8 +73,8 @@ const fn clause(by: Shortfall) -> &'static str {
     match by {
         Shortfall::Distance => "the statistical distance is below the required one",
         Shortfall::Pixels => "too few pixels lie across the target",
-        Shortfall::TemperatureError => "the temperature is not known as well as demanded",
-        Shortfall::DepthError => "the distance is not known as well as demanded",
+        Shortfall::TemperatureError => "the temperature is not known as accurately as required",
+        Shortfall::DepthError => "the distance is not known as accurately as required",
         Shortfall::DecisionTime => "its frames are read after the decision is due",
         Shortfall::MotionBlur => "the target moves by a pixel or more while all bands are exposed",
         Shortfall::MotionUnknown => {
@@ -86,7 +86,7 @@ const fn clause(by: Shortfall) -> &'static str {
         Shortfall::Diffraction => "the lens blurs a point over more than the pixel",
         Shortfall::Impractical => "no camera is built or used like that",
         Shortfall::LowestNoise => {
-            "read noise and the steps of the converter leave more noise than that, whatever the detector"
+            "read noise and quantisation alone exceed this noise, whatever the detector"
         }
     }
 }
@@ -96,13 +96,13 @@ pub(crate) fn in_words(spoiled: &[Shortfall]) -> String {
     let words = spoiled.iter().map(|reason| match reason {
         Shortfall::Distance => "distance",
         Shortfall::MotionBlur => "motion blur of a pixel or more",
-        Shortfall::MotionUnknown => "motion that is not known without a distance",
+        Shortfall::MotionUnknown => "motion blur unknown without a distance",
         Shortfall::OutOfView => "the target is not in the view in time",
         Shortfall::FullWell => "the brightest scene saturates the pixels",
         Shortfall::FrameRate => "longer than a frame",
         Shortfall::Impractical => "not a practical camera",
         Shortfall::Diffraction => "diffraction blurs over more than a pixel",
-        Shortfall::LowestNoise => "below what read noise and converter leave",
+        Shortfall::LowestNoise => "below read noise and quantisation",
         Shortfall::Pixels => "too few pixels",
         Shortfall::TemperatureError => "the temperature is not known well enough",
         Shortfall::DepthError => "the distance is not known well enough",

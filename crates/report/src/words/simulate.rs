@@ -104,7 +104,7 @@ fn sentence(result: &Simulation) -> String {
             )
         }
         points => format!(
-            "No classifier beats the limit by more than chance: none of {judged} at {} photon numbers tells {apart} more \
+            "No classifier beats the limit by more than chance: none of {judged} at {} photon numbers distinguishes {apart} more \
              often than it allows.",
             points.len()
         ),
@@ -215,7 +215,7 @@ fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
     match found.standing {
         Some(Standing::Beyond) => "BEYOND the limit".to_owned(),
         Some(Standing::Reaches) => "reaches it".to_owned(),
-        Some(Standing::Undecided) => "may reach it; more spectra would tell".to_owned(),
+        Some(Standing::Undecided) => "may reach it; more spectra would decide".to_owned(),
         Some(Standing::Below) => {
             format!("{} points below", fixed(100.0 * (limit - found.performance.accuracy), 1))
         }
@@ -228,11 +228,11 @@ pub(crate) fn pair(result: &Simulation) -> String {
     match classes {
         [target, other] => format!("{} from {}", target.material, other.material),
         [target, others @ ..] if others.len() > NAMED => {
-            format!("{} and {} others apart", target.material, others.len())
+            format!("{} and {} others from each other", target.material, others.len())
         }
         [target, others @ ..] => {
             let names: Vec<&str> = others.iter().map(|class| class.material.as_str()).collect();
-            format!("{}, {} apart", target.material, names.join(", "))
+            format!("{}, {} from each other", target.material, names.join(", "))
         }
         [] => String::new(),
     }
@@ -240,5 +240,5 @@ pub(crate) fn pair(result: &Simulation) -> String {
 
 /// The title of all classifiers over photons.
 pub(crate) fn retrieved(pair: &str) -> String {
-    format!("Telling {pair}: what each classifier retrieves")
+    format!("Distinguishing {pair}: what each classifier retrieves")
 }

@@ -72,7 +72,7 @@ fn yes(finding: &Finding) -> String {
 fn of_pixels(finding: &Finding, reached: f64) -> String {
     finding.pixels.map_or_else(String::new, |pixels| {
         format!(
-            "; of all {} pixels on it together {}, if they are alike and share no noise",
+            "; for all {} pixels on it together {}, if they are alike and share no noise",
             significant(pixels, 3),
             reliability(reached * pixels.sqrt())
         )
@@ -145,7 +145,7 @@ fn answered(finding: &Finding) -> String {
                 _ if *enough && !spoiled.is_empty() => format!(", but {}.", clauses(spoiled)),
                 Some(reached) => {
                     let (of, all) = match finding.pixels {
-                        Some(_) if !finding.of_object => (" of one pixel", of_pixels(finding, *reached)),
+                        Some(_) if !finding.of_object => (" for one pixel", of_pixels(finding, *reached)),
                         _ => ("", String::new()),
                     };
                     let few = if *few_counts { ", by the law of small counts" } else { "" };
@@ -197,7 +197,7 @@ fn by_local(finding: &Finding, reading: &str, other: &str, wanted: &str) -> Stri
                 limit.map_or_else(|| "no number of photons suffices".into(), |limit| significant(limit, 3));
             format!(
                 "Distinguishing {target} from {other} with a probability of {wanted} takes {photons} photons by {reading}; by the \
-                 nearest, the limit, {limit}."
+                 nearest distance (the limit): {limit}."
             )
         }
         Answer::Judged { enough, spoiled, reached, limit, .. } => {

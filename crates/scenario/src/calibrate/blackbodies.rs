@@ -88,7 +88,7 @@ impl BlackbodySpec {
             return Err(section.fail("emissivity", Error::malformed(found, "write emissivity = 0.98")));
         }
         if surroundings_k.is_none() && (reflects || emissivity.is_some_and(|e| e < 1.0)) {
-            let found = "nothing says what a blackbody that is not quite black reflects";
+            let found = "the surroundings that a blackbody of emissivity below 1 reflects are missing";
             let instead = "write surroundings = \"22 degC\", the temperature of what stands around it";
             return Err(section.fail("surroundings", Error::malformed(found, instead)));
         }
@@ -205,7 +205,7 @@ pub(super) fn noise(root: &Section<'_>) -> Result<f64> {
         }
         Ok(sample)
     })?;
-    stated
-        .flatten()
-        .ok_or_else(|| root.fail("noise", Error::malformed("nothing says how samples scatter", INSTEAD)))
+    stated.flatten().ok_or_else(|| {
+        root.fail("noise", Error::malformed("the noise of the samples is not stated", INSTEAD))
+    })
 }

@@ -107,14 +107,14 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
     })?;
     let unit = match (counts, radiance, camera) {
         (Some(_), _, true) | (_, Some(_), true) => {
-            let found = "a [camera] and a unit say twice what a sample is";
+            let found = "a [camera] and a unit both state the scale of a sample";
             return Err(entry.fail(Error::malformed(found, "leave one of them out")));
         }
         (Some(counts), ..) => CubeUnit::CountsPerPhotonRadiance(counts),
         (None, Some(unit), _) if noise.is_none() => {
             let found = match unit {
-                CubeUnit::BrightnessTemperature { .. } => "temperatures alone do not say how they scatter",
-                _ => "radiances alone do not say how they scatter",
+                CubeUnit::BrightnessTemperature { .. } => "brightness temperatures without their noise",
+                _ => "radiances without their noise",
             };
             let instead = "write noise = 1e-4, the deviation of a sample in that unit";
             return Err(section.fail("unit", Error::malformed(found, instead)));
@@ -122,7 +122,7 @@ pub(crate) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
         (None, Some(radiance), _) => radiance,
         (None, None, true) => CubeUnit::Camera,
         (None, None, false) => {
-            let found = "nothing says what a sample is";
+            let found = "the scale of the samples is not stated";
             let instead = format!(
                 "write counts_per_photon_radiance = 2.2e-14, unit = \"{RADIANCE}\" with a noise, or a [camera]"
             );
@@ -189,7 +189,9 @@ pub(crate) fn light(entry: &Entry<'_>) -> Result<LightSource> {
             material: section.read("material", material)?,
             temperature_k: section.require("temperature")?.quantity()?,
         }),
-        None => Err(entry.fail(Error::malformed("nothing says what these surroundings send", instead))),
+        None => {
+            Err(entry.fail(Error::malformed("the radiation of these surroundings is not stated", instead)))
+        }
     }
 }
 

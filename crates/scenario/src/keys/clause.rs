@@ -46,7 +46,7 @@ const OBJECT: Key = Key::row(
     Value::Choice(&["person", "car"]),
     Is("\"person\""),
     "\"car\"",
-    "Of what of the street the distance must be known.",
+    "Object of the street whose distance must be known.",
     "windows on it (S35 to S43)",
 );
 /// `[clause.requirement]` of a depth.

@@ -57,7 +57,7 @@ const CUBE_KEYS: &[Key] = &[
         Value::Text,
         Means("counts"),
         "\"W m^-2 sr^-1 per cm^-1\"",
-        "That samples are spectral radiances, of watts or photons, per wavenumber, wavelength or frequency, or brightness temperatures (K, degC): a noise in the same unit must stand beside it, of temperatures the NETD at 300 K. Where the file states another such unit its samples are converted.",
+        "Unit of samples that are spectral radiances (of watts or photons, per wavenumber, wavelength or frequency) or brightness temperatures (K, degC): a noise in the same unit must be given, for temperatures the NETD at 300 K. Where the file states another such unit its samples are converted.",
         "scale of the samples",
     ),
     Key::row(
@@ -213,7 +213,7 @@ const fn shared(name: &'static str, value: Value, example: &'static str, meaning
     Key::row(
         name,
         value,
-        Means("exactly as told"),
+        Means("exactly as stated"),
         example,
         meaning,
         "estimated with all pixels, in all deviations",

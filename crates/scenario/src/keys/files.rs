@@ -84,12 +84,12 @@ const PRESETS: Key = Key::row(
     Value::List(&Value::Text),
     Means("those of [[camera]]"),
     "[\"flir-a325sc\", \"ideal-pnrd\"]",
-    "Known cameras that are held against the rule, as they are; above the first [table].",
+    "Known cameras that are judged by the rule, as they are; above the first [table].",
     "rows of the answer",
 );
 /// A rule.
 pub(crate) static RULE: Table = Table::of(
-    "A requirement over ranges of scenes, and cameras that are held against it.",
+    "A requirement over ranges of scenes, and cameras that are judged by it.",
     &[
         TASK,
         &[
@@ -208,7 +208,7 @@ const BLACKBODIES: &[Key] =
     &[TITLE, needed(tables("blackbody", &calibrate::BLACKBODY)), needed(table("noise", &calibrate::SAMPLE))];
 /// A camera behind filters before blackbodies.
 pub(crate) static RESPONSE: Table = Table::of(
-    "A camera behind filters that was held before blackbodies.",
+    "A camera behind filters to be calibrated by blackbodies.",
     &[
         BLACKBODIES,
         &[
@@ -219,7 +219,7 @@ pub(crate) static RESPONSE: Table = Table::of(
 );
 /// A spectrometer before blackbodies.
 pub(crate) static BLACKBODY: Table = Table::of(
-    "A spectrometer that was held before blackbodies.",
+    "A spectrometer to be calibrated by blackbodies.",
     &[
         BLACKBODIES,
         &[needed(BANDS), silent("no cube is calibrated", table("scene", &calibrate::SPECTRAL_SCENE))],
@@ -239,7 +239,7 @@ pub(crate) static STRIPES: Table = Table::of(
 const OWN_CAMERAS: Key = Key { example: "[[camera]]", ..tables("camera", &rule::OWN_CAMERA) };
 /// Cameras of one's own.
 pub(crate) static CAMERAS: Table =
-    Table::of("Cameras of one's own, for --cameras.", &[&[needed(OWN_CAMERAS)]]);
+    Table::of("User-defined cameras, for --cameras.", &[&[needed(OWN_CAMERAS)]]);
 
 /// All kinds of files.
 pub static FILES: &[FileKind] = &[

@@ -72,7 +72,7 @@ const FIND_KEYS: &[Key] = &[
         Value::List(&Value::Text),
         Is("[\"*\"]"),
         "[\"flir-boson*\", \"ours\"]",
-        "Cameras that come into question, of the program and of --cameras; * stands for any letters.",
+        "Cameras to choose from, of the program and of --cameras; * stands for any letters.",
         "what is searched",
     ),
     Key::row(
@@ -88,7 +88,7 @@ const FIND_KEYS: &[Key] = &[
         Value::Tables(&LENS),
         Means("those that a document names for each camera (cameras/lenses.toml)"),
         "[{ f_number = 1.0, focal_length = \"14 mm\" }]",
-        "Lenses, each tried before every camera that has none of its own.",
+        "Lenses, each tried on every camera that has none of its own.",
         "what is searched",
     ),
     Key::row(
@@ -120,7 +120,7 @@ const FIND_KEYS: &[Key] = &[
         Value::List(&Value::Choice(&["price", "time", "filters", "aperture"])),
         Is("[\"price\", \"time\", \"filters\"]"),
         "[\"time\", \"price\"]",
-        "What is to be small, the first first; those that are beaten in none of them are listed.",
+        "What is to be small, the most important first; Pareto-optimal choices are listed.",
         "order of the cameras that are found",
     ),
 ];

@@ -182,7 +182,7 @@ const UNCERTAIN_KEYS: &[Key] = &[
         Value::Text,
         Means("independent of all other figures"),
         "\"lens\"",
-        "Figures of one camera that name the same have one error, so many deviations each.",
+        "Figures of one camera that name the same share one error, in units of their deviations.",
         "contributions that are added before they are squared; draws",
     ),
     Key::row(
@@ -190,7 +190,7 @@ const UNCERTAIN_KEYS: &[Key] = &[
         Value::Figure,
         Means("no limit"),
         "\"50 mK\"",
-        "In the place of value: a noise that is no larger than this, as a sheet promises it. A camera that fails by the margin is undecided.",
+        "Instead of value: a noise that is no larger than this, as a sheet promises it. A camera that fails by the margin is undecided.",
         "the margin at the limit",
     ),
 ];
@@ -252,7 +252,7 @@ const GROUND_KEYS: &[Key] = &[
         Value::Text,
         Means("a document says so"),
         "\"why\"",
-        "That nobody says so but the author of the rule, and why.",
+        "Why the author of the rule chose the figure, which no document states.",
         "`hadar rule --sources`",
     ),
 ];
@@ -344,7 +344,7 @@ const TEST_KEYS: &[Key] = &[
         Value::Number(FROM_ZERO),
         Means("any"),
         "1.23",
-        "What is there over what is demanded, as it is expected.",
+        "Expected margin: value reached over value required.",
         "`hadar rule --test`",
     ),
     Key::row(
@@ -352,7 +352,7 @@ const TEST_KEYS: &[Key] = &[
         LENGTH,
         Means("any"),
         "\"20 m\"",
-        "Greatest distance at which the decision must stand, as it is expected.",
+        "Expected greatest distance at which the decision is due.",
         "`hadar rule --test`",
     ),
     Key::row(
@@ -360,7 +360,7 @@ const TEST_KEYS: &[Key] = &[
         TIME,
         Means("any"),
         "\"2 s\"",
-        "Least time until then, as it is expected.",
+        "Expected least time until then.",
         "`hadar rule --test`",
     ),
     Key::row(
@@ -368,7 +368,7 @@ const TEST_KEYS: &[Key] = &[
         Value::Quantity(Dimension::Angle, ABOVE_ZERO),
         Means("any"),
         "\"27 deg\"",
-        "Largest angle from the axis that a crossing target has until then, as it is expected.",
+        "Expected largest angle from the axis that a crossing target has until then.",
         "`hadar rule --test`",
     ),
     Key::row(
@@ -376,7 +376,7 @@ const TEST_KEYS: &[Key] = &[
         COUNT,
         Means("any"),
         "60",
-        "Frames of all bands that fit into it, as is expected.",
+        "Expected number of frames of all bands that fit into it.",
         "`hadar rule --test`",
     ),
     Key::row(
@@ -384,7 +384,7 @@ const TEST_KEYS: &[Key] = &[
         Value::Number(AT_MOST_WHOLE),
         Is("0.01"),
         "0.01",
-        "Share of itself by which a number may miss.",
+        "Relative tolerance of these numbers.",
         "`hadar rule --test`",
     ),
 ];

@@ -126,7 +126,7 @@ const STAND_IN_KEYS: &[Key] = &[
     Key::row(
         "emissivity_error",
         Value::Either(&[A_SHARE, Value::Text]),
-        Means("the very shape of its material"),
+        Means("exactly the shape of its material"),
         "\"0.005 absolute\"",
         "Root mean square error of the shape of its spectrum, absolute: 0.005 of 1.",
         "59 shapes are drawn; the least tolerance of all is one that 95 % of all shapes have",

@@ -336,7 +336,7 @@ const REQUIREMENT_KEYS: &[Key] = &[
         Value::Choice(&["pixel", "object"]),
         Means("the object where target.pixels is stated, else a pixel"),
         "\"object\"",
-        "What must be told: by one pixel, or by all pixels that the target fills, with the noise that they share.",
+        "What decides: one pixel, or all pixels that the target fills, with the noise that they share.",
         "counts of all pixels of the target are added up",
     ),
     Key::row(
@@ -350,7 +350,7 @@ const REQUIREMENT_KEYS: &[Key] = &[
     Key::row(
         "time",
         TIME,
-        Means("as long as it takes, which a 'yes' then hangs on"),
+        Means("as long as it takes, on which a 'yes' then depends"),
         "\"0.5 s\"",
         "Time within which all bands of all frames must be read.",
         "frames x bands x exposure, at the frame rate",

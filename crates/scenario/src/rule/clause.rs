@@ -111,7 +111,7 @@ pub(super) fn read(root: &Section<'_>) -> Result<(Scenario, Vec<Clause>)> {
     for (index, item) in items.iter().enumerate() {
         let clause = one(item, root, &scenario, format!("clause[{index}]"))?;
         if clauses.iter().any(|other| other.name == clause.name) {
-            let error = Error::malformed("another clause is called like this", "give it a name of its own");
+            let error = Error::malformed("another clause has this name", "give it a name of its own");
             return Err(error.at(source.place(&format!("clause[{index}].name"))));
         }
         clauses.push(clause);
@@ -229,7 +229,7 @@ fn contrast(section: &Section<'_>, plain: &Section<'_>) -> Result<Scenario> {
     let behind = materials(plain, "behind")?;
     let mut scenario = of_root(section, requirement)?;
     if !has_own(plain, "alternatives", "temperature") {
-        let found = "nothing says how warm that may be which is behind the target";
+        let found = "the temperature of what is behind the target is not stated";
         let instead = "write temperature = [\"0 degC\", \"20 degC\"] in [clause.alternatives]";
         return Err(plain.fail("alternatives.temperature", Error::malformed(found, instead)));
     }
@@ -257,14 +257,14 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
     let things = materials(plain, "things")?;
     let mut scenario = of_root(section, requirement)?;
     if !matches!(scenario.requirement.reliability, Reliability::Rates { .. }) {
-        let found = "nothing says how rare false alarms must be";
+        let found = "the probability of false alarms is not stated";
         let instead =
             "write false_alarm_probability = 0.001 beside detection_probability in [clause.requirement]";
         return Err(plain.fail("requirement", Error::malformed(found, instead)));
     }
     let own_temperature = plain.has_own("target") || has_own(plain, "envelope", "temperature");
     if !own_temperature {
-        let found = "nothing says how warm the things are";
+        let found = "the temperature of the things is not stated";
         let instead = "write temperature = [\"0 degC\", \"60 degC\"] in [clause.envelope]";
         return Err(plain.fail("envelope.temperature", Error::malformed(found, instead)));
     }

@@ -74,7 +74,7 @@ pub(super) fn read(root: &Section<'_>, objects: usize) -> Result<Vec<GridLight>>
     for item in &items {
         let light = one(item, objects)?;
         if lights.iter().any(|other| other.name == light.name) {
-            let error = Error::malformed("another light is called like this", "give it a name of its own");
+            let error = Error::malformed("another light has this name", "give it a name of its own");
             return Err(item.section()?.fail("name", error));
         }
         lights.push(light);

@@ -45,7 +45,7 @@ pub(super) fn read(root: &Section<'_>, law_from: Option<Date>) -> Result<Vec<Ref
     for item in &items {
         let reform = one(item, law_from)?;
         if reforms.iter().any(|other| other.name == reform.name) {
-            let error = Error::malformed("another reform is called like this", "give it a name of its own");
+            let error = Error::malformed("another reform has this name", "give it a name of its own");
             return Err(item.section()?.fail("name", error));
         }
         reforms.push(reform);

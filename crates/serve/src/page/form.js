@@ -231,7 +231,9 @@ function sliderElement(field, range) {
     at(idOf(field.path, "field")).value = value;
     slider.setAttribute("aria-valuetext", value);
     change({ do: "set", key: field.path, value });
+    hold = holds;
   });
+  for (const taken of ["pointerdown", "focus"]) slider.addEventListener(taken, () => { holds += 1; });
   return slider;
 }
 

@@ -19,12 +19,16 @@ let revision = 0;
 let resting = 0;
 let typing = 0;
 let refocus = null;
+// How often a slider was taken hold of, and which of these times made the last change; 0: none did.
+let holds = 0;
+let hold = 0;
 // The field that is wrong, and the line.
 let mistake = null;
 
 // Asking: one question at a time, the newest state next.
 
 function change(...edits) {
+  hold = 0;
   for (const edit of edits) {
     const last = changes.at(-1);
     if (edit.do === "set" && last?.do === "set" && last.key === edit.key) changes.pop();
@@ -264,6 +268,7 @@ async function fetched(path, name, kind) {
 }
 
 function take(scenario) {
+  hold = 0;
   const example = named.examples.findIndex((one) => one.text === scenario);
   at("example").value = example < 0 ? "" : example;
   clearTimeout(typing);
@@ -279,6 +284,7 @@ function take(scenario) {
 at("form").addEventListener("submit", (event) => event.preventDefault());
 at("scenario").addEventListener("input", () => {
   text = at("scenario").value;
+  hold = 0;
   revision += 1;
   changes = [];
   pass();

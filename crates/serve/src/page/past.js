@@ -53,14 +53,14 @@ function keep(scenario, form, answer) {
     // A newer text is on its way.
     if (scenario !== text) return;
     const here = history.state;
-    // What was a mistake is replaced, not kept to be gone back to.
+    // What was a mistake is replaced, not kept to be gone back to; so is where a slider paused that is still held.
     const isSame = here?.text === scenario;
-    const replaces = here && (isSame || here.mistaken);
+    const replaces = here && (isSame || here.mistaken || (hold > 0 && here.hold === hold));
     if (current < 0 || !here) current = Math.max(current, 0);
     if (here && !replaces) current += 1;
     if (!isSame) past.length = current;
     past[current] = { scenario, form, answer };
-    const state = { n: current, text: scenario, mistaken: !answer };
+    const state = { n: current, text: scenario, mistaken: !answer, hold };
     if (here && !replaces) history.pushState(state, "", address);
     else history.replaceState(state, "", address);
     showPast();

@@ -86,7 +86,7 @@ impl From<Why> for Rejected {
 }
 
 /// Figures of a camera that may be fixed without making another device of it, whose price would be another.
-const SAME_DEVICE: [&str; 9] = [
+const SAME_DEVICE: [&str; 17] = [
     "exposure",
     "f_number",
     "focal_length",
@@ -96,6 +96,15 @@ const SAME_DEVICE: [&str; 9] = [
     "field_of_view",
     "sensor_temperature",
     "filter_temperature",
+    // What was measured of its array.
+    "fixed_pattern",
+    "row_noise",
+    "column_noise",
+    "offset_drift",
+    "temporal_row_noise",
+    "temporal_column_noise",
+    "frame_noise",
+    "pattern_drift",
 ];
 
 /// A camera before it has a lens.

@@ -242,16 +242,21 @@ impl Study {
         };
         let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
         fails_by.extend(&spoiled);
-        let few = self.too_few_bands().filter(|_| far_enough != Some(true));
+        // Ranges of the unknowns may leave a distance where bands are no more than these.
+        let by_nearest = self.scenario.requirement.by == DistanceKind::Nearest;
+        let is_apart = by_nearest && limit.is_some_and(|limit| limit > 0.0);
+        let few = self.too_few_bands().filter(|_| far_enough != Some(true) && !is_apart);
         let [least, enough] = requirement.photons_bounds;
         let found = match (distance, least, pair.status) {
             (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
             (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
-            (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
+            (_, None, Status::Ok | Status::Blind) if !(is_apart && distance.is_some()) => {
+                Answer::UnknownsExplain
+            }
             (None, Some(photons), _) => {
                 Answer::Takes { photons, enough, limit: requirement.photons_by.nearest }
             }
-            (Some(_), Some(_), _) => Answer::Judged {
+            _ => Answer::Judged {
                 enough: far_enough == Some(true),
                 undecided: pair.told == Some(YesNo::Undecided),
                 spoiled,

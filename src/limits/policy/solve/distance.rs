@@ -44,12 +44,11 @@ pub(super) fn solve(
     let beyond = at(far)?;
     if beyond >= task.required {
         let reason = if task.farthest_m.is_some() {
-            format!("it is met as far as the air is known, {}", quantity(far, "m"))
+            format!("it is met up to where the data of the air end, {}", quantity(far, "m"))
         } else if task.of_object && task.size_m.is_none() {
-            "the pixels are stated and not the size: there are so many at any distance".into()
+            "the pixels are stated, not the size: their number is the same at any distance".into()
         } else {
-            "distance does not matter: the target fills its pixels, and there is no air that would end it"
-                .into()
+            "distance does not matter: the target fills its pixels, and there is no air on the path".into()
         };
         return Ok(none(beyond, reason));
     }
@@ -78,7 +77,7 @@ pub(super) fn solve(
         // Nearer than a few metres the lens itself takes its share.
         let reason = first
             .filter(|first| *first > CLOSE_M && *first > STEP * near)
-            .map(|first| format!("nearer than some {first:.2} m it is not met"));
+            .map(|first| format!("closer than about {first:.2} m it is not met"));
         return Ok(Solution::new(Some(value), camera, statistical_distance, reason));
     }
     let reason = if best == 0.0 { NEVER } else { "no distance is short enough" };

@@ -34,10 +34,10 @@ impl CapCode {
     #[must_use]
     pub const fn whatever(broken: Option<Self>) -> &'static str {
         match broken {
-            Some(Self::Motion) => "the target moves by a pixel, whatever it is",
-            Some(Self::FullWell) => "the pixel is full, whatever it is",
-            Some(Self::FrameRate) => "the exposure that it takes is longer than a frame",
-            Some(_) => "not all is read within the time demanded, whatever it is",
+            Some(Self::Motion) => "the target moves by a pixel at any value",
+            Some(Self::FullWell) => "the pixel saturates at any value",
+            Some(Self::FrameRate) => "the exposure required is longer than a frame",
+            Some(_) => "not all is read within the required time at any value",
             None => "how far the target moves is not known without target.distance",
         }
     }

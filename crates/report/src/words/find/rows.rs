@@ -52,7 +52,7 @@ pub fn rows(found: &FindAnswer) -> Vec<Row> {
         }
     });
     let undecided = found.undecided.iter().map(|choice| {
-        chosen(choice, UNDECIDED, "what is proved does not reach the distance, what was found does".into())
+        chosen(choice, UNDECIDED, "d reaches the requirement by the search, not by the proof".into())
     });
     let near = found.near.as_ref().map(|near| &near.choice);
     let is_near = |one: &&Failed| {

@@ -81,7 +81,7 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
         if choice.distance == 0.0 {
             let _ = writeln!(
                 out,
-                "  so few {what}s carry no information: {} or more are required, one more than there are unknowns",
+                "  too few {what}s carry no information: {} or more are required, one more than there are unknowns",
                 choice.fewest
             );
             continue;
@@ -95,9 +95,9 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
             }
         };
         let proof = if choice.exact {
-            "no others give more".to_owned()
+            "no other choice gives more".to_owned()
         } else {
-            format!("no others give more than {}", share(choice.bound))
+            format!("no other choice gives more than {}", share(choice.bound))
         };
         let limiting = choice.limiting.as_deref().unwrap_or(&found.alternative);
         let unit = if study.camera().is_some() { "camera d" } else { "per sqrt(photon)" };

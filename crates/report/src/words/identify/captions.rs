@@ -8,7 +8,8 @@ pub(crate) const SHARES: &str =
 
 /// Below all materials against all.
 pub(crate) fn all_against_all(by: &str, told_apart: bool) -> String {
-    let both = if told_apart { " A pair counts as distinguished only if it is both ways." } else { "" };
+    let both =
+        if told_apart { " A pair counts as distinguished only if it is in both directions." } else { "" };
     format!("By the {by} distance; every target in the scenario's state.{both}")
 }
 
@@ -21,7 +22,7 @@ pub(crate) fn against_all(by: &str) -> String {
 pub(crate) fn readings(limiting: &str, seed: u64) -> String {
     format!(
         "Above: means, all in the scenario's state. Below: the target and {limiting}, one reading of each drawn at random \
-         (seed {seed}), less the target's mean, and the mean that is to be seen in them."
+         (seed {seed}), less the target's mean, and the expected difference."
     )
 }
 

@@ -53,7 +53,8 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
         out.push('\n');
     }
     if certain > 0 {
-        let _ = writeln!(out, "  {certain} more, of limit and correct decisions both 1.000 to three digits");
+        let _ =
+            writeln!(out, "  {certain} more, with limit and correct decisions both 1.000 to three digits");
     }
     if let Some(library) = &found.library {
         let _ = writeln!(
@@ -65,7 +66,7 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
             library.trials,
             if library.union_bound_known_states > 0.0 {
                 format!(
-                    "; were all states known, in at least {:.3} (union bound)",
+                    "; if all states were known, in at least {:.3} (union bound)",
                     library.union_bound_known_states
                 )
             } else {

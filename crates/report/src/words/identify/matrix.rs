@@ -48,10 +48,10 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
         groups("Clusters of which no two members are distinguished", &apart.clusters);
     } else {
         groups(
-            "Clusters of which no two members are distinguished; members of different clusters may be confused all the same",
+            "Clusters of which no two members are distinguished; members of different clusters may still be confused",
             &apart.clusters,
         );
-        groups("Chains: groups held together by pairs that are not distinguished", &apart.chains);
+        groups("Chains: groups connected by pairs that are not distinguished", &apart.chains);
     }
     out.push('\n');
     out

@@ -98,8 +98,8 @@ pub(super) fn what_it_is(rule: &Rule) -> String {
     let figures = rule.figures();
     let chosen = figures.iter().filter(|figure| !sources::is_documented(rule, &figure.key)).count();
     format!(
-        "A calculation by hadar, no type approval, no test and no legal advice: nothing was measured. It answers for one reading of a rule: of its {} numbers {} \
-         are those of documents, {chosen} are choices of the author or have no source. It judges what cameras could tell, not what their software does.",
+        "A calculation by hadar, not a type approval, a test or legal advice: nothing was measured. It applies to one reading of a rule: of its {} numbers {} \
+         are from documents, {chosen} are choices of the author or have no source. It judges what cameras can show, not what their software does.",
         figures.len(),
         figures.len() - chosen
     )
@@ -113,13 +113,13 @@ pub const WORDS: [[&str; 2]; 12] = [
     ],
     [
         "yes",
-        "in every scene of the rule a camera like this has information enough; whether its software uses it is not said",
+        "in every scene of the rule such a camera collects enough information; whether its software uses it is not said",
     ],
     [
         "yes, if",
         "the same, provided that something holds which nobody stated or checked; it is listed below, camera by camera",
     ],
-    ["undecided", "neither is shown: figures are uncertain, or the proof ends between the two"],
+    ["undecided", "neither is shown: figures are uncertain, or the proof leaves both possible"],
     [
         "no",
         "there is a scene of the rule in which what the clause counts (one pixel, unless it says the whole object) does not carry enough information, whatever the \
@@ -127,13 +127,13 @@ pub const WORDS: [[&str; 2]; 12] = [
     ],
     [
         "margin",
-        "what is there over what is demanded: below 1 is a no; above 1 is needed and not enough, since blur, view and time count too",
+        "value reached over value required: below 1 is a no; above 1 is necessary but not sufficient, since blur, view and time count too",
     ],
     [
         "d",
         "statistical distance: how different two materials are in the counts, in standard deviations; a decision is right with the probability given with it",
     ],
-    ["motion blur", "the picture of the target moves by a pixel or more while it is taken"],
+    ["motion blur", "the image of the target moves by a pixel or more while it is taken"],
     ["out of view", "the target is not in the camera's field of view long enough before the decision"],
     [
         "proved",
@@ -144,10 +144,7 @@ pub const WORDS: [[&str; 2]; 12] = [
         "emissivity",
         "the fraction of a blackbody's radiation that a surface emits; the rest of what is seen of it is reflected from the surroundings",
     ],
-    [
-        "V",
-        "lighting factor: the share of what a surface mirrors that comes from the surroundings that are named",
-    ],
+    ["V", "lighting factor: the fraction of the hemisphere above a surface that the surroundings named fill"],
 ];
 
 /// A verdict in a cell.
@@ -174,11 +171,11 @@ fn look_alikes(rule: &Rule) -> Option<String> {
     let tells = |clause: &&Clause| clause.demand.tells_apart();
     let mut silent = Vec::new();
     for clause in rule.clauses.iter().filter(tells) {
-        let lines = &clause.scenario.source.lines;
-        for (key, word) in
-            [("alternatives.temperature", "temperature"), ("alternatives.lighting", "lighting")]
+        let stated = &clause.scenario.alternatives;
+        for (range, word) in
+            [(stated.temperature_range_k, "temperature"), (stated.lighting_range, "lighting")]
         {
-            if !lines.contains_key(key) && !silent.contains(&word) {
+            if range.is_none() && !silent.contains(&word) {
                 silent.push(word);
             }
         }
@@ -239,8 +236,8 @@ fn details(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> D
     let hash = |input: &Input| input.sha256.as_deref().unwrap_or(READ_ONCE).to_owned();
     out.heading(2, "Inputs");
     out.paragraph(
-        "The answer rests on these, by their content, and on the program above; made again with them it is the same, byte by byte. \
-         sha256sum gives the hash of a file; of what is built in the program gives it.",
+        "The answer depends on the content of these and on the program above; made again from them it is the same, byte by byte. \
+         sha256sum gives the hash of a file; of built-in data the program gives it.",
     );
     let inputs = provenance.inputs.iter().map(|input| [input.path.clone(), hash(input)]);
     out.table(&["input", "SHA-256"], &[1], inputs);

@@ -5,13 +5,13 @@ use hadar::words::length;
 use hadar_scenario::Units;
 use hadar_study::Course;
 
-pub(crate) const MARGIN: &str = "d over that demanded";
+pub(crate) const MARGIN: &str = "d over required d";
 pub(crate) const DEMANDED: &str = "demanded";
 pub(crate) const AT_MOST: &str = "1 pixel";
 pub(crate) const BLUR: &str = "blur (pixels)";
 pub(crate) const EVERY_CAMERA: &str = "decided then";
 pub(crate) const DECISION: &str = "decision";
-pub(crate) const TIME: &str = "time to contact if nobody brakes (s)";
+pub(crate) const TIME: &str = "time to contact without braking (s)";
 pub(crate) const DISTANCE: &str = "distance (m)";
 
 /// What a picture of a course is about.
@@ -27,9 +27,9 @@ pub(crate) fn title(course: &Course, units: Units) -> String {
 pub(crate) fn below(course: &Course, told: bool) -> String {
     let told = match (told, course.tells_apart) {
         (true, _) => {
-            "d is the statistical distance in the scene that limits each camera; it begins where the camera has read its frames, as if all were taken there, and is there while the target is in the picture. "
+            "d is the statistical distance in the scene that limits each camera; it begins where the camera has read its frames, as if all were taken there, and is drawn while the target is in view. "
         }
-        (false, true) => "No camera has read its frames of a target that is still in the picture. ",
+        (false, true) => "No camera has read its frames while the target is still in view. ",
         (false, false) => "",
     };
     format!(

@@ -13,12 +13,12 @@ pub(crate) const NO_CELL: &str = "no such cell";
 /// What marked cells are in a picture.
 pub(crate) const NOT_MET: &str = "not met or undecided, whatever the margin (why: grid.csv)";
 /// What the colour of a cell is.
-pub(crate) const MARGIN: &str = "margin: what is there over what is demanded";
+pub(crate) const MARGIN: &str = "margin: value reached over value required";
 /// What the rows and columns of the table are.
 pub(crate) const ROWS: &str = "clause, light";
 
 /// Below the tables.
-const BELOW: &str = "Each cell: whether the clause is met at that speed in that light, and its margin, above 1 where the demand is met; 'yes, if' under the conditions below. b: blurred by a pixel or more; b?: that cannot be said; l: its frames are read too late, and that alone leaves the closing speed in brackets at contact; v: the target is out of view; w: the well is full.";
+const BELOW: &str = "Each cell: whether the clause is met at that speed in that light, and its margin, above 1 where the demand is met; 'yes, if' under the conditions below. b: blurred by a pixel or more; b?: blur unknown; l: its frames are read too late, and that alone leaves the closing speed in brackets at contact; v: the target is out of view; w: a pixel saturates.";
 
 /// How many cells each camera meets, then every camera's table.
 #[must_use]

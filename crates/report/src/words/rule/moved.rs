@@ -62,7 +62,7 @@ pub fn figures_moved(found: &FiguresMoved) -> String {
         let why = one.refused.as_deref().unwrap_or_default();
         let _ = writeln!(out, "{} at {}: refused: {why}", one.key, one.moved_to);
     }
-    out += "Each number is moved alone, by a tenth or, of a temperature, by 3 K; of a probability what is missing to 1.\n";
+    out += "Numbers are changed one at a time by a tenth; a temperature by 3 K; for a probability, its difference from 1 by a tenth.\n";
     out
 }
 

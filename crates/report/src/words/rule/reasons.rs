@@ -6,15 +6,15 @@ use hadar_study::{CameraBeforeClause, NotPassed, Outcome};
 /// Whether the rule is passed, in a sentence.
 pub(super) fn passed(outcome: Outcome, reasons: &[NotPassed]) -> String {
     match outcome {
-        Outcome::Passed => "Result: PASSED. Every camera meets every clause, proved, under no condition but those that are accepted, on a day on which the rule holds.".into(),
+        Outcome::Passed => "Result: PASSED. Every camera is proved to meet every clause, under no condition except accepted ones, on a day on which the rule holds.".into(),
         _ => format!("Result: {}. {}", outcome.word(), if reasons.len() == 1 { "The reason:" } else { "The reasons:" }),
     }
 }
 
 const FAILS: &str = "does not meet it";
 const IS_UNDECIDED: &str = "undecided";
-const IS_UNPROVED: &str = "met, and not proved";
-const RESTS: &str = "rests on conditions that nobody accepted (--accept)";
+const IS_UNPROVED: &str = "met, but not proved";
+const RESTS: &str = "rests on conditions that were not accepted (--accept)";
 
 /// Codes of reasons for which a rule is not passed, each with its meaning and what to do about it.
 pub(crate) const REASONS: [[&str; 3]; 10] = [
@@ -22,17 +22,17 @@ pub(crate) const REASONS: [[&str; 3]; 10] = [
     ["undecided", "a camera may or may not meet a clause", "state its figures with less uncertainty"],
     [
         "not-proved",
-        "a camera meets a clause, and that is no proof",
+        "a camera meets a clause, but this is not proved",
         "see `evidence`: what was searched, simulated or assumed",
     ],
     [
         "conditions",
-        "meeting a clause rests on conditions that nobody accepted",
+        "a clause is met only under conditions that were not accepted",
         "settle them, or name them with --accept",
     ],
     [
         "camera-figures",
-        "nobody says where figures of a camera are from",
+        "no source is stated for figures of a camera",
         "name them in a [[source]], keys = [\"camera[0]\"], with a document or a choice",
     ],
     [
@@ -42,7 +42,7 @@ pub(crate) const REASONS: [[&str; 3]; 10] = [
     ],
     [
         "materials-replaced",
-        "materials by a name of this program are others",
+        "materials of built-in names were replaced",
         "leave out --library, or give them different names",
     ],
     ["no-day", "no day was stated on which the rule should hold", "name one with --on"],
@@ -94,7 +94,7 @@ pub(super) fn said(reasons: &[NotPassed]) -> Vec<String> {
     for reason in reasons {
         match reason {
             NotPassed::Unsourced { camera, figures } => out.push(format!(
-                "nobody says where figures of {camera} are from: {} ([[source]])",
+                "no source is stated for figures of {camera}: {} ([[source]])",
                 figures.join(", ")
             )),
             NotPassed::NoDay => out.push("no day was stated on which the rule should hold (--on)".into()),

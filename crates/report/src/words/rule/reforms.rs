@@ -72,7 +72,7 @@ pub fn reforms(found: &Reforms) -> String {
         rows.push([law.camera.clone(), cell(law)].into_iter().chain(by_reform).collect());
     }
     out += &aligned(&rows, &[]);
-    out += "  in brackets: least margin, above 1 where the demand is met, or what spoils the picture, and the clause of it\n\n";
+    out += "  in brackets: least margin, above 1 where the demand is met, or what spoils the image, and the clause of it\n\n";
     for (name, market) in std::iter::once(("the rule as it is", found.market))
         .chain(found.reforms.iter().map(|reform| (reform.name.as_str(), reform.market)))
     {

@@ -138,7 +138,7 @@ fn assumptions(result: &Thermometry) -> Vec<String> {
             format!("{name} to +- {sigma}{unit}")
         });
         lines.push(format!(
-            "known beforehand, which lowers the bound: {} (in every spectrum another error of that deviation)",
+            "known beforehand, which lowers the bound: {} (with an independent error of that deviation in every spectrum)",
             priors.collect::<Vec<_>>().join(", ")
         ));
     }

@@ -80,7 +80,7 @@ pub fn of_camera(result: &Sizing, study: &Study) -> Vec<Row> {
         row("the limit, by the nearest distance", limit, "verdict.statistical_distance_nearest");
     }
     let least = format!("{} per sqrt(photon)", significant(camera.least_distance, 3));
-    row("smallest distance it resolves", least, "camera.least_distance");
+    row("least semantic distance resolved", least, "camera.least_distance");
     if let Some(footprint) = camera.footprint_m {
         row("pixel footprint at the target", study.units().length(footprint), "camera.footprint_m");
     }
@@ -166,7 +166,7 @@ fn same(one: f64, other: f64) -> bool {
 
 fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> Solved {
     let label = match solved {
-        Quantity::Speed => "speed, at the exposure it takes",
+        Quantity::Speed => "speed, at the exposure required",
         other => other.name(),
     };
     let value = match (solution.value, &solution.reason) {
@@ -207,7 +207,7 @@ fn one(solved: Quantity, solution: &Solution, result: &Sizing, units: Units) -> 
     };
     let remark = solution.value.and(solution.reason.as_ref()).map(|reason| format!("; {reason}"));
     let caps = solution.caps.iter().map(|cap| {
-        let side = if cap.blocks { "but" } else { "better" };
+        let side = if cap.blocks { "but" } else { "preferably" };
         let bound = match (cap.blocks, solved.is_least()) {
             (true, true) | (false, false) => "no more than",
             (true, false) | (false, true) => "no less than",

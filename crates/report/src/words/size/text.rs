@@ -122,7 +122,7 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
     let state = &pair.nearest_state;
     let _ = writeln!(
         out,
-        "  * decides. Closest confuser with shot noise alone: {} at {}{}.\n",
+        "  * used for the verdict. Closest confuser with shot noise alone: {} at {}{}.\n",
         pair.alternative,
         study.units().temperature(state.temperature_k),
         numbers(", lighting ", &state.lighting, 3)
@@ -180,7 +180,7 @@ fn sensitivity(result: &Sizing) -> String {
     let mut line = |label: &str, text: String| {
         let _ = writeln!(out, "  {label:<33}  {text}");
     };
-    line("1 % more of it changes d by", levers);
+    line("1 % more of each changes d by", levers);
     let of = &found.emissivity;
     if of.error > 0.0 || !of.of_classes.is_empty() {
         let linear = of.sigma_linear.map_or_else(String::new, |sigma| {

@@ -48,7 +48,7 @@ words! {
         UncertaintyNotStated { blackbodies, of } => {
             let which: Vec<String> = blackbodies.iter().map(|k| format!("blackbody[{k}]")).collect();
             let which = if blackbodies.len() == *of { "all blackbodies".to_owned() } else { which.join(", ") };
-            format!("the temperature of {which} is taken as exact since no uncertainty is stated: errors are larger than said")
+            format!("the temperature of {which} is taken as exact since no uncertainty is stated: errors are larger than given")
         },
     }
     BlackbodiesTakenAsBlack {
@@ -67,7 +67,7 @@ words! {
         },
     }
     ResponseBarelyKnown {
-        meaning: "Responses of channels are known to no better than a fifth of them.",
+        meaning: "Responses of some channels are known to no better than a fifth.",
         remedy: "Give blackbodies further apart, or better known, or read longer; leave out channels that \
             see nothing.",
         ResponseBarelyKnown { channels, of, worst } => format!(
@@ -81,7 +81,7 @@ words! {
         remedy: "Use the pixels about the centre, or calibrate filter by filter with hadar calibrate \
             blackbody and response = \"each-pixel\".",
         VignetteDiffers { chi_square } => format!(
-            "one vignetting does not explain all filters (chi2/nu {}): away from the centre radiances err by more than is said",
+            "one vignetting does not explain all filters (chi2/nu {}): away from the centre radiances err by more than is stated",
             significant(*chi_square, 3)
         ),
     }
@@ -163,7 +163,7 @@ words! {
         remedy: "Look at these lines; correct them by a uniform source where they are stripes.",
         LinesBesideSteps { axis, lines } => format!(
             "{} lie at a step from line to line that the neighbouring bands do not have: lines striped side by side, or the edge of a material; \
-             nothing tells which, and they were left as they are",
+             which of the two cannot be decided, and they were left as they are",
             places(axis, lines)
         ),
     }
@@ -242,7 +242,7 @@ words! {
         ),
     }
     NoiseBelowZero {
-        meaning: "The noise of a sample without light comes out below 0: what is taken as no light is not, \
+        meaning: "The noise of a sample without light comes out below 0: the level of no light is wrong, \
             or samples are not photon counts.",
         remedy: "State the sample without light, noise.dark_level; give counts as the camera made them, one \
             scene for all bands.",

@@ -7,11 +7,11 @@ use hadar::words::{length, quantity, significant};
 
 words! {
     BandsModelled {
-        meaning: "The camera has one band, and its entry models it as if it read all bands at once, as no \
-            such camera does.",
+        meaning: "The camera has one band, and its entry models it as reading all bands at once, which no \
+            such camera can.",
         remedy: "Write camera.readout = \"sequential\" for filters before it, one after the other.",
         BandsModelled { camera, bands, readout } => format!(
-            "{camera} has one band; its entry models it as if it read {bands} bands {}, as no such camera does",
+            "{camera} has one band; its entry models it as reading {bands} bands {}, which no such camera can",
             match readout {
                 Readout::FourierTransform => "through an interferometer",
                 Readout::Dispersive => "side by side",
@@ -24,7 +24,7 @@ words! {
             distinguishes materials in them.",
         remedy: "Write bands.integrate = true, or the bands as ranges.",
         BandsSampled { width_cm1 } => format!(
-            "bands up to {} cm^-1 wide are taken at their centres alone; integrated, a distance may be another",
+            "bands up to {} cm^-1 wide are taken at their centres alone; integrated over the band, distances may differ",
             significant(*width_cm1, 3)
         ),
     }
@@ -32,7 +32,7 @@ words! {
         meaning: "Bands are read one after the other, and the scene must hold still for all of them.",
         remedy: "Shorten the exposure, or take a camera that reads all bands at once.",
         SequentialReadout { acquisition_s, bands } => format!(
-            "bands are read one after the other: {} until all {bands} are there, during which nothing may change",
+            "bands are read one after the other: {} until all {bands} are read, during which nothing may change",
             quantity(*acquisition_s, "s")
         ),
     }
@@ -40,19 +40,19 @@ words! {
         meaning: "The target moves by a pixel or more while all bands are exposed; the bound assumes less.",
         remedy: "Shorten the exposure, or allow less speed.",
         MotionBlur { pixels } => format!(
-            "the target moves {} pixels until all bands are exposed; the bound assumes less than 1",
+            "the target moves {} pixels while all bands are exposed; the bound assumes less than 1",
             significant(*pixels, 2)
         ),
     }
     MotionBlurUnknown {
-        meaning: "A speed is demanded, but without a distance its blur cannot be known.",
+        meaning: "A speed is required, but without a distance the motion blur is unknown.",
         remedy: "Write target.distance, or distance in [envelope].",
         MotionBlurUnknown => "a speed is given, but for the motion blur the scenario must say target.distance",
         RuleMotionBlurUnknown => "a speed is given, but motion blur needs a distance",
     }
     ContradictoryView {
-        meaning: "Pixel and focal length of the camera say another angle of a pixel than its field of view \
-            and its pixels.",
+        meaning: "Pixel and focal length of the camera give another angle per pixel than its field of view \
+            and number of pixels.",
         remedy: "Correct the figure that is wrong: pixel, focal_length, field_of_view or pixels.",
         ContradictoryView { finer_rad, coarser_rad } => format!(
             "its figures contradict each other: a pixel sees {} or {} mrad, by its side and the focal length or by the field of \
@@ -64,11 +64,11 @@ words! {
     }
     FilterLightLeftOut {
         meaning: "Light of filters and of the sensor is left out, or the sensor's temperature is given \
-            where it does nothing.",
+            where it has no effect.",
         remedy: "Write camera.sensor_temperature where there are filters, and only there.",
-        FilterLightLeftOut => "the light that filters throw back onto the sensor, and their own, is left out: sensor_temperature is not \
+        FilterLightLeftOut => "the light that filters reflect onto the sensor and emit is left out: sensor_temperature is not \
              given",
-        SensorTemperatureIdle => "sensor_temperature changes nothing: there are no filters that throw its light back",
+        SensorTemperatureIdle => "sensor_temperature has no effect: there are no filters that reflect its light back",
     }
     NoSurroundings {
         meaning: "There are no surroundings: the target is in empty space, where nothing but its own \
@@ -117,7 +117,7 @@ words! {
         ),
     }
     OutsideDetectorRange {
-        meaning: "Bands lie for the most part outside the range in which the detector's figures are stated.",
+        meaning: "Some bands lie mostly outside the range in which the detector's figures are stated.",
         remedy: "Narrow the bands, or state figures that hold there.",
         OutsideDetectorRange { outside, bands, range_cm1: [low, high] } => format!(
             "{outside} of {bands} bands are for the most part outside {low} to {high} cm^-1, the range in which the \
@@ -135,7 +135,7 @@ words! {
         },
     }
     FullWell {
-        meaning: "A reading does not fit into the full well of a pixel.",
+        meaning: "A reading exceeds the full well of a pixel.",
         remedy: "Shorten the exposure, or take more frames of less each.",
         FullWell { counts, full_well } => {
             let (counts, full_well) = (significant(*counts, 3), significant(*full_well, 3));

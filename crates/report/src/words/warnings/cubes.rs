@@ -15,7 +15,7 @@ words! {
     UnitConverted {
         meaning: "The file of a cube states another unit of spectral radiance than the scenario: its samples are taken in the file's, band by band at the \
             centre, and the noise in the scenario's.",
-        remedy: "Where the file is wrong mend it; else nothing need be done.",
+        remedy: "If the file is wrong, correct it; else nothing need be done.",
         UnitConverted { file, scenario, of_mean } => format!(
             "the samples are in `{file}` by their file: they were taken so, each band at its centre (at most {} off the mean over a band), and the noise in `{scenario}`, as the scenario says",
             share(*of_mean)
@@ -52,7 +52,7 @@ words! {
         remedy: "Shorten the exposure, or write NaN where readings are cut off.",
         CubeSaturated { view, pixels, of, value, largest } => format!(
             "{pixels} of {of} pixels of the {view} view that were looked at have a sample at {}, the largest value of all{}: where \
-             readings are cut off their texture is gone, and edges are there that are none",
+             readings are clipped, texture is lost and false edges appear",
             short(*value),
             if *largest { " and of the file's type" } else { "" }
         ),
@@ -98,11 +98,11 @@ words! {
         FiltersLeftOut { filters, why } => format!("filters {} are {why} before a blackbody: they were left out", filters.join(", ")),
     }
     PixelsFoundBad {
-        meaning: "Pixels of a cube are dead, stuck at one value, cut off, brighter than anything in the range can be, or far beyond all around them.",
-        remedy: "Nothing; write cube.bad = \"keep\" to take them like all others; a wider unknown.temperature where what is there is hotter.",
+        meaning: "Pixels of a cube are dead, stuck at one value, cut off, brighter than the temperature range allows, or far outside the values around them.",
+        remedy: "Nothing; write cube.bad = \"keep\" to take them like all others; widen unknown.temperature if the scene has hotter objects.",
         PixelsFoundBad { pixels, of, why } => format!("{pixels} of {of} pixels are {why}: they were left out (bad_pixels.npy)"),
         ViewFoundBad { view, pixels, of, why: "outlier" } => format!(
-            "{pixels} of {of} pixels of the {view} view are outliers, far beyond all around them (hot, or a thing of a pixel or two): their \
+            "{pixels} of {of} pixels of the {view} view are outliers, far from all values around them (hot pixels, or objects of a pixel or two): their \
              samples count as missing (bad_pixels_{view}.npy); cube.bad = \"keep\" takes them as they are"
         ),
         ViewFoundBad { view, pixels, of, why } => format!(
@@ -132,19 +132,19 @@ words! {
         },
     }
     LibraryTakenAsExact {
-        meaning: "The emissivities of the library are taken as exact: intervals do not hold what errors of \
-            them do.",
-        remedy: "State library.emissivity_error where the spectra are measured ones.",
-        LibraryTakenAsExact => "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
+        meaning: "The emissivities of the library are taken as exact: intervals do not include \
+            their errors.",
+        remedy: "State library.emissivity_error if the spectra are measured.",
+        LibraryTakenAsExact => "the library is taken as exact: errors of its emissivities make temperatures less accurate than stated",
     }
     NoRelativeEmissivity {
-        meaning: "Pixels of a cube send what they are lit by, or what no surface sends: no emissivity \
+        meaning: "Pixels of a cube radiate like what lights them, or like no possible surface: no emissivity \
             follows from one of them alone.",
         remedy: "Nothing if they are few; else check unit and surroundings, or look when the scene is \
             warmer than its sky.",
         NoRelativeEmissivity { pixels, of } => format!(
-            "{pixels} of {of} pixels that were looked at have no emissivity by themselves: they send what they are lit by, or \
-             what no surface sends"
+            "{pixels} of {of} pixels that were looked at have no emissivity by themselves: they radiate like what lights them, or \
+             like no possible surface"
         ),
     }
     OneCluster {
@@ -161,12 +161,12 @@ words! {
     }
     MagnitudeHardlyTold {
         meaning: "The magnitude of an emissivity is hardly distinguished from the temperatures of its pixels: the \
-            prior holds it.",
+            prior determines it.",
         remedy: "State unknown.lighting_total, fewer surroundings, or [emissivity] as well as you know it; \
             look under a sky with lines, at pixels of different lighting.",
         MagnitudeHardlyTold { clusters, sigma } => format!(
-            "the magnitude of {} is hardly distinguished from the temperatures (mean emissivity +- {} at most): what was said of \
-             emissivities beforehand holds it",
+            "the magnitude of {} is hardly distinguished from the temperatures (mean emissivity +- {} at most): the prior of the \
+             emissivities determines it",
             clusters.join(", "),
             significant(*sigma, 2)
         ),
@@ -184,12 +184,12 @@ words! {
         ),
     }
     MirrorNotExcluded {
-        meaning: "Several surroundings light a pixel with nothing said of their total: what mirrors them is \
-            not distinguished from what is as warm.",
+        meaning: "Several surroundings light a pixel whose total is not stated: a mirror of them is \
+            not distinguished from an equally warm surface.",
         remedy: "State unknown.lighting_total, or name fewer surroundings.",
         MirrorNotExcluded { surroundings } => format!(
-            "{surroundings} surroundings light a pixel as much as they like: a mirror of them looks as well as a warm surface does, so that \
-             emissivities and temperatures may be wrong altogether, by far more than their errors"
+            "{surroundings} surroundings light a pixel, their total not stated: a mirror of them fits as well as a warm surface, so that \
+             emissivities and temperatures may be entirely wrong, by far more than their errors"
         ),
     }
     ClustersNotSettled {
@@ -208,8 +208,8 @@ words! {
         ),
     }
     SpatialPrior {
-        meaning: "Materials, posteriors and temperatures rest on a prior over the image: what is small and \
-            hardly differs from its surroundings is lost.",
+        meaning: "Materials, posteriors and temperatures rest on a prior over the image: small objects that \
+            hardly differ from their surroundings are lost.",
         remedy: "Compare with the answer without [spatial]; trust an object of few pixels only if it is in \
             both.",
         SpatialPrior { changed, pixels, settled } => {

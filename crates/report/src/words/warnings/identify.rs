@@ -41,7 +41,7 @@ words! {
         ),
     }
     LocalDiffers {
-        meaning: "Local and nearest distance differ much: the picture that is linear in the unknowns has \
+        meaning: "Local and nearest distance differ much: the linear approximation in the unknowns has \
             failed.",
         remedy: "Use the nearest distance (requirement.by = \"nearest\").",
         LocalDiffers { local, nearest, ratio } => format!(
@@ -90,13 +90,13 @@ words! {
         },
     }
     FewDigits {
-        meaning: "Rounding has left less of a distance than is printed of it, or nothing.",
+        meaning: "Rounding leaves fewer correct digits of a distance than are printed, or none.",
         remedy: "Do not rely on that distance; take away unknowns that hardly differ from others, or light \
             that nearly cancels.",
         FewDigits { distance, relative_error } if *relative_error < 1.0 => {
-            format!("of the {distance} rounding leaves no more than its first digits: it is known to a share of {relative_error:.0e}")
+            format!("rounding leaves only the first digits of the {distance}: its relative error is {relative_error:.0e}")
         },
-        FewDigits { distance, .. } => format!("of the {distance} rounding leaves nothing: it may have any value"),
+        FewDigits { distance, .. } => format!("rounding leaves no digit of the {distance}: it may have any value"),
     }
     Bunching {
         meaning: "The number of photons per mode is high enough for bunching to raise the noise noticeably.",
@@ -116,14 +116,14 @@ words! {
         EnvelopeNotSearched => "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
     }
     MatrixPriors {
-        meaning: "Distances of the matrix per root of the photons know nothing of the priors; its \
+        meaning: "Distances of the matrix per sqrt(photon) do not include the priors; its \
             statistical distances do.",
         remedy: "Read the statistical distances.",
-        MatrixPriors => "the matrix's distances per sqrt(photon) are those of many photons, where priors count for nothing; \
-             its statistical distances have them",
+        MatrixPriors => "the matrix's distances per sqrt(photon) are those of many photons, where priors have no weight; \
+             its statistical distances include them",
     }
     TrialsEnded {
-        meaning: "Simulations ended at the most trials with intervals wider than asked for.",
+        meaning: "Simulations ended at the maximum number of trials with intervals wider than asked for.",
         remedy: "Raise --trials, or ask for less with --half-width.",
         TrialsEnded { wide, simulations, most_trials, widest, asked } => format!(
             "{wide} of {simulations} simulations ended after {most_trials} trials of a state with intervals of up to \

@@ -10,12 +10,12 @@ words! {
         Library { remark } => remark,
     }
     Material {
-        meaning: "The file or library entry of a material says something that whoever uses it must know.",
+        meaning: "The file or library entry of a material has a remark that its users must know.",
         remedy: "Read the entry; use another spectrum if it does not fit your surface.",
         Material { material, remark } => format!("{material}: {remark}"),
     }
     TargetAmongAlternatives {
-        meaning: "The target's own material was named among the alternatives, from which it cannot be told.",
+        meaning: "The target's own material was named among the alternatives, from which it cannot be distinguished.",
         remedy: "Nothing; or leave it out of alternatives.materials.",
         TargetAmongAlternatives { target } => {
             format!("{target} is left out of the alternatives: it is the target")
@@ -31,17 +31,17 @@ words! {
     ClassReplacesPlaceholder {
         meaning: "A class of the scenario has the name of a material of the library that is entered as one \
             number, and replaces it.",
-        remedy: "Nothing; or call the class otherwise.",
+        remedy: "Nothing; or rename the class.",
         ClassReplacesPlaceholder { class } => format!(
             "`{class}` is the class of this scenario, not the material of the library that is entered as one number"
         ),
     }
     SolvedForOnePair {
         meaning: "Figures of the camera, elasticities and pictures are those of the pair of members that is \
-            hardest to distinguish before the camera as it is.",
-        remedy: "Ask again with the figure that was solved for: the verdict is then that of all pairs.",
+            hardest to distinguish for the camera as it is.",
+        remedy: "Ask again with the figure that was solved for: the verdict then covers all pairs.",
         SolvedForOnePair { target, alternative } => format!(
-            "what each figure may be is solved for {target} against {alternative}, the hardest pair before the camera as it is; before \
+            "what each figure may be is solved for {target} against {alternative}, the hardest pair for the camera as it is; for \
              another camera another pair of members may be harder"
         ),
     }

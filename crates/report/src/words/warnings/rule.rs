@@ -12,8 +12,8 @@ words! {
     }
     EmissivityErrorsLeftOut {
         meaning: "The rule has errors of emissivities, and this answer takes all spectra to be exact.",
-        remedy: "Ask for a tolerance of the emissivity that holds them.",
-        EmissivityErrorsLeftOut => "errors of the emissivities, [sensitivity], are not in it: all spectra are taken to be exact",
+        remedy: "Ask for a tolerance of the emissivity that covers them.",
+        EmissivityErrorsLeftOut => "errors of the emissivities, [sensitivity], are not included: all spectra are taken to be exact",
     }
     NotProved {
         meaning: "That no scene of the operating envelope is below the requirement was searched for, not proved.",
@@ -29,11 +29,11 @@ words! {
     }
     FramesInMotion {
         meaning: "The frames of a camera are added up while something moves: motion blur takes them to be \
-            laid over each other.",
-        remedy: "Lay the frames over each other, or take fewer.",
+            registered.",
+        remedy: "Register the frames, or take fewer.",
         FramesInMotion(Proviso { frames, time_s, way_m }) => format!(
-            "its {frames} frames take {} s, at the demanded speed a way of {} m: they must be laid over each other, and the \
-             scene must not change; motion blur counts each by itself",
+            "its {frames} frames take {} s, over {} m at the required speed: they must be registered, and the \
+             scene must not change; motion blur is that of each by itself",
             short(*time_s),
             short(*way_m)
         ),

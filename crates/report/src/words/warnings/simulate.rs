@@ -5,9 +5,9 @@ use hadar::words::significant;
 
 words! {
     PriorsLeftOut {
-        meaning: "Priors count for nothing in what is drawn and learnt.",
+        meaning: "Priors are not used in what is drawn and learnt.",
         remedy: "Compare with limits without priors.",
-        PriorsLeftOut => "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them",
+        PriorsLeftOut => "priors are left out: neither the drawn spectra nor what is learnt from them uses them",
     }
     SpectraEmpty {
         meaning: "With so few photons most spectra are empty.",
@@ -20,15 +20,15 @@ words! {
         meaning: "Counts are so large that floating point rounds them.",
         remedy: "Ask for fewer with --photons.",
         CountsRounded { photons } => format!(
-            "with {} photons counts of a band leave the whole numbers that 64-bit floating point holds: \
-             they are rounded to it",
+            "with {} photons counts of a band exceed the integers that 64-bit floating point can hold: \
+             they are rounded",
             short(*photons)
         ),
     }
     FewSpectra {
         meaning: "There are too few training spectra to learn from.",
         remedy: "Raise --spectra.",
-        FewSpectra { training } => format!("{training} training spectra of each class teach little"),
+        FewSpectra { training } => format!("{training} training spectra of each class are too few to learn from"),
     }
     ModelPhotons {
         meaning: "A saved model was trained with another number of photons.",
@@ -40,7 +40,7 @@ words! {
         ),
     }
     NormalLikelihood {
-        meaning: "Likelihoods take counts for normal, which they are not quite, so that the likelihood \
+        meaning: "Likelihoods take counts as normal, which is not exact, so that the likelihood \
             ratio may lose a little.",
         remedy: "Ask for more photons, or leave the electronic noise out.",
         NormalLikelihood { error } => format!(
@@ -50,9 +50,9 @@ words! {
         ),
     }
     LimitNormal {
-        meaning: "With a fixed total only the limit of many photons is known: nothing is held against it.",
+        meaning: "With a fixed total only the limit of many photons is known: nothing is compared with it.",
         remedy: "Use --statistics poisson to hold classifiers against their limit.",
-        LimitNormal => "with a fixed total only the limit of many photons is known; nothing is held against it",
+        LimitNormal => "with a fixed total only the limit of many photons is known; nothing is compared with it",
     }
     RangeHoldsTheEstimates {
         meaning: "Fits end at the edge of what is physically possible and may be biased, where the \
