@@ -6,7 +6,7 @@ use hadar::error::Result;
 use hadar_formats::cube::{EnviBands, envi_files, write_npy_to};
 use hadar_formats::envi_header::Interleave;
 
-/// As what cubes are written.
+/// File format of written cubes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CubeFormat {
     /// One file, `name.npy`.

@@ -48,7 +48,7 @@ pub struct FindSpec {
     pub frames: Vec<u32>,
     /// Time until the decision, s.
     pub time_s: Option<f64>,
-    /// What is to be small, the first first.
+    /// What is to be small, the most important first.
     pub least: Vec<Merit>,
 }
 

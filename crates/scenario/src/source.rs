@@ -106,6 +106,12 @@ impl Source {
         self.settings.iter().any(|setting| setting.covers(key) || setting.is_in(key))
     }
 
+    /// Whether the file or a setting over it says anything at `key`.
+    #[must_use]
+    pub fn states(&self, key: &str) -> bool {
+        self.lines.contains_key(key) || self.is_set_in(key)
+    }
+
     /// What stands at `key` in the place of what was written.
     pub(super) fn setting(&self, key: &str) -> Option<&Setting> {
         self.settings.iter().rev().find(|setting| setting.covers(key))

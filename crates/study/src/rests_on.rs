@@ -235,9 +235,7 @@ impl Study {
             found.push(Condition::PatternOfEachBand);
         }
         let length = self.errors_shared().map(|spec| spec.correlation_cm1);
-        let key = "sensitivity.correlation";
-        let is_set = scenario.source.settings.iter().any(|one| one.key == key);
-        if let (Some(length_cm1), false) = (length, is_set || scenario.source.lines.contains_key(key)) {
+        if let (Some(length_cm1), false) = (length, scenario.source.states("sensitivity.correlation")) {
             found.push(Condition::ErrorsCorrelated { length_cm1 });
         }
         if is_object && !figures.is_empty() && camera.noise.is_some() {

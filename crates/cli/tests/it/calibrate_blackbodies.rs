@@ -204,7 +204,10 @@ fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
     );
     let one = SPECTROMETER.split("[[blackbody]]\ntemperature = \"35").next().unwrap().to_owned();
     says(&(one + "[noise]\nsample = 2.0\n"), &["one temperature does not determine response and offset"]);
-    says(&SPECTROMETER.replace("sample = 2.0\n", ""), &["nothing says how samples scatter", "sample = 1.5"]);
+    says(
+        &SPECTROMETER.replace("sample = 2.0\n", ""),
+        &["the noise of the samples is not stated", "sample = 1.5"],
+    );
     says(&SPECTROMETER.replace("mild.npy", "none.npy"), &["none.npy", "there is no such file"]);
     says(
         &SPECTROMETER.replace("20 cm^-1", "10 cm^-1"),
@@ -388,7 +391,7 @@ fn a_blackbody_that_is_not_quite_black_reflects_its_surroundings() {
     };
     says(
         without(grey(1, 0.98, 0.0)),
-        "blackbody[1].surroundings: nothing says what a blackbody that is not quite black reflects",
+        "blackbody[1].surroundings: the surroundings that a blackbody of emissivity below 1 reflects are missing",
     );
     says(grey(1, 1.2, 0.0), "above 0, at most 1");
 }
@@ -579,7 +582,7 @@ fn what_no_response_comes_from_is_said() {
         .iter()
         .fold(WHEEL.to_owned(), |text, t| text.replace(&format!("\"{t} degC\""), "\"35 degC\""));
     says(&equal, &["blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 308.15 K"]);
-    says(&WHEEL.replace("sample = 1.0\n", ""), &["nothing says how samples scatter"]);
+    says(&WHEEL.replace("sample = 1.0\n", ""), &["the noise of the samples is not stated"]);
     // What a curve does between its values would be in no error.
     says(
         &WHEEL.replace("[response]\n", "[response]\ncorrelation = \"5 cm^-1\"\n"),

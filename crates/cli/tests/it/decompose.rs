@@ -143,11 +143,7 @@ fn what_is_entered_as_one_number_is_said() {
     folder.file("library.csv", &with_flat.join("\n"));
     let ran = folder.run(&["decompose", "a.toml"]);
     let first = ran.stdout.lines().next().unwrap_or_default();
-    assert!(
-        first.contains("flat is entered as one number, which no surface was measured to be"),
-        "{}",
-        ran.stdout
-    );
+    assert!(first.contains("flat is entered as one number, which was not measured"), "{}", ran.stdout);
     assert!(ran.stdout.contains("real surfaces are as the one number of flat"), "{}", ran.stdout);
     let found = folder.json(&["decompose", "a.toml"]);
     assert_eq!(found["constants"], serde_json::json!(["flat"]));
@@ -526,7 +522,10 @@ fn mistakes_are_one_line_with_what_to_write() {
             SCENARIO.replace("column = \"sky\"", "column = \"skye\""),
             "there is no column `skye`; did you mean `sky`?",
         ),
-        (SCENARIO.replace("counts_per_photon_radiance = 1e-13\n", ""), "nothing says what a sample is"),
+        (
+            SCENARIO.replace("counts_per_photon_radiance = 1e-13\n", ""),
+            "the scale of the samples is not stated",
+        ),
         (SCENARIO.replace("= 1e-13", "= 1e-13\nbad_bands = [21]"), "band 21 of 21; count from 0 up to 20"),
         (
             SCENARIO.replace("\"library.csv\"", "\"library.csv\"\nprior = [1.0]"),

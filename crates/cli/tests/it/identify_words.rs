@@ -18,8 +18,9 @@ fn what_was_asked_for_comes_first() {
     assert!(apart.starts_with(lead) && matrix.starts_with(lead), "{apart}\n{matrix}");
     let table = "  distances per sqrt(photon), the nearest proved to 1e-6 of it; photons by shot noise alone; camera d: statistical distance, required 1.000\n";
     assert!(!apart.contains(table) && matrix.contains(table), "{apart}\n{matrix}");
-    let chains = "Chains: groups held together by pairs that are not distinguished\n  1   (4) skin, aluminium, pmma, concrete\n";
-    let clusters = "distinguished; members of different clusters may be confused all the same\n  1   (2) skin, aluminium\n";
+    let chains = "Chains: groups connected by pairs that are not distinguished\n  1   (4) skin, aluminium, pmma, concrete\n";
+    let clusters =
+        "distinguished; members of different clusters may still be confused\n  1   (2) skin, aluminium\n";
     assert!(apart.contains(chains) && apart.contains(clusters), "{apart}");
     // Where the groups are the same nothing more is said.
     let two = FIVE.replace(

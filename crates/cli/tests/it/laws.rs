@@ -178,7 +178,11 @@ fn contrast_is_the_kelvins_over_twice_the_noise() {
         "a.toml",
         &text("299.5 K", "").replace("[clause.alternatives]\ntemperature = [\"280 K\", \"299.5 K\"]\n", ""),
     );
-    assert!(folder.refusal(&["rule", "a.toml"]).contains("nothing says how warm that may be"));
+    assert!(
+        folder
+            .refusal(&["rule", "a.toml"])
+            .contains("the temperature of what is behind the target is not stated")
+    );
     // What is behind may be of the target's own material, in company too, and is then no warmer than its range.
     folder.file("white.csv", "wavenumber_cm1,emissivity\n600,0.5\n1500,0.5\n");
     let both = text("299.5 K", "").replace("behind = [", "behind = [\"white.csv\", ");

@@ -191,10 +191,13 @@ fn mistakes_are_one_line_with_what_to_write() {
         (SCENARIO.replace("count = 2", "count = 0"), "clusters.count"),
         (SCENARIO.replace("count = 2\n", ""), "clusters.count: the key is missing; write count = 6"),
         (SCENARIO.replace("= 0.96", "= 1.2"), "clusters.max_emissivity"),
-        (SCENARIO.replace("counts_per_photon_radiance = 1e-13\n", ""), "nothing says what a sample is"),
+        (
+            SCENARIO.replace("counts_per_photon_radiance = 1e-13\n", ""),
+            "the scale of the samples is not stated",
+        ),
         (
             SCENARIO.replace("counts_per_photon_radiance = 1e-13", "unit = \"W m^-2 sr^-1 per cm^-1\""),
-            "radiances alone do not say how they scatter; write noise = 1e-4",
+            "radiances without their noise; write noise = 1e-4",
         ),
         (SCENARIO.replace("lighting_total = 1.0", "gain = true"), "unknown.gain"),
         (SCENARIO.replace("1200 cm^-1", "1180 cm^-1"), "[bands] are 20"),

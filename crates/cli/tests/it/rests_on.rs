@@ -32,7 +32,7 @@ fn a_verdict_names_what_it_rests_on() {
     let pixel = folder.run(&["size", &path("verdict", "one_pixel_no.toml").unwrap()]).stdout;
     // d = 0.126 of a pixel, 2.45 of 378 of them: 99.3 %.
     assert!(
-        pixel.contains("upper limit of one pixel 55.0 %; of all 378 pixels on it together 99.3 %"),
+        pixel.contains("upper limit for one pixel 55.0 %; for all 378 pixels on it together 99.3 %"),
         "{pixel}"
     );
 

@@ -254,12 +254,12 @@ fn mistakes_in_rules_as_people_write_them() {
             "line 21: clause[0].kind: `see-through` is not known here; write \"tell-apart\"",
         ),
         (NIGHT.to_owned() + "[[clause]]\nkind = \"tell-apart\"\n", "clause[0].name: the clause has no name"),
-        (clause("[[clause]]\nname = \"a\"\n"), "another clause is called like this"),
+        (clause("[[clause]]\nname = \"a\"\n"), "another clause has this name"),
         (clause("kind = \"resolution\"\n"), "clause[0].requirement: the key is missing"),
         (clause("kind = \"resolution\"\n[clause.requirement]\npixels = 6\n"), "write size = \"0.5 m\""),
         (
             clause("kind = \"false-alarm\"\nthings = [\"pmma\"]\n"),
-            "nothing says how rare false alarms must be",
+            "the probability of false alarms is not stated",
         ),
         (clause("things = [\"pmma\"]\n"), "there is no key `things`"),
         (

@@ -456,7 +456,7 @@ mod tests {
         assert_eq!(yes(std::slice::from_ref(&still)), "yes, if nothing moves for 88.0 s");
         let set = Condition::Setting { key: "camera.frames".into(), value: "256".into(), of_rule: false };
         let all = [still, Condition::NoAir, Condition::NoSurroundings, set];
-        assert_eq!(yes(&all), "yes, if nothing moves for 88.0 s, and on 2 more conditions");
+        assert_eq!(yes(&all), "yes, if nothing moves for 88.0 s, and under 2 more conditions");
         let said = paragraph(&all, true);
         assert_eq!(said.matches("\n  [").count(), 4, "{said}");
         assert!(said.contains("It assumes as well\n  [setting] camera.frames = 256"), "{said}");

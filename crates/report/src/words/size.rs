@@ -276,7 +276,7 @@ mod tests {
         let conditions = vec![Condition::RegisteredFrames(Proviso { frames: 4, time_s: 0.062, way_m: 0.83 })];
         let said = Finding { conditions, placeholders: Some([0.95, 0.9]), ..yes }.say();
         assert!(
-            said.starts_with("Yes, if its 4 frames can be registered (62.0 ms, a way of 83 cm): "),
+            said.starts_with("Yes, if its 4 frames can be registered (62.0 ms, 83 cm of travel): "),
             "{said}"
         );
         let end = "Both are entered as one number (0.95 and 0.9): that says nothing of real surfaces.";

@@ -285,7 +285,7 @@ fn four_panels_stand_over_each_other() {
             .rule(Rule::horizontal(top / 2.0, "demanded"))
             .rule(Rule::vertical(7.0, ""))
     };
-    let panels = ["d over that demanded", "pixels across 50 cm", "blur (pixels)", "speed at contact (km/h)"];
+    let panels = ["d over required d", "pixels across 50 cm", "blur (pixels)", "speed at contact (km/h)"];
     let panels = panels.iter().zip([1.0, 1e3, 60.0, 1e-3]).map(|(title, top)| panel(title, top)).collect();
     let x = Axis::linear("time (s)").range(19.0, 0.0).secondary("distance (m)", vec![(10.0, "40".into())]);
     let figure = Figure::from(LineFigure::over("The approach", x, panels));
@@ -294,7 +294,7 @@ fn four_panels_stand_over_each_other() {
     check_png(&render_png(&figure).unwrap());
     // The first panel is at the top, and one legend tells of all.
     let at = |title: &str| svg.find(title).unwrap_or_else(|| panic!("{title}"));
-    assert!(at("d over that demanded") < at("blur (pixels)") && at("blur (pixels)") < at("speed at contact"));
+    assert!(at("d over required d") < at("blur (pixels)") && at("blur (pixels)") < at("speed at contact"));
     assert_eq!(svg.matches(">a camera<").count(), 1);
 }
 

@@ -23,7 +23,7 @@ pub struct FindAnswer {
     pub met: bool,
     /// The first of those that meet, by what is to be small.
     pub best: Option<Choice>,
-    /// Those that are beaten by none in all that is to be small, the first first.
+    /// Pareto-optimal choices in all that is to be small, in the order of the question.
     pub listed: Vec<Choice>,
     /// The best of every other camera that meets.
     pub also: Vec<Choice>,

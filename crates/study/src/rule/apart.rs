@@ -226,7 +226,7 @@ impl TellApart {
 
     /// Temperatures that alternatives may have, where the clause says so.
     fn stated_alternatives_k(&self) -> Option<[f64; 2]> {
-        let stated = self.scenario.source.lines.contains_key("alternatives.temperature");
+        let stated = self.scenario.source.states("alternatives.temperature");
         self.scenario.alternatives.temperature_range_k.filter(|_| stated)
     }
 

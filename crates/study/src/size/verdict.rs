@@ -157,13 +157,16 @@ impl Study {
         if spoiled.is_empty() && (check.identifiable || !by_proof) {
             return Ok(None);
         }
+        let mut is_apart = false;
         if let (true, Some(index), Some(counting)) = (spoiled.is_empty(), check.failed, self.counting()) {
             // Not to be proved is not to be impossible.
             let own = self.against(index);
             let kind = self.scenario.requirement.by;
-            if own.decided(kind, &own.alternatives[index], &counting)?.told != YesNo::No {
+            let decision = own.decided(kind, &own.alternatives[index], &counting)?;
+            if decision.told != YesNo::No {
                 return Ok(None);
             }
+            is_apart = kind == DistanceKind::Nearest && decision.found.distance > 0.0;
         }
         let alternative = match (&check.not_told_from, self.alternatives.as_slice()) {
             (Some(name), _) => Some(name.clone()),
@@ -189,7 +192,7 @@ impl Study {
             target: self.target.name.clone(),
             required: self.required,
             by: self.scenario.requirement.by,
-            answer: self.too_few_bands().filter(|_| !check.identifiable).unwrap_or(judged),
+            answer: self.too_few_bands().filter(|_| !check.identifiable && !is_apart).unwrap_or(judged),
             placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
             classes: index.and_then(|index| self.classes.get(index)).cloned().map(Box::new),
             alternative,

@@ -98,6 +98,26 @@ fn a_camera_of_one_band_takes_filters() {
     );
 }
 
+/// Ranges of temperature and lighting leave a distance where two bands stand against two unknowns: what falls short of it by a little is
+/// judged by that distance and not called blind, in the quick answer too.
+#[test]
+fn as_many_bands_as_unknowns_are_judged_by_their_distance() {
+    let two = "ranges = [[\"8 um\", \"9.5 um\"], [\"11 um\", \"13 um\"]]";
+    let of = |distance: f64| format!("{}[requirement]\ndistance = {distance}\n", scenario(CORE, two));
+    let d = size(&of(1.0)).verdict.upper.unwrap();
+    assert!(d > 0.0, "{d}");
+    let short = size(&of(1.01 * d)).verdict;
+    assert_eq!(short.met, Some(false));
+    assert!(
+        matches!(short.sentence.answer, Answer::Judged { enough: false, .. }),
+        "{:?}",
+        short.sentence.answer
+    );
+    let alone = study(&of(1.01 * d)).unwrap().no_alone().unwrap().unwrap();
+    assert!(matches!(alone.verdict.sentence.answer, Answer::Judged { enough: false, .. }));
+    assert_eq!(size(&of(0.9 * d)).verdict.met, Some(true));
+}
+
 /// No more bands than an instrument has, and none finer than it resolves; the grid that a message offers is one it has.
 #[test]
 fn a_spectrometer_has_its_own_bands() {
@@ -113,7 +133,7 @@ fn a_spectrometer_has_its_own_bands() {
     assert!(said.contains("is finer than specim-aisaowl resolves with 103 bands"), "{said}");
 }
 
-/// The camera as the paper models it reads a spectrum at once, as no such camera does; behind a wheel it does not.
+/// The camera as the paper models it reads a spectrum at once, which no such camera can; behind a wheel it does not.
 #[test]
 fn a_model_of_more_than_the_camera_is_said_to_be_one() {
     let modelled = |result: &Sizing| {
@@ -209,7 +229,7 @@ fn the_farthest_distance_is_found_up_to_the_end_of_the_air() {
     let result = at(30.0, 12.0);
     let (_, found) =
         result.solve_for.unwrap().0.into_iter().find(|(of, _)| *of == Quantity::Distance).unwrap();
-    assert!(found.value.is_none() && found.reason.unwrap().contains("as far as the air is known"));
+    assert!(found.value.is_none() && found.reason.unwrap().contains("up to where the data of the air end"));
 }
 
 /// Nothing around the target, and a pixel that sees more than a person.

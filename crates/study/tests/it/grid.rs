@@ -213,7 +213,7 @@ fn what_is_no_grid_is_refused() {
     refused(format!("{without}[[grid]]\nspeed_step = \"5 km/h\"\n"), "grid[0].name");
     refused(NIGHT.replace("\"5 km/h\"", "\"0 km/h\""), "grid[0].speed_step");
     refused(NIGHT.replace("\"5 km/h\"", "\"0.001 m/s\""), "more than 1000 cells");
-    refused(NIGHT.replace("\"evening\"", "\"night\""), "another light is called like this");
+    refused(NIGHT.replace("\"evening\"", "\"night\""), "another light has this name");
     refused(NIGHT.replace("surroundings", "distance"), "there is no key `distance`");
     refused(format!("{NIGHT}lighting = [[0.1, 0.2], [0.3, 0.4]]\n"), "2 ranges for 1");
     let (stop, clause) = (NIGHT.find("[stop]").unwrap(), NIGHT.find("[[clause]]\nname = \"tell\"").unwrap());

@@ -170,7 +170,7 @@ fn what_is_no_object_is_refused() {
         let error = try_size(&scene(of, "", requirement, "")).unwrap_err();
         assert!(error.contains(what), "{error}");
     };
-    says("", "of = \"object\"", "nobody says how large it is");
+    says("", "of = \"object\"", "the size of the object is not stated");
     says("pixels = 0", "", "whole number from 1");
     says("pixels = [0, 3]", "", "whole number from 1");
     says("pixels = 3.5", "", "whole number");

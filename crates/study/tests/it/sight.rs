@@ -177,7 +177,7 @@ fn what_is_left_open_is_asked_for() {
     let cases = [
         (
             format!("{HEAD}size = \"10 mm\"\n{REST}{CAMERA}"),
-            "line 5: target.size: a size, but nothing is said of what is behind the target; write [background] with \
+            "line 5: target.size: a size, but what is behind the target is not stated; write [background] with \
              temperature = \"15 degC\" (and a material, else a blackbody)",
         ),
         (

@@ -171,11 +171,10 @@ fn look_alikes(rule: &Rule) -> Option<String> {
     let tells = |clause: &&Clause| clause.demand.tells_apart();
     let mut silent = Vec::new();
     for clause in rule.clauses.iter().filter(tells) {
-        let stated = &clause.scenario.alternatives;
-        for (range, word) in
-            [(stated.temperature_range_k, "temperature"), (stated.lighting_range, "lighting")]
+        for (key, word) in
+            [("alternatives.temperature", "temperature"), ("alternatives.lighting", "lighting")]
         {
-            if range.is_none() && !silent.contains(&word) {
+            if !clause.scenario.source.states(key) && !silent.contains(&word) {
                 silent.push(word);
             }
         }
