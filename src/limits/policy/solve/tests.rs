@@ -155,7 +155,8 @@ fn the_farthest_distance_is_where_the_task_is_just_met() {
         match solution.value {
             Some(value) => assert!(end_m > 30.0 && (value / 30.0 - 1.0).abs() < 1e-12, "{solution:?}"),
             None => assert!(
-                end_m < 30.0 && solution.reason.unwrap().contains("as far as the air is known, 29.9 m")
+                end_m < 30.0
+                    && solution.reason.unwrap().contains("up to where the data of the air end, 29.9 m")
             ),
         }
     }
