@@ -96,7 +96,7 @@ impl<'a> NearestSolver<'a> {
         Self {
             comparison: Comparison::new(bands, surroundings, unknowns, range),
             table: None,
-            merging: Some(bands.len() / FEW_BANDS).map(in_chunks).filter(|count| *count > 1),
+            merging: Some(in_chunks(bands.len() / FEW_BANDS)).filter(|count| *count > 1),
             memory: Memory::default(),
             tolerance: None,
         }
