@@ -96,7 +96,7 @@ enum Command {
     /// Make a report again from its recorded inputs and compare every file byte by byte; exit code 0 where all are the same, 1
     /// where one is not
     Verify(verify::VerifyArgs),
-    /// `hadar size` as a page in the browser of this machine: a form, the verdict, pictures that follow a slider
+    /// `hadar size`, `find` and `rule` as pages in the browser of this machine: a form, the verdict, pictures that follow a slider
     Serve(serve::ServeArgs),
     /// Print the script by which a shell completes commands and flags; source it, or save it where the shell looks
     Completions(shell::CompletionsArgs),

@@ -305,7 +305,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
         Some(only) => {
             ("margin: statistical distance over that demanded", one_clause(only.requirement.distance))
         }
-        None => ("margin: value reached over value required", ALL_CLAUSES.into()),
+        None => ("margin: value reached over value required (for an error the inverse)", ALL_CLAUSES.into()),
     };
     let figure = NamedValues::new(certificate::title(answer), names, Axis::log(axis))
         .subtitle(subtitle)

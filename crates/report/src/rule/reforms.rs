@@ -41,7 +41,7 @@ fn margins(found: &Reforms, title: &str) -> Plot {
     }
     let names = found.law.iter().map(|one| one.camera.clone()).collect();
     let of = |cameras: &[BeforeLaw]| cameras.iter().map(|one| one.margin).collect::<Vec<_>>();
-    let axis = Axis::log("margin: value reached over value required");
+    let axis = Axis::log("margin: value reached over value required (for an error the inverse)");
     let mut figure = NamedValues::new(title.to_owned(), names, axis)
         .subtitle(LEAST.to_owned())
         .series(NamedSeries::new("the rule as it is", of(&found.law)));

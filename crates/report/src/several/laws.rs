@@ -186,7 +186,7 @@ pub(super) fn plot(answers: &[(&str, &Value)]) -> Option<Plot> {
     let mut figure = NamedValues::new(
         SIDE_BY_SIDE,
         cameras.iter().map(|(_, called)| called.clone()).collect(),
-        Axis::log("margin: value reached over value required"),
+        Axis::log("margin: value reached over value required (for an error the inverse)"),
     )
     .subtitle(LEAST_OR_SPOILED)
     .failing(cameras.iter().map(|(camera, _)| !meets_all(&laws, camera)).collect())

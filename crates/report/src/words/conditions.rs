@@ -131,13 +131,13 @@ impl Say for Condition {
                 significant(bearing_rad.to_degrees(), 2)
             ),
             Self::PatternOfEachBand => {
-                "the fixed pattern differs from band to band, as after a correction behind each filter".into()
+                "the fixed pattern is independent from band to band, as after a correction behind each filter".into()
             }
             Self::PatternOfEachPixel => {
                 "row and column noise is independent between the pixels of a window".into()
             }
             Self::PixelsByLens => {
-                "the pixels on the target are counted by pixel and focal length, which the field of view contradicts".into()
+                "as many pixels are on the target as pixel and focal length give, which the field of view contradicts".into()
             }
             Self::AlikePixels { pixels } => format!(
                 "the {} pixels that are added up are identified, and all see the target in the same state",
@@ -238,7 +238,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "emissivities",
-        "Errors of the emissivities of the usual size would undo the answer.",
+        "Errors of the emissivities, of the usual size, may undo the answer.",
         "Measure these emissivities, and state sensitivity.emissivity_error.",
     ],
     [
@@ -304,7 +304,7 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
     ],
     [
         "photon-bunching",
-        "The bunching of thermal photons is neglected, but would change the verdict.",
+        "The bunching of thermal photons is neglected, but could change the verdict.",
         "Write camera.photon_bunching = true.",
     ],
     [

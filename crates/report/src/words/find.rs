@@ -26,9 +26,12 @@ pub fn text(found: &FindAnswer) -> String {
         out += &bought(best);
         out += &conditions::paragraph(best.conditions(), true);
     }
-    let head = "Pareto-optimal in ";
     let merits: Vec<&str> = merits(found).iter().map(|merit| merit.name()).collect();
-    out += &table(&format!("{head}{}, sorted in this order", listed(&merits)), &found.listed);
+    let head = match merits[..] {
+        [only] => format!("Least {only}"),
+        _ => format!("Pareto-optimal in {}, sorted in this order", listed(&merits)),
+    };
+    out += &table(&head, &found.listed);
     out += &of_others(found);
     out += &table("The best of every other camera that meets the requirement", &found.also);
     out += &table("Undecided: d reaches the requirement by the search, not by the proof", &found.undecided);
@@ -84,6 +87,9 @@ pub fn sentence(found: &FindAnswer) -> String {
                 true => "The cheapest that meets",
                 false => "The cheapest of known price that meets",
             }
+        }
+        Some(Merit::Price) if merits(found).len() == 1 => {
+            "No price is known; the one of largest d that meets"
         }
         Some(Merit::Price) => "No price is known; the best by the other criteria that meets",
         Some(Merit::Time) => "The fastest that meets",

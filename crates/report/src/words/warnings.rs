@@ -132,7 +132,7 @@ mod tests {
              (temperature, lighting of environment[1]); the range decides the answer\"}"
         );
         let digits = |relative_error| Warning::FewDigits { distance: "local distance", relative_error }.say();
-        assert!(digits(2e-2).ends_with("its relative error is 2e-2"), "{}", digits(2e-2));
+        assert!(digits(2e-2).ends_with("its relative error is about 2e-2"), "{}", digits(2e-2));
         for error in [1e300, f64::NAN] {
             assert!(digits(error).ends_with("it may have any value"), "{}", digits(error));
         }

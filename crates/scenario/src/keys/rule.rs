@@ -182,7 +182,7 @@ const UNCERTAIN_KEYS: &[Key] = &[
         Value::Text,
         Means("independent of all other figures"),
         "\"lens\"",
-        "Figures of one camera that name the same share one error, in units of their deviations.",
+        "Figures of one camera with the same name here have one common error, in units of the deviation of each.",
         "contributions that are added before they are squared; draws",
     ),
     Key::row(
@@ -344,7 +344,7 @@ const TEST_KEYS: &[Key] = &[
         Value::Number(FROM_ZERO),
         Means("any"),
         "1.23",
-        "Expected margin: value reached over value required.",
+        "Expected margin: value reached over value required, for an error the inverse.",
         "`hadar rule --test`",
     ),
     Key::row(

@@ -218,3 +218,34 @@ fn a_pixel_larger_than_the_target_is_no_better() {
     assert!(solution.value.is_none() && solution.reason.unwrap().contains("that the target fills"));
     assert!((solution.statistical_distance / 16.0 - 1.0).abs() < 1e-9);
 }
+
+/// The least number of frames is that of a search by halves, whatever stops d from growing as their root, and takes few trials where nothing does.
+#[test]
+fn frames_are_those_of_a_search_by_halves() {
+    let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+    let camera = presets::get("flir-a325sc").unwrap();
+    for floor in [0.0, 1e-9, 1e-4, 0.1] {
+        for at_one in [1e-6, 3e-3, 0.2, 0.999_999_999, 1.0, 7.0] {
+            for own in [1, 16, u32::MAX] {
+                let camera = Camera { frames: own, ..camera.clone() };
+                let d = |frames: f64| at_one * (frames / (1.0 + floor * frames)).sqrt();
+                let mut trials = 0;
+                let found = task(&camera, &bands, 1.0).solve(Quantity::Frames, |trial| {
+                    trials += 1;
+                    Ok(d(f64::from(trial.camera.frames)))
+                });
+                let enough = |frames: u32| d(f64::from(frames)) >= 1.0 - 1e-9;
+                let expected = enough(u32::MAX).then(|| {
+                    let (mut few, mut many) = (0, u32::MAX);
+                    while many - few > 1 {
+                        let middle = few.midpoint(many);
+                        *(if enough(middle) { &mut many } else { &mut few }) = middle;
+                    }
+                    f64::from(many)
+                });
+                assert_eq!(found.unwrap().value, expected, "{floor} {at_one} {own}");
+                assert!(trials <= if floor == 0.0 { 8 } else { 100 }, "{floor} {at_one} {own}: {trials}");
+            }
+        }
+    }
+}

@@ -81,7 +81,7 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
         if choice.distance == 0.0 {
             let _ = writeln!(
                 out,
-                "  too few {what}s carry no information: {} or more are required, one more than there are unknowns",
+                "  so few {what}s carry no information: {} or more are required, one more than there are unknowns",
                 choice.fewest
             );
             continue;

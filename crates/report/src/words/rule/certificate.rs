@@ -127,7 +127,7 @@ pub const WORDS: [[&str; 2]; 12] = [
     ],
     [
         "margin",
-        "value reached over value required: below 1 is a no; above 1 is necessary but not sufficient, since blur, view and time count too",
+        "value reached over value required (for an error the inverse): below 1 is a no; above 1 is necessary but not sufficient, since blur, view and time count too",
     ],
     [
         "d",
@@ -144,7 +144,10 @@ pub const WORDS: [[&str; 2]; 12] = [
         "emissivity",
         "the fraction of a blackbody's radiation that a surface emits; the rest of what is seen of it is reflected from the surroundings",
     ],
-    ["V", "lighting factor: the fraction of the hemisphere above a surface that the surroundings named fill"],
+    [
+        "V",
+        "lighting factor: the fraction of the hemisphere above a surface, weighted by the cosine, that a named part of the surroundings fills",
+    ],
 ];
 
 /// A verdict in a cell.

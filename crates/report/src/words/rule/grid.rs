@@ -13,7 +13,7 @@ pub(crate) const NO_CELL: &str = "no such cell";
 /// What marked cells are in a picture.
 pub(crate) const NOT_MET: &str = "not met or undecided, whatever the margin (why: grid.csv)";
 /// What the colour of a cell is.
-pub(crate) const MARGIN: &str = "margin: value reached over value required";
+pub(crate) const MARGIN: &str = "margin: value reached over value required (for an error the inverse)";
 /// What the rows and columns of the table are.
 pub(crate) const ROWS: &str = "clause, light";
 

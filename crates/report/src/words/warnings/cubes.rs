@@ -184,7 +184,7 @@ words! {
         ),
     }
     MirrorNotExcluded {
-        meaning: "Several surroundings light a pixel whose total is not stated: a mirror of them is \
+        meaning: "Several surroundings light a pixel and their total is not stated: a mirror of them is \
             not distinguished from an equally warm surface.",
         remedy: "State unknown.lighting_total, or name fewer surroundings.",
         MirrorNotExcluded { surroundings } => format!(

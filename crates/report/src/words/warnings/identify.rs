@@ -94,7 +94,7 @@ words! {
         remedy: "Do not rely on that distance; take away unknowns that hardly differ from others, or light \
             that nearly cancels.",
         FewDigits { distance, relative_error } if *relative_error < 1.0 => {
-            format!("rounding leaves only the first digits of the {distance}: its relative error is {relative_error:.0e}")
+            format!("rounding leaves only the first digits of the {distance}: its relative error is about {relative_error:.0e}")
         },
         FewDigits { distance, .. } => format!("rounding leaves no digit of the {distance}: it may have any value"),
     }

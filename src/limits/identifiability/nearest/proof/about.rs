@@ -1,11 +1,11 @@
-//! Closes the widest box about the best state that can be ([`super::closing`]).
+//! The best state as a minimum in the bands, or in groups of them, and the widest box about it that can be closed ([`super::closing`]).
 
 use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
 use super::priors::PriorAt;
 use super::prover::{Goal, Prover, temperature_of};
-use super::sources::{Spectrum, neighbours_summed};
-use super::vectors::{Weights, pulls_into, weights_into};
+use super::sources::Spectrum;
+use super::vectors::{Weights, neighbours_summed, products_summed, pulls_into, weights_into};
 use super::view::View;
 use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::nearest::residual::{Comparison, Target};
@@ -23,6 +23,43 @@ pub(super) enum Closed {
     Nearer(State),
     /// No box can be closed.
     Nothing,
+}
+
+impl Minimum {
+    /// The same minimum with so many neighbouring bands counted as one, as a view has them; none where bands were left out, of which their
+    /// sums would know.
+    pub(super) fn counted_together(&self, view: &View<'_>, count: usize) -> Option<Self> {
+        crate::stop::check();
+        let bands = view.sources.bands.len();
+        let [root, other, pull] = [&self.root, &self.other, &self.pull].map(|x| &x[..bands]);
+        if other.contains(&0.0) {
+            return None;
+        }
+        // r(y + s) = N − N₀, and −p s = r.
+        let pairs = pull.iter().zip(root.iter().zip(other));
+        let differences: Vec<f64> = pairs.map(|(p, (y, s))| -p * s * (y + s)).collect();
+        let differences = neighbours_summed(&differences, count);
+        let other: Vec<f64> = products_summed([other; 2], count).into_iter().map(f64::sqrt).collect();
+        let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
+        let pairs = differences.iter().zip(view.root.iter().zip(&other));
+        let residual: Vec<f64> = pairs.map(|(d, (y, s))| over(*d, y + s)).collect();
+        let pull = residual.iter().zip(&other).map(|(r, s)| over(-r, *s)).collect();
+        let of_priors: f64 = self.priors.iter().map(|prior| prior.residual * prior.residual).sum();
+        let mut weight = vec![0.0; other.len()];
+        let (reach, root) = (self.reach, &view.root);
+        weights_into(Weights { root, other: &other, reach, most: None, weight: &mut weight });
+        Some(Self {
+            amplitudes: self.amplitudes.clone(),
+            spectra: self.spectra.iter().map(|own| view.sources.summed(own, count)).collect(),
+            pull,
+            root: root.clone(),
+            other,
+            weight,
+            priors: self.priors.clone(),
+            reach,
+            cost: dot(&residual, &residual) + of_priors,
+        })
+    }
 }
 
 impl Prover<'_, '_> {
@@ -51,47 +88,6 @@ impl Prover<'_, '_> {
         let mut weight = vec![0.0; bands];
         weights_into(Weights { root: &root, other: &seen, reach, most: None, weight: &mut weight });
         Minimum { amplitudes, spectra, pull, root, other: seen, weight, priors, reach, cost }
-    }
-
-    /// The same minimum with neighbouring bands counted as one, as a view has them; none where bands were left out, of which their
-    /// sums would know.
-    pub(super) fn minimum_in(view: &View<'_>, minimum: &Minimum, count: usize) -> Option<Minimum> {
-        crate::stop::check();
-        let bands = view.sources.bands.len();
-        let Minimum { root, other, pull, priors, reach, .. } = minimum;
-        if other[..bands].contains(&0.0) {
-            return None;
-        }
-        // r(y + s) = N − N₀, and −p s = r.
-        let pairs = pull.iter().zip(root.iter().zip(other));
-        let differences: Vec<f64> = pairs.map(|(p, (y, s))| -p * s * (y + s)).collect();
-        let squares: Vec<f64> = other.iter().map(|s| s * s).collect();
-        let [differences, squares] = [differences, squares].map(|x| neighbours_summed(&x[..bands], count));
-        let other: Vec<f64> = squares.iter().map(|square| square.sqrt()).collect();
-        let pairs = differences.iter().zip(view.root.iter().zip(&other));
-        let residual: Vec<f64> = pairs.map(|(d, (y, s))| if *s > 0.0 { d / (y + s) } else { 0.0 }).collect();
-        let pulls = residual.iter().zip(&other);
-        let pull: Vec<f64> = pulls.map(|(r, s)| if *s > 0.0 { -r / s } else { 0.0 }).collect();
-        let of_priors: f64 = priors.iter().map(|prior| prior.residual * prior.residual).sum();
-        let mut weight = vec![0.0; other.len()];
-        weights_into(Weights {
-            root: &view.root,
-            other: &other,
-            reach: *reach,
-            most: None,
-            weight: &mut weight,
-        });
-        Some(Minimum {
-            amplitudes: minimum.amplitudes.clone(),
-            spectra: minimum.spectra.iter().map(|own| view.sources.summed(own, count)).collect(),
-            pull,
-            root: view.root.clone(),
-            other,
-            weight,
-            priors: priors.clone(),
-            reach: *reach,
-            cost: dot(&residual, &residual) + of_priors,
-        })
     }
 
     /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.

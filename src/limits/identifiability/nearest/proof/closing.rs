@@ -18,10 +18,10 @@ use super::amplitudes::{Amplitudes, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
 use super::orthogonal::{add, back_substitute, inner, orthonormalise, reduce, reduced};
 use super::priors::PriorAt;
-use super::sources::{Sources, Spectrum, whole};
+use super::sources::{Sources, Spectrum};
 use super::vectors::{
     Weights, add_into, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient,
-    weights_into,
+    weights_into, whole,
 };
 use crate::sum::dot;
 

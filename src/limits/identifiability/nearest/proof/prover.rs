@@ -3,7 +3,8 @@
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
 use super::priors::Priors;
-use super::sources::{Sources, neighbours_summed};
+use super::sources::Sources;
+use super::vectors::neighbours_summed;
 use super::view::View;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};

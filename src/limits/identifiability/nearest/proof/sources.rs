@@ -14,14 +14,14 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
-use super::vectors::{multiply, product_into};
+use super::vectors::{multiply, neighbours_summed, product_into, products_summed, whole};
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::Blackbodies;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::identifiability::space::LARGEST_LN_GAIN;
 use crate::planck;
 use crate::scene::Parameter;
-use crate::simd::{Chunk, LANES, added, dispatched, fold_all, padded};
+use crate::simd::dispatched;
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
 use std::cell::OnceCell;
@@ -266,9 +266,7 @@ impl<'a> Sources<'a> {
     fn counted(&self, s: usize, radiance: &[f64]) -> Vec<f64> {
         let (bands, strength) = (self.bands.len(), &self.list[s].strength);
         if self.merged > 1 && self.bands.one_node_per_band() {
-            let mut counts = vec![0.0; whole(bands.div_ceil(self.merged))];
-            sums_of_products_into([radiance, strength], self.merged, &mut counts);
-            return counts;
+            return products_summed([radiance, strength], self.merged);
         }
         let mut counts = vec![0.0; whole(bands)];
         if self.bands.one_node_per_band() {
@@ -372,61 +370,4 @@ pub(super) fn half_sag([width, per_unit]: [f64; 2], [a, slope_a]: [f64; 2], [b, 
     let (above, rest, turn) = ((chord - slope_a).max(0.0), (slope_b - chord).max(0.0), slope_b - slope_a);
     let sag = if turn > 0.0 { width * above * rest / turn } else { 0.0 };
     0.5 * sag.min(b - a).max(0.0)
-}
-
-/// How many values whole chunks take for so many bands: those beyond are 0 everywhere.
-pub(super) fn whole(bands: usize) -> usize {
-    bands.next_multiple_of(LANES)
-}
-
-/// Neighbours summed, in whole chunks.
-pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; whole(bands.len().div_ceil(count))];
-    sums_of_products_into([bands, &vec![1.0; bands.len()]], count, &mut sums);
-    sums
-}
-
-/// Groups that are summed at a time.
-const GROUPS: usize = 16;
-
-/// Sums of so many neighbouring products each, in whole chunks.
-fn sums_of_products_into(factors: [&[f64]; 2], count: usize, sums: &mut [f64]) {
-    let bands = factors[0].len();
-    for (some, sums) in sums.chunks_mut(GROUPS).enumerate() {
-        let mut groups = [[0.0; LANES]; GROUPS];
-        let first = (some * GROUPS * count).min(bands);
-        products_by_group(factors.map(|x| &x[first..]), count, &mut groups[..sums.len()]);
-        folded_into(&groups[..sums.len()], sums);
-    }
-}
-
-dispatched! {
-    /// Lanes of the sums of so many neighbouring products each.
-    fn products_by_group<'a>(factors: [&'a [f64]; 2], count: usize, groups: &'a mut [Chunk]) -> () {
-        let [a, b] = factors;
-        let ((a_chunks, _), (b_chunks, _)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-        let per_group = count / LANES;
-        let whole = if per_group * LANES == count { (a_chunks.len() / per_group).min(groups.len()) } else { 0 };
-        let chunks = a_chunks.chunks_exact(per_group.max(1)).zip(b_chunks.chunks_exact(per_group.max(1)));
-        for (lanes, (a, b)) in groups[..whole].iter_mut().zip(chunks) {
-            for (a, b) in a.iter().zip(b) {
-                *lanes = added(*a, *b, *lanes);
-            }
-        }
-        // Groups that are no whole chunks, and the last one.
-        let rest = (whole * count).min(a.len());
-        let (a, b) = (a[rest..].chunks(count), b[rest..].chunks(count));
-        for (lanes, (a, b)) in groups[whole..].iter_mut().zip(a.zip(b)) {
-            for (a, b) in a.chunks(LANES).zip(b.chunks(LANES)) {
-                *lanes = added(padded(a), padded(b), *lanes);
-            }
-        }
-    }
-}
-
-dispatched! {
-    /// The sums of lanes, apart from what fills them: else that is compiled for the pairs that folding asks for.
-    fn folded_into<'a>(groups: &'a [Chunk], sums: &'a mut [f64]) -> () {
-        fold_all(groups, 1.0, sums);
-    }
 }

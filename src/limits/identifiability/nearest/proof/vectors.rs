@@ -1,6 +1,6 @@
 //! Loops over the bands that a proof spends its time in.
 
-use crate::simd::{Chunk, LANES, added, dispatched, fold, padded, product};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fold_all, padded, product};
 
 dispatched! {
     /// a·b, element by element.
@@ -152,6 +152,87 @@ dispatched! {
         for (w, (y, s)) in weight.iter_mut().zip(root.iter().zip(other)) {
             let weight = (y / s).sqrt() / (s + y + reach);
             *w = if *s > 0.0 { weight } else { 0.0 };
+        }
+    }
+}
+
+/// How many values whole chunks take for so many bands: those beyond are 0 everywhere.
+pub(super) fn whole(bands: usize) -> usize {
+    bands.next_multiple_of(LANES)
+}
+
+/// Groups that are summed at a time.
+const GROUPS: usize = 16;
+
+/// Neighbours summed, in whole chunks.
+pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Vec<f64> {
+    products_summed([bands, &vec![1.0; bands.len()]], count)
+}
+
+/// Sums of so many neighbouring products each, in whole chunks.
+pub(super) fn products_summed(factors: [&[f64]; 2], count: usize) -> Vec<f64> {
+    let bands = factors[0].len();
+    let mut all = vec![0.0; whole(bands.div_ceil(count))];
+    for (some, sums) in all.chunks_mut(GROUPS).enumerate() {
+        let mut groups = [[0.0; LANES]; GROUPS];
+        let first = (some * GROUPS * count).min(bands);
+        products_by_group(factors.map(|x| &x[first..]), count, &mut groups[..sums.len()]);
+        folded_into(&groups[..sums.len()], sums);
+    }
+    all
+}
+
+dispatched! {
+    /// Lanes of the sums of so many neighbouring products each.
+    fn products_by_group<'a>(factors: [&'a [f64]; 2], count: usize, groups: &'a mut [Chunk]) -> () {
+        let [a, b] = factors;
+        let ((a_chunks, _), (b_chunks, _)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+        let per_group = count / LANES;
+        let whole = if per_group * LANES == count { (a_chunks.len() / per_group).min(groups.len()) } else { 0 };
+        let chunks = a_chunks.chunks_exact(per_group.max(1)).zip(b_chunks.chunks_exact(per_group.max(1)));
+        for (lanes, (a, b)) in groups[..whole].iter_mut().zip(chunks) {
+            for (a, b) in a.iter().zip(b) {
+                *lanes = added(*a, *b, *lanes);
+            }
+        }
+        // Groups that are no whole chunks, and the last one.
+        let rest = (whole * count).min(a.len());
+        let (a, b) = (a[rest..].chunks(count), b[rest..].chunks(count));
+        for (lanes, (a, b)) in groups[whole..].iter_mut().zip(a.zip(b)) {
+            for (a, b) in a.chunks(LANES).zip(b.chunks(LANES)) {
+                *lanes = added(padded(a), padded(b), *lanes);
+            }
+        }
+    }
+}
+
+dispatched! {
+    /// The sums of lanes, apart from what fills them: else that is compiled for the pairs that folding asks for.
+    fn folded_into<'a>(groups: &'a [Chunk], sums: &'a mut [f64]) -> () {
+        fold_all(groups, 1.0, sums);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against sums written out, for groups below a chunk, of whole chunks and beyond, the last one full or not.
+    #[test]
+    fn sums_of_neighbours_are_what_they_are_defined_as() {
+        for bands in [1_usize, 7, 8, 27, 64, 130, 536] {
+            let [a, b] =
+                [0.3, 0.7].map(|x| (0..bands).map(|i| 1.0 + (x * i as f64).sin()).collect::<Vec<f64>>());
+            for count in (1..=20).chain([32, 100]) {
+                let found = products_summed([&a, &b], count);
+                assert_eq!(found.len(), whole(bands.div_ceil(count)));
+                for (group, sum) in found.iter().enumerate() {
+                    let places = (group * count).min(bands)..((group + 1) * count).min(bands);
+                    let expected: f64 = places.map(|i| a[i] * b[i]).sum();
+                    assert!((sum - expected).abs() <= 1e-14 * expected, "{bands} {count} {group}");
+                }
+                assert_eq!(neighbours_summed(&a, count), products_summed([&a, &vec![1.0; bands]], count));
+            }
         }
     }
 }

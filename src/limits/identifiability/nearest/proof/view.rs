@@ -6,8 +6,8 @@
 use super::amplitudes::Amplitudes;
 use super::metric::Metric;
 use super::priors::Priors;
-use super::sources::{Source, Sources, Spectrum, whole};
-use super::vectors::largest_share;
+use super::sources::{Source, Sources, Spectrum};
+use super::vectors::{largest_share, whole};
 use crate::sum::dot;
 use std::cell::OnceCell;
 

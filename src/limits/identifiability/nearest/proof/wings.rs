@@ -153,7 +153,7 @@ impl Prover<'_, '_> {
         };
         let mut walked = Vec::new();
         let merged = merged_into(&mut self.merged, &self.all, self.merging).zip(self.merging);
-        let merged = merged.and_then(|(view, count)| Some((Self::minimum_in(view, minimum, count)?, &*view)));
+        let merged = merged.and_then(|(view, count)| Some((minimum.counted_together(view, count)?, &*view)));
         let mut in_few = merged.as_ref().and_then(|(minimum, view)| Alone::new(view, minimum, s));
         let mut in_all = if in_few.is_none() { Alone::new(&self.all, minimum, s) } else { None };
         if in_few.is_some() || in_all.is_some() {

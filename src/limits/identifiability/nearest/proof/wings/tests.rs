@@ -68,7 +68,7 @@ fn no_state_of_an_interval_is_nearer_than_its_bound() {
             let enough = best.distance * best.distance;
             let mut bounds = Vec::new();
             if let Some(view) = merged_into(&mut prover.merged, &prover.all, merging) {
-                let minimum = Prover::minimum_in(view, &minimum, merging.unwrap());
+                let minimum = minimum.counted_together(view, merging.unwrap());
                 let alone = minimum.as_ref().and_then(|minimum| Alone::new(view, minimum, s));
                 bounds.extend(alone.map(|mut alone| alone.bound(ends, enough)));
             }
