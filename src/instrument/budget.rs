@@ -77,11 +77,15 @@ impl Camera {
     pub fn counts_per_radiance(&self, bands: &Bands, view: &View) -> f64 {
         // An interferometer sees every band all the time.
         let positions = if self.readout == Readout::FourierTransform { bands.len() as f64 } else { 1.0 };
+        self.collected(view) * positions
+    }
+
+    /// The same of a band that is seen once.
+    pub(super) fn collected(&self, view: &View) -> f64 {
         self.etendue_m2_sr(view.distance_m)
             * self.optics_efficiency
             * self.quantum_efficiency
             * self.integration_s()
-            * positions
             * view.fill
     }
 

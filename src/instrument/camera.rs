@@ -16,6 +16,8 @@ use crate::spectrum::Bands;
 
 /// Windows of the air in which thermal detectors work: 8 to 14 µm as the paper counts it, and 3 to 5 µm, cm⁻¹.
 const WINDOWS_CM1: [[f64; 2]; 2] = [PAPER_RANGE_CM1, [2000.0, 1e4 / 3.0]];
+/// Step of a camera's own bands, cm⁻¹: the paper's.
+pub(super) const OWN_STEP_CM1: f64 = 1.0;
 /// Share of a time that is rounding.
 const SAME_TIME: f64 = 1e-12;
 /// How far the angle of a pixel may be outside what field of view and pixels across it say, as a share: distortion.
@@ -111,7 +113,12 @@ impl Camera {
         if self.efficiency_curves.is_empty() {
             return bands.clone();
         }
-        bands.transmitted(|nu| self.efficiency_curves.iter().map(|curve| curve.at(nu)).product())
+        bands.transmitted(|nu| self.efficiency_at(nu))
+    }
+
+    /// The product of the efficiencies that depend on wavenumber, at one (cm⁻¹).
+    pub(super) fn efficiency_at(&self, wavenumber_cm1: f64) -> f64 {
+        self.efficiency_curves.iter().map(|curve| curve.at(wavenumber_cm1)).product()
     }
 
     /// Total integration time of a band, s: exposure × frames.
@@ -189,7 +196,7 @@ impl Camera {
     /// A range that makes no bands.
     pub fn own_bands(&self) -> Result<Bands> {
         let [low, high] = self.spectral_range_cm1;
-        Bands::uniform(low, high, 1.0)
+        Bands::uniform(low, high, OWN_STEP_CM1)
     }
 
     /// Photons per exposure of a blackbody at the reference temperature, noise and figures of merit.

@@ -20,10 +20,12 @@ mod spec;
 
 pub use spec::{NetdConditions, NoiseSpec};
 
+use super::camera::OWN_STEP_CM1;
 use super::{Camera, View};
 use crate::planck;
-use crate::spectrum::{Bands, interpolated};
+use crate::spectrum::{Bands, OPAQUE, interpolated};
 use crate::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use std::cell::Cell;
 
 /// 1 µflick in W m⁻² sr⁻¹ per µm.
 const MICROFLICK_W_M2_SR_UM: f64 = 1e-2;
@@ -163,15 +165,32 @@ impl Camera {
 
     /// N and dN/dT of that blackbody, counts of an exposure and counts per K.
     fn counts_and_slope(&self, temperature_k: f64) -> [f64; 2] {
+        let one = Self { frames: 1, ..self.clone() };
+        let counted = OWN_STEP_CM1 * one.collected(&View::default());
+        self.blackbody_seen(temperature_k).map(|radiance| counted * radiance)
+    }
+
+    /// Sums of B and ∂B/∂T over [`Camera::own_bands`] with the efficiencies in them. Every reading of a camera with a NETD asks for them:
+    /// without curves they are those of a range and a temperature, the last ones of which are kept.
+    fn blackbody_seen(&self, temperature_k: f64) -> [f64; 2] {
+        thread_local! { static LAST: Cell<Option<([f64; 3], [f64; 2])>> = const { Cell::new(None) } }
+        let [low, high] = self.spectral_range_cm1;
+        let (asked, keeps) = ([low, high, temperature_k], self.efficiency_curves.is_empty());
+        if let Some((_, sums)) = LAST.get().filter(|(known, _)| keeps && *known == asked) {
+            return sums;
+        }
         // A range that makes no bands is refused by `checked`; no bands here mean no counts.
-        let Ok(bands) = self.own_bands() else { return [0.0; 2] };
-        let bands = self.received(&bands);
-        let nodes = bands.nodes_cm1();
+        let Ok(nodes) = Bands::uniform_centers(low, high, OWN_STEP_CM1) else { return [0.0; 2] };
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
-        planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
-        let one = Self { frames: 1, readout: super::Readout::Simultaneous, ..self.clone() };
-        let counted = one.counts_per_radiance(&bands, &View::default());
-        [value, slope].map(|radiance| counted * bands.weigh(&radiance).iter().sum::<f64>())
+        planck::photon_radiance_and_slope_into(&nodes, temperature_k, &mut value, &mut slope);
+        let sums = [value, slope].map(|radiance| -> f64 {
+            let bands = nodes.iter().zip(&radiance);
+            bands.map(|(nu, radiance)| radiance * self.efficiency_at(*nu).max(OPAQUE)).sum()
+        });
+        if keeps {
+            LAST.set(Some((asked, sums)));
+        }
+        sums
     }
 }
 
@@ -195,7 +214,7 @@ impl OfNetd {
 #[cfg(all(test, feature = "library"))]
 mod tests {
     use super::*;
-    use crate::instrument::presets;
+    use crate::instrument::{EfficiencyCurve, presets};
 
     /// 47.8 mK of the paper's bolometer: σ_all = 1.769e6 counts of the 2.530e9 photons of a blackbody of 30 degC in front of the
     /// optics, whose shot noise is 5.030e4 counts. It takes 1/(2 · 1237) of σ, some 0.04 %.
@@ -218,6 +237,29 @@ mod tests {
             (own.equivalents().unwrap().netd_with_shot_noise_k / 47.8e-3 - 1.0).abs() < 1e-12,
             "{total:?}"
         );
+    }
+
+    /// Against the bands written out, with an efficiency curve and without, whoever asked before.
+    #[test]
+    fn a_blackbody_is_counted_over_the_cameras_own_bands() {
+        let open = presets::get("flir-a325sc").unwrap();
+        let curve = EfficiencyCurve::new("optics", vec![(700.0, 0.2), (1000.0, 0.9), (1300.0, 0.4)]).unwrap();
+        let behind = Camera { efficiency_curves: vec![curve], ..open.clone() };
+        let narrow = Camera { spectral_range_cm1: [800.0, 900.0], ..open.clone() };
+        for _ in 0..2 {
+            for camera in [&open, &behind, &narrow] {
+                for temperature_k in [250.0, 303.15] {
+                    let bands = camera.received(&camera.own_bands().unwrap());
+                    let slope = |nu: &f64| planck::photon_radiance_slope(*nu, temperature_k);
+                    let slopes: Vec<f64> = bands.nodes_cm1().iter().map(slope).collect();
+                    let one = Camera { frames: 1, ..camera.clone() };
+                    let counted = one.counts_per_radiance(&bands, &View::default());
+                    let expected = counted * bands.weigh(&slopes).iter().sum::<f64>();
+                    let found = camera.counts_per_kelvin(temperature_k);
+                    assert!((found / expected - 1.0).abs() < 1e-13, "{found} {expected}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod filter;
 mod integrate;
 mod rows;
 
+pub(crate) use bands::OPAQUE;
 pub use bands::{Band, Bands};
 pub use filter::FilterCurve;
 pub use integrate::{INTEGRATION_TOLERANCE, Integrated};

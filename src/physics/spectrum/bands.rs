@@ -7,7 +7,7 @@ use super::filter::FilterCurve;
 use crate::simd::dispatched;
 
 /// Transmittance of what is opaque.
-const OPAQUE: f64 = 1e-30;
+pub(crate) const OPAQUE: f64 = 1e-30;
 
 /// One spectral band as reports show it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

@@ -4,6 +4,12 @@
 //! information is that of a perfect fit: where a material fits badly, or its temperature and lighting hardly differ, steps come out
 //! too long or too short by the same factor each time, which two of them tell (Aitken). The last step is short and taken without
 //! another look: what is left of it is its square.
+//!
+//! Where a surface sends what it would reflect, its temperature changes the counts as its lighting does: the information of the
+//! temperature beside it goes to 0, steps promise gains that are not there however near the best state is, and do not end. What does
+//! not end soon is searched along the temperature, with the best mixture at each (`along`).
+
+mod along;
 
 use super::kernel::{Asked, Sums, sums};
 use super::model::{MOST, Model};
@@ -14,7 +20,7 @@ pub(super) const COMPARED: f64 = 0.1;
 pub(super) const TOLD: f64 = 1e-6;
 /// Lengths from which a step is looked back at.
 const LONG: f64 = 1e-2;
-pub(super) const MOST_LOOKS: usize = 60;
+const MOST_LOOKS: usize = 20;
 /// Share of the step before that is worth a correction.
 const NOTABLE: f64 = 0.05;
 
@@ -66,7 +72,7 @@ pub(super) fn scan(model: &Model, m: usize, shifted: &[f64], at: &mut Sums, look
     best.1
 }
 
-/// The best state of material `m` from a start, and how many looks that took.
+/// The best state of material `m` from a start, and how many looks that took. `at` is left near it.
 pub(super) fn fit(
     model: &Model,
     m: usize,
@@ -77,7 +83,7 @@ pub(super) fn fit(
 ) -> (Fit, usize) {
     let limits = model.limits();
     let mut state = start;
-    let mut before: Option<(State, f64)> = None;
+    let mut before: Option<Fit> = None;
     let mut last: Option<Step> = None;
     let mut looks = 0;
     loop {
@@ -85,23 +91,25 @@ pub(super) fn fit(
         let mixture = &state.mixture[..model.vertices];
         sums(model, Asked { m, shifted, temperature_k: state.temperature_k, mixture }, at);
         looks += 1;
-        if let Some((from, deviance)) = before
-            && (at.deviance.is_nan() || at.deviance > deviance)
-            && looks < MOST_LOOKS
-        {
-            state = from.halfway(&state, model.vertices);
+        let here = Fit { state, deviance: at.deviance, chi_square: at.chi_square };
+        if let Some(from) = before.filter(|from| here.deviance.is_nan() || here.deviance > from.deviance) {
+            state = from.state.halfway(&state, model.vertices);
             last = None;
-            if from.is_near(&state) {
-                return (Fit { state: from, deviance, chi_square: at.chi_square }, looks);
+            if from.state.is_near(&state) {
+                return (from, looks);
+            }
+            if looks >= MOST_LOOKS {
+                return along::temperature(model, (m, shifted), from, at, looks);
             }
             continue;
         }
         let mut next = state;
         let step = next.step(at, &limits);
-        if step.square.is_nan() || step.square < short || looks >= MOST_LOOKS {
-            let less = step.square.max(0.0);
-            let (deviance, chi_square) = (at.deviance - less, at.chi_square - less);
-            return (Fit { state: next, deviance, chi_square }, looks);
+        if step.square.is_nan() || step.square < short {
+            return (here.after(next, step), looks);
+        }
+        if looks >= MOST_LOOKS {
+            return along::temperature(model, (m, shifted), here, at, looks);
         }
         let share = last.and_then(|last| step.share_of(&last, at, limits.unknowns)).unwrap_or(0.0);
         if share.abs() > NOTABLE {
@@ -111,8 +119,16 @@ pub(super) fn fit(
         } else {
             last = Some(step);
         }
-        before = (step.square > LONG).then_some((state, at.deviance));
+        before = (step.square > LONG).then_some(here);
         state = next;
+    }
+}
+
+impl Fit {
+    /// After a step so short that no look at it is needed.
+    fn after(self, state: State, step: Step) -> Self {
+        let less = step.square.max(0.0);
+        Self { state, deviance: self.deviance - less, chi_square: self.chi_square - less }
     }
 }
 
@@ -136,6 +152,9 @@ impl State {
 
 impl Model {
     pub(super) fn limits(&self) -> Limits {
-        Limits { range_k: self.range_k, vertices: self.vertices, gain: self.gain, unknowns: self.unknowns() }
+        Limits { range_k: self.range_k, vertices: self.vertices, gain: self.gain, unknowns: self.unknowns(), at_temperature: false }
     }
 }
+
+#[cfg(test)]
+mod tests;

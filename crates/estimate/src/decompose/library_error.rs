@@ -20,7 +20,7 @@ mod filter;
 mod other;
 mod with_errors;
 
-use super::fit::{COMPARED, Fit, MOST_LOOKS};
+use super::fit::{COMPARED, Fit};
 use super::kernel::Sums;
 use super::model::{Hermite, Model};
 use super::screen::MOST_STARTS;
@@ -43,6 +43,8 @@ const WORSE: f64 = 10.0;
 const HOPE: f64 = 0.25;
 /// Length of the last step, squared, in deviations, of the fit that is told.
 const TOLD: f64 = 1e-3 * COMPARED;
+/// Looks of a fit at most.
+const MOST_LOOKS: usize = 60;
 /// Fewest counts of a model.
 const FEWEST: f64 = 1e-6;
 

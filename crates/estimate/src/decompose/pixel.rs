@@ -6,7 +6,7 @@
 //!
 //! The residual is Pearson's χ² of the best, with one degree of freedom for each band less the unknowns that no limit holds.
 
-use super::fit::{COMPARED, Fit, MOST_LOOKS, fit, scan};
+use super::fit::{COMPARED, Fit, fit, scan};
 use super::kernel::Sums;
 use super::library_error::{Errors, Other, Workplace};
 use super::mixed::{self, Mixed, Mixture};
@@ -122,8 +122,6 @@ pub struct Spared {
     pub equal: u64,
     /// Looks at all bands of a pixel for one material.
     pub looks: u64,
-    /// Fits that did not come to an end.
-    pub unfinished: u64,
 }
 
 impl Spared {
@@ -147,7 +145,6 @@ impl std::ops::Add for Spared {
             excluded: self.excluded + other.excluded,
             equal: self.equal + other.equal,
             looks: self.looks + other.looks,
-            unfinished: self.unfinished + other.unfinished,
         }
     }
 }
@@ -335,7 +332,6 @@ impl Task {
             let (model, m) = (&self.model, self.kinds[kind]);
             let (found, looks) = fit(model, m, shifted, *start, COMPARED, sums);
             spared.looks += looks as u64;
-            spared.unfinished += u64::from(looks >= MOST_LOOKS);
             if best.is_none_or(|best| found.deviance < best.deviance) {
                 best = Some(found);
             }

@@ -41,6 +41,8 @@ pub(super) struct Limits {
     pub(super) gain: bool,
     /// Unknown numbers, the temperature among them.
     pub(super) unknowns: usize,
+    /// Whether the temperature stays where it is held.
+    pub(super) at_temperature: bool,
 }
 
 /// Information of the unknowns that are free, factored, the temperature last.
@@ -194,7 +196,7 @@ impl State {
 
     /// Lets go of what would rather move: whether there was any.
     fn release(&mut self, slope: &[f64; MOST], sums: &Sums, limits: &Limits) -> bool {
-        if self.held {
+        if self.held && !limits.at_temperature {
             let [low, _] = limits.range_k;
             let inwards = if self.temperature_k <= low { slope[0] } else { -slope[0] };
             if inwards > PROMISE * sums.information[0][0].sqrt() {

@@ -206,6 +206,27 @@ impl Tangents {
         true
     }
 
+    /// How far the counts of a pixel are off their tangents one deviation of its temperature away, in deviations of the noise:
+    /// ½[N(T + s) + N(T − s)] − N(T) of what it emits, without what the columns explain. Infinite where that deviation is no step.
+    pub(super) fn bend(
+        &self,
+        (m, temperature_k, lighting): (usize, f64, &[f64]),
+        sigma_k: f64,
+        tangent: &Tangent,
+    ) -> f64 {
+        let [mut above, mut below] = [(); 2].map(|()| Vec::new());
+        let is_there = sigma_k.is_finite()
+            && self.mean((m, temperature_k + sigma_k, lighting), &mut above).is_some()
+            && self.mean((m, temperature_k - sigma_k, lighting), &mut below).is_some();
+        if !is_there {
+            return f64::INFINITY;
+        }
+        let ends = above.iter().zip(&below).zip(tangent.mean.iter().zip(&tangent.sigma));
+        let mut bend: Vec<f64> = ends.map(|((a, b), (n, sigma))| (0.5 * (a + b) - n) / sigma).collect();
+        tangent.take_out(&mut bend);
+        dot(&bend, &bend).sqrt()
+    }
+
     /// What an error of 1 of the emissivity, as a share of it, does to the counts of a pixel, in deviations of each band:
     /// e (κB(T) − X)/σ = (N − X)/σ, as N = e κB(T) + (1 − e)X, all behind the air, without its own light.
     pub(super) fn reach(&self, lighting: &[f64], tangent: &Tangent) -> Vec<f64> {

@@ -248,9 +248,6 @@ impl Counted {
             .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: self.has(*bit) })
             .filter(|count| count.pixels > 0)
             .collect();
-        if self.spared.unfinished > 0 {
-            warnings.push(Warning::UnconvergedFits { fits: self.spared.unfinished as usize });
-        }
         // Those that were found to be bad are told with their reason.
         let told: usize = bad.pixels.iter().filter(|bad| bad.why != "missing").map(|bad| bad.pixels).sum();
         if skipped > told {

@@ -35,8 +35,14 @@ impl Bands {
     /// # Errors
     /// Values that are not positive, stop below start, or more than 10⁷ bands.
     pub fn uniform(start_cm1: f64, stop_cm1: f64, step_cm1: f64) -> Result<Self> {
+        let centers = Self::uniform_centers(start_cm1, stop_cm1, step_cm1)?;
+        Self::from_rows(centers.into_iter().map(|center| (center, step_cm1)))
+    }
+
+    /// The centres of such bands, cm⁻¹.
+    pub(crate) fn uniform_centers(start_cm1: f64, stop_cm1: f64, step_cm1: f64) -> Result<Vec<f64>> {
         let count = steps(start_cm1, stop_cm1, step_cm1, "cm^-1")?;
-        Self::from_rows((0..count).map(|i| (i as f64).mul_add(step_cm1, start_cm1)).map(|c| (c, step_cm1)))
+        Ok((0..count).map(|i| (i as f64).mul_add(step_cm1, start_cm1)).collect())
     }
 
     /// Bands of equal width in wavelength (µm), one node each at the central wavelength.
