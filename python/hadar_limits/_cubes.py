@@ -32,11 +32,13 @@ _SPECTRAL = ("wavelength", "wavenumber", "frequency")
 
 
 def in_order(given: Any, bands: Any, what: str, dim: Any = None, at_nodes: bool = False) -> Any:
-    """An array of xarray with its bands in rising wavenumber, as its coordinates say; any other as it is.
+    """An array of xarray, or a list of them, with its bands in rising wavenumber, as its coordinates say; any other as it is.
 
     A coordinate over the bands (that of their dimension, or one whose name begins with wavelength, wavenumber or frequency) states
     its unit in ``attrs["units"]`` and must be that of ``bands``. Numbers 0, 1, 2 … or 1, 2, 3 … count the bands.
     """
+    if isinstance(given, (list, tuple)) and any(hasattr(one, "coords") for one in given):
+        return [in_order(one, bands, f"{what}[{place}]", dim, at_nodes) for place, one in enumerate(given)]
     if not (hasattr(given, "dims") and hasattr(given, "coords")) or not given.dims:
         return given
     dim = given.dims[-1] if dim is None else dim
@@ -144,8 +146,8 @@ def decompose(cube: Numbers, library: Numbers, light: Numbers, bands: Numbers, *
         ΣV where it is known; else it is at most 1.
     gain : bool
         Whether the overall scale is unknown.
-    bad_bands : list of int
-        Bands that are left out.
+    bad_bands : list of int, or truth values (bands,)
+        Bands that are left out, counted from 0, or a mask of them.
     prior : (materials,)
         Prior probabilities of the materials, in any scale; equal where silent.
     emissivity_error : (relative, correlation)
@@ -167,6 +169,9 @@ def decompose(cube: Numbers, library: Numbers, light: Numbers, bands: Numbers, *
     cube = in_order(cube, bands, "cube")
     library = in_order(library, bands, "library", at_nodes=True)
     light = in_order(light, bands, "light", at_nodes=not options.get("light_in_counts"))
+    for name in ("counts_per_radiance", "var_added"):
+        if name in options:
+            options[name] = in_order(options[name], bands, name)
     return Maps(**_hadar.decompose(cube, library, light, bands, **options))
 
 

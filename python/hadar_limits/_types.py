@@ -68,7 +68,7 @@ class DecomposeOptions(TypedDict, total=False):
     temperature_range: Numbers | None
     lighting_total: float | None
     gain: bool
-    bad_bands: Sequence[int] | None
+    bad_bands: Sequence[int] | Sequence[bool] | NDArray[Any] | None
     light_in_counts: bool
     prior: Numbers | None
     emissivity_error: tuple[float, float] | None

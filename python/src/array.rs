@@ -41,7 +41,7 @@ pub(crate) fn numbers<'py, T: Element>(
     }
     let array = numpy.call_method1("asarray", (given,))?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
-    if !"biuf".contains(&kind) {
+    if !"iuf".contains(&kind) {
         let dtype = array.getattr("dtype")?.str()?;
         return Err(refused(&format!("an array of {dtype}"), "give real numbers, f32 or f64"));
     }

@@ -13,6 +13,7 @@ use hadar_estimate::decompose::{
 };
 use hadar_study::budget::Limits;
 use numpy::PyUntypedArrayMethods as _;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -37,7 +38,7 @@ pub(crate) fn decompose<'py>(
     temperature_range: Option<&Bound<'py, PyAny>>,
     lighting_total: Option<f64>,
     gain: bool,
-    bad_bands: Option<Vec<usize>>,
+    bad_bands: Option<&Bound<'_, PyAny>>,
     light_in_counts: bool,
     prior: Option<&Bound<'py, PyAny>>,
     emissivity_error: Option<(f64, f64)>,
@@ -52,10 +53,7 @@ pub(crate) fn decompose<'py>(
     let lent = Lent::of(cube)?;
     let view = lent.view()?;
     let bands = self::bands(bands)?;
-    if let Some(band) = bad_bands.iter().flatten().find(|band| **band >= bands.len()) {
-        let found = format!("bad_bands: {band} of {} bands", bands.len());
-        return Err(raised(Error::malformed(found, "count bands from 0")));
-    }
+    let bad_bands = bad_bands.map_or(Ok(Vec::new()), |given| left_out(given, bands.len()))?;
     let each = |given: &Bound<'_, PyAny>, what: &str| -> PyResult<Vec<f64>> {
         let stated = if what == "var_added" { COUNTS_SQUARED } else { PER_RADIANCE };
         let alone = numbers::<f64>(given, what, stated)?.ndim() == 0;
@@ -103,7 +101,7 @@ pub(crate) fn decompose<'py>(
         temperature_k,
         lighting_total,
         gain,
-        bad_bands: bad_bands.as_deref().unwrap_or_default(),
+        bad_bands: &bad_bands,
         path: None,
         light_besides: &[],
     };
@@ -113,6 +111,38 @@ pub(crate) fn decompose<'py>(
     })?;
     maps.leave_out_unknown_lighting(lighting_total);
     given_back(py, lent.pixels(), surroundings.len(), maps)
+}
+
+/// Bands that are left out: their places, or a mask of all of them.
+fn left_out(given: &Bound<'_, PyAny>, bands: usize) -> PyResult<Vec<usize>> {
+    let numpy = given.py().import(intern!(given.py(), "numpy"))?;
+    let refused = |found: String| {
+        let instead = "name bands by numbers from 0, or give a mask with a truth value for each";
+        Err(raised(Error::malformed(format!("bad_bands: {found}"), instead)))
+    };
+    let array = numpy.call_method1("asarray", (given,))?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if kind == "b" {
+        let mask: Vec<bool> = array.call_method0("ravel")?.call_method0("tolist")?.extract()?;
+        if mask.len() != bands {
+            return refused(format!("a mask of {} values for {bands} bands", mask.len()));
+        }
+        return Ok((0..bands).filter(|band| mask[*band]).collect());
+    }
+    let is_empty = array.len()? == 0;
+    if !is_empty && !"iu".contains(&kind) {
+        return refused(format!("an array of {}", array.getattr("dtype")?.str()?));
+    }
+    let places: Vec<i128> =
+        if is_empty { Vec::new() } else { array.call_method0("ravel")?.call_method0("tolist")?.extract()? };
+    let mut all = Vec::with_capacity(places.len());
+    for place in places {
+        match usize::try_from(place) {
+            Ok(band) if band < bands => all.push(band),
+            _ => return refused(format!("{place} of {bands} bands")),
+        }
+    }
+    Ok(all)
 }
 
 fn given_back<'py>(

@@ -8,7 +8,9 @@ use hadar::error::{Error, check};
 use hadar::order;
 use hadar::words::significant;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods as _};
+use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 const WANTED: [(In, &str); 4] =
     [(In::PerCentimetre, "cm^-1"), (In::One, "1"), (In::Counts, "counts"), (RADIANCE, "radiance")];
@@ -23,6 +25,24 @@ pub(crate) fn plain<'py>(
     let wanted = named("unit", wanted, &WANTED, |wanted| wanted.1).map_err(raised)?.0;
     let values = numbers::<f64>(given, what, wanted)?;
     shaped(given.py(), values.shape(), values.as_array().iter().copied().collect())
+}
+
+/// An array of xarray, or a list of them, with its bands in the order of `bands`, as its coordinates say; any other as it is.
+pub(crate) fn in_order<'py>(
+    given: &Bound<'py, PyAny>,
+    bands: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+    what: &str,
+    at_nodes: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = given.py();
+    let is_list = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
+    if !is_list && !given.hasattr(intern!(py, "coords"))? {
+        return Ok(given.clone());
+    }
+    let named = PyDict::new(py);
+    named.set_item("at_nodes", at_nodes)?;
+    let cubes = py.import(intern!(py, "hadar_limits._cubes"))?;
+    cubes.call_method(intern!(py, "in_order"), (given, bands()?, what), Some(&named))
 }
 
 /// Places in rising wavenumber of the bands of an array whose coordinate says where they are, each no further from the centre of its band

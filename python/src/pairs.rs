@@ -203,7 +203,7 @@ pub(crate) fn matrix<'py>(
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get();
     let by_nearest = named("distance", by, &DISTANCES, |by| by.1).map_err(raised)?.0;
-    let spectra = rows(emissivities, "emissivities", In::One)?;
+    let spectra = rows(&scene.in_order(emissivities, "emissivities")?, "emissivities", In::One)?;
     for (row, spectrum) in spectra.iter().enumerate() {
         let checked = hadar::scene::check_emissivity(spectrum, scene.bands.nodes_cm1().len());
         checked.map_err(|error| raised(error.for_key(format!("emissivities[{row}]"))))?;

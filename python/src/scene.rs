@@ -2,6 +2,7 @@
 
 use crate::array::{ends, flat, list, numbers, rows, shaped};
 use crate::error::{named, raised};
+use crate::order::in_order;
 use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, number};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
@@ -106,7 +107,11 @@ impl Scene {
     ) -> PyResult<Self> {
         let stated = numbers::<f64>(bands, "bands", In::PerCentimetre)?;
         let given = (stated.shape().to_vec(), stated.as_array().iter().copied().collect());
+        let of_python = bands;
         let bands = self::bands(bands)?;
+        let var_added = var_added
+            .map(|given| in_order(given, || Ok(of_python.clone()), "var_added", false))
+            .transpose()?;
         let of = |given: Option<&Bound<'_, PyAny>>, what, wanted| {
             given.map_or(Ok(Vec::new()), |given| list(given, what, wanted))
         };
@@ -126,10 +131,14 @@ impl Scene {
         let lighting = of(lighting, "lighting", In::One)?;
         let environment = of(environment, "environment", In::Kelvin)?;
         let emissivities = match environment_emissivity {
-            Some(given) => rows(given, "environment_emissivity", In::One)?.into_iter().map(Some).collect(),
+            Some(given) => {
+                let what = "environment_emissivity";
+                let given = in_order(given, || Ok(of_python.clone()), what, true)?;
+                rows(&given, what, In::One)?.into_iter().map(Some).collect()
+            }
             None => vec![None; environment.len()],
         };
-        let counting = match (counts_per_radiance, of(var_added, "var_added", COUNTS_SQUARED)?) {
+        let counting = match (counts_per_radiance, of(var_added.as_ref(), "var_added", COUNTS_SQUARED)?) {
             (None, var_added) if var_added.is_empty() => None,
             (None, _) => {
                 let found = "var_added without counts_per_radiance";
@@ -217,9 +226,15 @@ impl Scene {
 }
 
 impl Scene {
+    /// Spectra at the nodes with their bands in order, where they say where these are.
+    pub(crate) fn in_order<'py>(&self, given: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyAny>> {
+        let Given { shape_of_bands, bands, .. } = &self.given;
+        in_order(given, || Ok(shaped(given.py(), shape_of_bands, bands.clone())?.into_any()), what, true)
+    }
+
     /// An emissivity at the nodes of the bands.
     pub(crate) fn emissivity(&self, given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
-        let spectrum = list(given, what, In::One)?;
+        let spectrum = list(&self.in_order(given, what)?, what, In::One)?;
         let checked = hadar::scene::check_emissivity(&spectrum, self.bands.nodes_cm1().len());
         checked.map_err(|error| raised(error.for_key(what)))?;
         Ok(spectrum)

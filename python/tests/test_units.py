@@ -129,6 +129,61 @@ def test_a_band_that_is_not_there_is_no_bad_band():
         hadar.decompose(np.ones(12), [E], [light], NU, counts_per_radiance=1e-12, bad_bands=[33])
 
 
+def backwards(values):
+    coordinate = {"wavelength": ("wavelength", 1e4 / NU[::-1], {"units": "um"})}
+    dims = ("row", "wavelength")[2 - np.ndim(values) :]
+    return xarray.DataArray(np.asarray(values)[..., ::-1], coords=coordinate, dims=dims)
+
+
+def test_coordinates_say_the_order_in_every_argument():
+    tilted = np.linspace(0.9, 0.6, len(NU))
+    var = np.linspace(1e4, 9e4, len(NU))
+    own = np.linspace(0.7, 0.95, len(NU))[None]
+
+    def with_counts(var, own):
+        return scene(counts_per_radiance=1e-12, var_added=var, environment_emissivity=own)
+
+    plain, turned = with_counts(var, own), with_counts(backwards(var), backwards(own))
+    assert np.array_equal(turned.signal(backwards(tilted)), plain.signal(tilted))
+    for ask in (hadar.local, hadar.nearest):
+        assert ask(backwards(E), backwards(tilted), turned).distance == ask(E, tilted, plain).distance
+    library = np.stack([E, tilted])
+    expected = hadar.matrix(library, plain)
+    assert np.array_equal(hadar.matrix(backwards(library), turned), expected)
+    assert np.array_equal(hadar.matrix([backwards(one) for one in library], turned), expected)
+    light, kappa = hadar.planck(NU, 290.0), np.linspace(1e-12, 3e-12, len(NU))
+    cube = kappa * np.gradient(NU) * hadar.planck(NU, 310.0)
+    said = {"counts_per_radiance": kappa, "var_added": var}
+    found = hadar.decompose(cube, library, [light], NU, **said)
+    again = hadar.decompose(
+        backwards(cube[None]), backwards(library), backwards(light[None]), NU, **{key: backwards(each) for key, each in said.items()}
+    )
+    assert np.array_equal(np.ravel(again.temperature_k), np.ravel(found.temperature_k))
+    elsewhere = backwards(E).assign_coords(wavelength=("wavelength", 1e4 / NU[::-1] + 1.0, {"units": "um"}))
+    with pytest.raises(hadar.HadarError, match="wavelength: band 0 is at"):
+        hadar.local(elsewhere, tilted, plain)
+
+
+def test_bands_are_left_out_by_places_or_a_mask():
+    light, library = hadar.planck(NU, 290.0), [E, np.linspace(0.9, 0.6, len(NU))]
+    cube = 1e-12 * np.gradient(NU) * hadar.planck(NU, 310.0)
+    cube[5] *= 1.5
+
+    def apart(bad):
+        return hadar.decompose(cube, library, [light], NU, counts_per_radiance=1e-12, bad_bands=bad)
+
+    expected = apart([5]).temperature_k
+    mask = np.arange(len(NU)) == 5
+    for bad in (np.array([5]), mask, mask.tolist()):
+        assert apart(bad).temperature_k == expected
+    assert apart([]).temperature_k == apart(None).temperature_k != expected
+    for wrong in ([-1], [True], [0.5], ["5"], [10**30]):
+        with pytest.raises(hadar.HadarError, match="bad_bands"):
+            apart(wrong)
+    with pytest.raises(hadar.HadarError, match="array of bool"):
+        hadar.decompose(cube > 0, library, [light], NU, counts_per_radiance=1e-12)
+
+
 def test_a_scenario_has_quantities_too():
     said = {"target": {"material": "skin", "temperature": "37 degC"}, "alternatives": {"materials": ["aluminium"]}}
     for temperature in (37.0 * u.deg_C, UR.Quantity(37.0, "degC"), 310.15 * u.K):

@@ -31,6 +31,7 @@ mod raw;
 mod sample_unit;
 mod stored;
 mod telops;
+mod text_unit;
 mod values;
 #[cfg(feature = "zarr")]
 mod zarr;

@@ -152,7 +152,13 @@ impl State {
 
 impl Model {
     pub(super) fn limits(&self) -> Limits {
-        Limits { range_k: self.range_k, vertices: self.vertices, gain: self.gain, unknowns: self.unknowns(), at_temperature: false }
+        Limits {
+            range_k: self.range_k,
+            vertices: self.vertices,
+            gain: self.gain,
+            unknowns: self.unknowns(),
+            at_temperature: false,
+        }
     }
 }
 

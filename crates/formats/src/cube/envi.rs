@@ -15,6 +15,7 @@ use super::band_list;
 use super::found::{Found, Opened};
 use super::raw::Raw;
 use super::stored::Stored;
+use super::text_unit;
 use super::values::{ALL_VALID, Values};
 use crate::envi_header::{ByteOrder, DataType, EnviHeader, Interleave};
 use hadar::cube::Shape;
@@ -26,6 +27,7 @@ const SCALE: &str = "reflectance scale factor";
 const GAINS: &str = "data gain values";
 const OFFSETS: &str = "data offset values";
 const IGNORED: &str = "data ignore value";
+const TITLES: &str = "z plot titles";
 const UNITS: [&str; 4] = ["data units", "data unit", "units", "unit"];
 
 /// Opens the data at a path by their header.
@@ -124,7 +126,8 @@ fn values(header: &EnviHeader, bands: usize) -> Result<Option<Values>> {
 /// The unit of the samples, which has no key of its own in the format: as other programs write it.
 fn unit(header: &EnviHeader) -> Option<String> {
     let said = UNITS.iter().find_map(|key| header.text(key)).filter(|unit| !unit.is_empty());
-    said.or_else(|| header.text(SCALE).map(|_| "reflectance")).map(str::to_owned)
+    let said = said.or_else(|| header.text(SCALE).map(|_| "reflectance")).map(str::to_owned);
+    said.or_else(|| text_unit::of_title(header.text(TITLES)?))
 }
 
 /// Centres and widths of the bands, cm⁻¹; none without a unit, which is not guessed.

@@ -17,6 +17,7 @@ use super::arrange;
 use super::axes::Axes;
 use super::band_list;
 use super::found::{Found, Opened};
+use super::text_unit;
 use hadar::cube::{Cube, MemoryCube, Sample, Shape};
 use hadar::error::{Error, Result};
 use std::fs::File;
@@ -74,6 +75,7 @@ pub(super) fn open(
         axes,
         centres_cm1,
         axis_without_unit,
+        unit: unit(&file, &variables, &head.name, little_endian),
         ..Found::array("MATLAB 5", shape, class.name(), &sides)
     };
     Ok(Opened { cube, found })
@@ -103,6 +105,23 @@ fn lists(file: &File, variables: &[Variable], bands: usize, little_endian: bool)
         Some((head.name.clone(), numbers))
     };
     variables.iter().filter_map(list).collect()
+}
+
+/// The unit of the samples, in a text beside them.
+fn unit(file: &File, variables: &[Variable], of_array: &str, little_endian: bool) -> Option<String> {
+    let text = |variable: &Variable| {
+        let Head { name, class, dimensions, .. } = &variable.head;
+        let is_short =
+            dimensions.iter().map(|side| u64::from(*side)).product::<u64>() <= text_unit::MOST as u64;
+        if !text_unit::is_name(name, of_array) || !class.is_some_and(Class::is_text) || !is_short {
+            return None;
+        }
+        let content = content(file, variable).ok()?;
+        let mut element = Element::of(content, variable.compressed, variable.len, little_endian).ok()?;
+        element.head().ok()?;
+        text_unit::of(&element.text()?)
+    };
+    variables.iter().find_map(text)
 }
 
 fn content<'a>(mut file: &'a File, variable: &Variable) -> Result<impl Read + use<'a>> {

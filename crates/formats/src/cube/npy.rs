@@ -84,6 +84,32 @@ pub(super) fn list(file: &mut impl Read, len: u64, count: usize) -> Option<Vec<f
     Some(numbers)
 }
 
+/// The one text of at most so many characters of an array of `len` bytes in all: bytes, or whole characters of four bytes.
+pub(super) fn text(file: &mut impl Read, len: u64, most: usize) -> Option<String> {
+    let (Header { descr, sides, .. }, start) = header(file, len).ok()?;
+    let kind = header::quoted(&descr)?;
+    let (order, kind) = kind.split_at_checked(1)?;
+    let (kind, count) = kind.split_at_checked(1)?;
+    let count: usize = count.parse().ok().filter(|count| *count <= most)?;
+    let size = match kind {
+        "S" => 1,
+        "U" => 4,
+        _ => return None,
+    };
+    if sides.iter().any(|side| *side != 1) || len.checked_sub(start) != Some((size * count) as u64) {
+        return None;
+    }
+    let mut bytes = vec![0; size * count];
+    file.read_exact(&mut bytes).ok()?;
+    if size == 1 {
+        return Some(String::from_utf8_lossy(&bytes).into_owned());
+    }
+    let (characters, _) = bytes.as_chunks::<4>();
+    let code =
+        |four: &[u8; 4]| if order == ">" { u32::from_be_bytes(*four) } else { u32::from_le_bytes(*four) };
+    characters.iter().map(|four| char::from_u32(code(four))).collect()
+}
+
 /// The header, and how many bytes it takes.
 fn header(file: &mut impl Read, len: u64) -> Result<(Header, u64)> {
     let cut = || truncated("the file ends within its header".to_owned());

@@ -11,6 +11,7 @@ use super::found::{Found, Opened};
 use super::npy::{self, Array};
 use super::raw::MAX_INFLATION;
 use super::stored::decode_next;
+use super::text_unit;
 use super::{READ_CUBE, arrange};
 use hadar::cube::{Cube, MemoryCube, Sample};
 use hadar::error::{Error, Result};
@@ -59,7 +60,8 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     };
     let (centres_cm1, axis_without_unit) =
         band_list::centres(&lists(&mut archive, opened.found.shape.bands()))?;
-    let found = Found { variable: Some(variable), centres_cm1, axis_without_unit, ..opened.found };
+    let unit = unit(&mut archive, &variable);
+    let found = Found { variable: Some(variable), centres_cm1, axis_without_unit, unit, ..opened.found };
     Ok(Opened { found, ..opened })
 }
 
@@ -73,6 +75,20 @@ fn lists(archive: &mut ZipArchive<BufReader<File>>, bands: usize) -> Vec<(String
         Some((name, npy::list(&mut entry, len, bands)?))
     };
     (0..count).filter_map(list).collect()
+}
+
+/// The unit of the samples, in a text beside them.
+fn unit(archive: &mut ZipArchive<BufReader<File>>, of_array: &str) -> Option<String> {
+    let count = archive.len().min(MOST);
+    let text = |place: usize| {
+        let mut entry = archive.by_index(place).ok()?;
+        let (len, name) = (entry.size(), array_name(entry.name()));
+        if !text_unit::is_name(&name, of_array) {
+            return None;
+        }
+        text_unit::of(&npy::text(&mut entry, len, text_unit::MOST)?)
+    };
+    (0..count).find_map(text)
 }
 
 fn unpacked<S: Sample>(entry: &mut impl Read, array: &Array) -> Result<MemoryCube<S>> {

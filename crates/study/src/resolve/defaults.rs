@@ -2,7 +2,7 @@
 
 use super::super::camera::with_filed_noise;
 use hadar::error::{Error, Result};
-use hadar::fisher::Unknowns;
+use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::figures::{self, Part, TABLE};
 use hadar::instrument::{Camera, CameraSpec};
@@ -27,8 +27,29 @@ pub(super) fn state_range(scenario: &Scenario) -> StateRange {
     }
 }
 
-/// The least lighting of all objects together must fit into what they may sum to.
+/// The least lighting of all objects together must fit into what they may sum to, and what alternatives share with the target since it is
+/// known must be within what is said of them.
 pub(super) fn check_range(scenario: &Scenario, range: &StateRange) -> Result<()> {
+    let is_known = |nuisance| !scenario.unknown.nuisances.contains(&nuisance);
+    let outside = |[low, high]: [f64; 2], value: f64| !(low..=high).contains(&value);
+    let shared = |key: &str, found: String, name: &str| {
+        let instead = format!("add \"{name}\" to unknown.nuisances, or leave {key} out");
+        Err(Error::malformed(found, instead).at(scenario.place(key)))
+    };
+    let own_k = scenario.target.temperature_k;
+    let stated = scenario.alternatives.temperature_range_k;
+    if is_known(Nuisance::Temperature) && stated.is_some_and(|range_k| outside(range_k, own_k)) {
+        let found = format!("the target's {own_k} K, which alternatives have too since it is known, is not within");
+        return shared("alternatives.temperature", found, "temperature");
+    }
+    let lit = scenario.environment.iter().map(|object| object.lighting);
+    let stated = scenario.alternatives.lighting_range.filter(|_| is_known(Nuisance::Lighting));
+    if let Some(lighting) = stated.and_then(|range| lit.clone().find(|lighting| outside(range, *lighting))) {
+        let found = format!(
+            "the target's lighting {lighting}, which alternatives have too since it is known, is not within"
+        );
+        return shared("alternatives.lighting", found, "lighting");
+    }
     let least = range.lighting[0] * scenario.environment.len() as f64;
     let most = scenario.unknown.lighting_total.unwrap_or(range.lighting_sum);
     if least <= most {

@@ -24,10 +24,8 @@ fn no_fit_is_worse_than_the_truth() {
     let bands = Bands::uniform(720.0, 1250.0, 10.0).unwrap();
     let nu = bands.nodes_cm1().to_vec();
     let of = |f: &dyn Fn(f64) -> f64| nu.iter().map(|nu| f(*nu)).collect::<Vec<f64>>();
-    let library = vec![
-        of(&|nu| 0.58 * (6e-4 * (720.0 - nu)).exp()),
-        of(&|nu| 0.96 - 0.02 * (nu / 90.0).cos()),
-    ];
+    let library =
+        vec![of(&|nu| 0.58 * (6e-4 * (720.0 - nu)).exp()), of(&|nu| 0.96 - 0.02 * (nu / 90.0).cos())];
     let light = of(&|nu| photon_radiance(nu, 283.15));
     let radiance = of(&|nu| photon_radiance(nu, 298.0)).iter().sum::<f64>();
     let mut random = generator(26, 0);
@@ -35,9 +33,8 @@ fn no_fit_is_worse_than_the_truth() {
     for of_all in [1e4, 1e6, 1e7, 1e9] {
         let kappa = of_all / (10.0 * radiance);
         let mean = |m: usize, t: f64, v: f64| -> Vec<f64> {
-            let sent = |w: usize| {
-                library[m][w] * photon_radiance(nu[w], t) + (1.0 - library[m][w]) * v * light[w]
-            };
+            let sent =
+                |w: usize| library[m][w] * photon_radiance(nu[w], t) + (1.0 - library[m][w]) * v * light[w];
             (0..nu.len()).map(|w| 10.0 * kappa * sent(w)).collect()
         };
         let (mut counts, mut truth) = (Vec::new(), Vec::new());

@@ -25,6 +25,10 @@ pub(super) struct Class(u8);
 impl Class {
     const OPAQUE: Self = Self(17);
 
+    pub(super) const fn is_text(self) -> bool {
+        self.0 == 4
+    }
+
     pub(super) const fn is_numeric(self) -> bool {
         matches!(self.0, 6..=15)
     }
@@ -160,6 +164,21 @@ impl<R: Read> Element<R> {
             return Err(damaged("an array has no name"));
         }
         Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    /// The characters of an array of them, which is where they begin; none of a kind that no text has.
+    pub(super) fn text(&mut self) -> Option<String> {
+        const UTF8: [u32; 3] = [1, 2, 16];
+        const UTF16: [u32; 2] = [4, 17];
+        let (kind, bytes) = self.short().ok()?;
+        if UTF8.contains(&kind) {
+            return Some(String::from_utf8_lossy(&bytes).into_owned());
+        }
+        let (pairs, _) = bytes.as_chunks::<2>();
+        let unit = |pair: &[u8; 2]| {
+            if self.little_endian { u16::from_le_bytes(*pair) } else { u16::from_be_bytes(*pair) }
+        };
+        UTF16.contains(&kind).then(|| String::from_utf16_lossy(&pairs.iter().map(unit).collect::<Vec<_>>()))
     }
 
     /// The tag of `count` numbers, which is where [`Self::fill`] begins.

@@ -283,3 +283,26 @@ fn no_truncated_or_changed_file_makes_it_panic() {
         }
     }
 }
+
+/// As MATLAB writes text, in characters of two bytes, and as SciPy does, in UTF-8.
+#[test]
+fn a_text_beside_the_cube_is_its_unit() {
+    let folder = Folder::new();
+    let cube = |writer: Writer| writer.array("S", 6, &[1, 1, 2], &[1.0_f64, 2.0]);
+    for writer in [PLAIN, ZLIB, Writer { little_endian: false, ..PLAIN }] {
+        let said = "W m-2 sr-1 um-1";
+        let wide: Vec<u16> = said.encode_utf16().collect();
+        let text = writer.array("units", 4, &[1, wide.len() as i32], &wide);
+        let path = folder.file(&writer.file(&[cube(writer), text]));
+        let opened = open(File::open(path).unwrap(), writer.little_endian, None, None).unwrap();
+        assert_eq!(opened.found.unit.as_deref(), Some(said));
+    }
+    // Of something else, of another array, or no text.
+    let axis: Vec<u16> = "um".encode_utf16().collect();
+    let numbers = PLAIN.array("units", 6, &[1, 1], &[1.0_f64]);
+    for other in [PLAIN.array("units", 4, &[1, 2], &axis), numbers] {
+        let path = folder.file(&PLAIN.file(&[cube(PLAIN), other]));
+        let found = open(File::open(path).unwrap(), true, Some("S"), None).unwrap().found;
+        assert_eq!(found.unit, None);
+    }
+}

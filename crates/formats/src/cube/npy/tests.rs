@@ -314,3 +314,17 @@ fn no_header_makes_it_panic() {
         assert!(crate::cube::open(&folder.file(&nested), None).is_err());
     }
 }
+
+#[test]
+fn a_short_text_is_read_in_either_width() {
+    let unit = "W m-2 sr-1 um-1";
+    let wide: Vec<u8> = unit.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
+    for (descr, data) in [("<U15", wide.as_slice()), ("|S15", unit.as_bytes())] {
+        let file = version_1(&format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (), }}"), data);
+        assert_eq!(text(&mut file.as_slice(), file.len() as u64, 100).as_deref(), Some(unit));
+        assert_eq!(text(&mut file.as_slice(), file.len() as u64, 14), None);
+        assert_eq!(text(&mut &file[..file.len() - 1], file.len() as u64 - 1, 100), None);
+    }
+    let numbers = f4("(1,)", &[0; 4]);
+    assert_eq!(text(&mut numbers.as_slice(), numbers.len() as u64, 100), None);
+}
