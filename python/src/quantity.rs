@@ -165,8 +165,11 @@ pub(crate) fn parts<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<(Bound<'p
 
 /// A number in the unit that is wanted.
 pub(crate) fn number(given: &Bound<'_, PyAny>, what: &str, wanted: In) -> PyResult<f64> {
-    match converted(given, what, wanted)? {
-        Some(values) => values.call_method0("item")?.extract(),
-        None => given.extract(),
-    }
+    let values = converted(given, what, wanted)?;
+    let given = values.as_ref().unwrap_or(given);
+    let one = given.call_method0(intern!(given.py(), "item")).and_then(|one| one.extract());
+    one.or_else(|_| given.extract()).map_err(|_| {
+        let kind = given.get_type().name().map(|name| name.to_string()).unwrap_or_default();
+        raised(Error::malformed(format!("{what}: no number but a value of type {kind}"), "give one number"))
+    })
 }

@@ -99,7 +99,12 @@ fn of_object(given: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
         return given.extract().map(Value::String);
     }
     if given.is_instance_of::<PyInt>() {
-        return given.extract().map(Value::Integer);
+        // What is larger than a file's whole numbers is a number all the same.
+        let whole = given.extract().map(Value::Integer);
+        return whole.or_else(|_| given.extract().map(Value::Float)).map_err(|_| {
+            let found = "a whole number that is too large";
+            raised(Error::malformed(found, "give one below 1e308").for_key(key))
+        });
     }
     if given.is_instance_of::<PyFloat>() {
         return given.extract().map(Value::Float);

@@ -180,6 +180,8 @@ def test_bands_are_left_out_by_places_or_a_mask():
     for wrong in ([-1], [True], [0.5], ["5"], [10**30]):
         with pytest.raises(hadar.HadarError, match="bad_bands"):
             apart(wrong)
+    with pytest.raises(hadar.HadarError, match="counts_per_radiance: no number but a value of type ndarray"):
+        scene(counts_per_radiance=np.full(len(NU), 1e-12))
     with pytest.raises(hadar.HadarError, match="array of bool"):
         hadar.decompose(cube > 0, library, [light], NU, counts_per_radiance=1e-12)
 

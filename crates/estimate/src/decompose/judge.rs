@@ -20,8 +20,8 @@
 //! Beside unknowns that the whole cube shares and that were estimated with the pixels ([`super::shared`], covariance C), a cause keeps
 //! J_aa − J_aθ C J_θa of its information, and a temperature moves by what the cause does less what the unknowns that follow it do.
 //!
-//! All of this is of pixels whose counts are straight along their temperature as far as it may be off ([`STRAIGHT`]). Where a surface sends
-//! what it would reflect that is far, and what the fit leaves of a right model then leans to one side, in all such pixels alike.
+//! Where a surface sends what it would reflect, its temperature is so uncertain that its counts bend ([`STRAIGHT`]): what the fit leaves of a
+//! right model then leans to one side, in all such pixels alike. Their bend ∂²N/∂T² is taken out like a column of Q.
 //!
 //! Assumption: the material of a pixel with one candidate is right.
 
@@ -41,9 +41,8 @@ use hadar::statistics::chi_square_survival;
 /// Deviations of χ² above its mean from which on a residual weighs less.
 const FAR: f64 = 4.0;
 
-/// How far counts may be off their tangents one deviation of the temperature away, in deviations of the noise: what some ten thousand pixels
-/// that lean alike would show as one.
-const STRAIGHT: f64 = 2e-3;
+/// How far counts may be off their tangents one deviation of the temperature away, in deviations of the noise.
+const STRAIGHT: f64 = 1e-3;
 
 /// Share of a cause's information from which on it is one of its own beside those that are estimated with the pixels.
 const ONE: f64 = 1e-4;
@@ -344,12 +343,11 @@ impl Judge<'_> {
         lit.clear();
         lit.extend(maps.lighting[i * self.lights..][..self.lights].iter().map(|v| f64::from(*v)));
         let temperature_k = f64::from(maps.temperature_k[i]);
-        let sigma_k = f64::from(maps.temperature_sigma_k[i]);
-        if !tangents.at(m, temperature_k, lit, tangent)
-            || tangents.bend((m, temperature_k, lit), sigma_k, tangent) > STRAIGHT
-        {
+        if !tangents.at(m, temperature_k, lit, tangent) {
             return;
         }
+        let sigma_k = f64::from(maps.temperature_sigma_k[i]);
+        tangents.bend((m, temperature_k, lit), sigma_k, STRAIGHT, tangent);
         rho.clear();
         for ((band, mean), sigma) in tangents.used.iter().zip(&tangent.mean).zip(&tangent.sigma) {
             let n: f64 = sample[*band].into();

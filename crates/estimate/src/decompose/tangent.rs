@@ -18,6 +18,10 @@ const DEPENDENT: f64 = 1e-9;
 /// By how much an L may differ from what is left of a dependent column, of its largest part.
 const AGREES: f64 = 1e-6;
 
+/// Steps over which a bend is looked at, as shares of the temperature: less is rounding, more is another temperature.
+const LEAST_STEP: f64 = 1e-3;
+const MOST_STEP: f64 = 2e-2;
+
 /// What is the same for all pixels. Values are those of the bands that count.
 #[derive(Debug)]
 pub(super) struct Tangents {
@@ -206,25 +210,29 @@ impl Tangents {
         true
     }
 
-    /// How far the counts of a pixel are off their tangents one deviation of its temperature away, in deviations of the noise:
-    /// ½[N(T + s) + N(T − s)] − N(T) of what it emits, without what the columns explain. Infinite where that deviation is no step.
+    /// Adds the column ∂²N/∂T² of what the pixel emits, if within a deviation of its temperature the counts are off their tangents by more
+    /// than `straight` deviations of the noise.
     pub(super) fn bend(
         &self,
         (m, temperature_k, lighting): (usize, f64, &[f64]),
         sigma_k: f64,
-        tangent: &Tangent,
-    ) -> f64 {
+        straight: f64,
+        tangent: &mut Tangent,
+    ) {
+        let step_k = sigma_k.clamp(LEAST_STEP * temperature_k, MOST_STEP * temperature_k);
         let [mut above, mut below] = [(); 2].map(|()| Vec::new());
-        let is_there = sigma_k.is_finite()
-            && self.mean((m, temperature_k + sigma_k, lighting), &mut above).is_some()
-            && self.mean((m, temperature_k - sigma_k, lighting), &mut below).is_some();
-        if !is_there {
-            return f64::INFINITY;
+        if self.mean((m, temperature_k + step_k, lighting), &mut above).is_none()
+            || self.mean((m, temperature_k - step_k, lighting), &mut below).is_none()
+        {
+            return;
         }
-        let ends = above.iter().zip(&below).zip(tangent.mean.iter().zip(&tangent.sigma));
-        let mut bend: Vec<f64> = ends.map(|((a, b), (n, sigma))| (0.5 * (a + b) - n) / sigma).collect();
-        tangent.take_out(&mut bend);
-        dot(&bend, &bend).sqrt()
+        let ends = above.iter().zip(&below).zip(&tangent.mean);
+        let bend: Vec<f64> = ends.map(|((a, b), n)| 0.5 * (a + b) - n).collect();
+        let mut rest: Vec<f64> = bend.iter().zip(&tangent.sigma).map(|(bend, sigma)| bend / sigma).collect();
+        tangent.take_out(&mut rest);
+        if dot(&rest, &rest).sqrt() * (sigma_k / step_k).powi(2) > straight {
+            tangent.push(bend);
+        }
     }
 
     /// What an error of 1 of the emissivity, as a share of it, does to the counts of a pixel, in deviations of each band:

@@ -39,7 +39,8 @@ pub(super) fn check_range(scenario: &Scenario, range: &StateRange) -> Result<()>
     let own_k = scenario.target.temperature_k;
     let stated = scenario.alternatives.temperature_range_k;
     if is_known(Nuisance::Temperature) && stated.is_some_and(|range_k| outside(range_k, own_k)) {
-        let found = format!("the target's {own_k} K, which alternatives have too since it is known, is not within");
+        let found =
+            format!("the target's {own_k} K, which alternatives have too since it is known, is not within");
         return shared("alternatives.temperature", found, "temperature");
     }
     let lit = scenario.environment.iter().map(|object| object.lighting);
