@@ -10,6 +10,9 @@
 //! not end soon is searched along the temperature, with the best mixture at each (`along`).
 
 mod along;
+mod best;
+
+pub(super) use self::best::Fit;
 
 use super::kernel::{Asked, Sums, sums};
 use super::model::{MOST, Model};
@@ -23,15 +26,6 @@ const LONG: f64 = 1e-2;
 const MOST_LOOKS: usize = 20;
 /// Share of the step before that is worth a correction.
 const NOTABLE: f64 = 0.05;
-
-/// A material at its best.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Fit {
-    pub(super) state: State,
-    pub(super) deviance: f64,
-    /// Pearson's χ², with the errors of the library where they are stated.
-    pub(super) chi_square: f64,
-}
 
 impl State {
     /// A temperature with nothing held and no lighting yet.
@@ -121,14 +115,6 @@ pub(super) fn fit(
         }
         before = (step.square > LONG).then_some(here);
         state = next;
-    }
-}
-
-impl Fit {
-    /// After a step so short that no look at it is needed.
-    fn after(self, state: State, step: Step) -> Self {
-        let less = step.square.max(0.0);
-        Self { state, deviance: self.deviance - less, chi_square: self.chi_square - less }
     }
 }
 

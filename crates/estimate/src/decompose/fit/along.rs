@@ -7,7 +7,7 @@
 use super::super::kernel::{Asked, Sums, sums};
 use super::super::model::Model;
 use super::super::step::{Limits, State};
-use super::Fit;
+use super::best::Fit;
 use hadar::minimum::golden_section;
 use std::convert::Infallible;
 
