@@ -12,8 +12,10 @@ pub(super) const MOST: usize = 200;
 
 /// Whether a text of this name may be the unit of an array.
 pub(super) fn is_name(name: &str, of_array: &str) -> bool {
-    let own = |unit: &&str| name.eq_ignore_ascii_case(&format!("{of_array}_{unit}"));
-    NAMES.iter().any(|unit| name.eq_ignore_ascii_case(unit)) || NAMES.iter().any(|unit| own(&unit))
+    let is = |unit: &&str| {
+        name.eq_ignore_ascii_case(unit) || name.eq_ignore_ascii_case(&format!("{of_array}_{unit}"))
+    };
+    NAMES.iter().any(is)
 }
 
 /// The unit in a text; none where it is of something else.
