@@ -160,7 +160,7 @@ def test_coordinates_say_the_order_in_every_argument():
     )
     assert np.array_equal(np.ravel(again.temperature_k), np.ravel(found.temperature_k))
     elsewhere = backwards(E).assign_coords(wavelength=("wavelength", 1e4 / NU[::-1] + 1.0, {"units": "um"}))
-    with pytest.raises(hadar.HadarError, match="wavelength: band 0 is at"):
+    with pytest.raises(hadar.HadarError, match="wavelength: band 11 is at"):
         hadar.local(elsewhere, tilted, plain)
 
 
