@@ -1,6 +1,7 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, best-first search, least squares in a box,
 //! statistics, stopping.
 
+pub mod aligned;
 pub mod allowed;
 pub(crate) mod best_first;
 pub(crate) mod box_least_squares;

@@ -94,8 +94,8 @@ mod physics;
 
 pub use base::error::{Error, Result};
 pub use base::{
-    allowed, correlation, cube, demand, error, grid, inputs, lattice_points, minimum, order, parallel,
-    radiance_unit, random, root, simd, statistics, stop, sum, units, words,
+    aligned, allowed, correlation, cube, demand, error, grid, inputs, lattice_points, minimum, order,
+    parallel, radiance_unit, random, root, simd, statistics, stop, sum, units, words,
 };
 pub(crate) use base::{best_first, box_least_squares, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};

@@ -14,10 +14,10 @@
 mod scaled;
 
 use super::Status;
+use crate::aligned::Aligned;
 use crate::error::{Error, Result};
 use crate::fisher::{CarefulProjector, Counting, Noise, Projection, Projector, Reduced, Unknowns};
 use crate::scene::{Asked, Jacobian, Parameter, State, Surroundings};
-use crate::simd::Aligned;
 use crate::spectrum::Bands;
 
 /// Signals of which the sum is outside this range are whitened and scaled before they are squared.

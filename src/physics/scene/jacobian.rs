@@ -21,8 +21,9 @@ use self::kernels::{
 };
 use self::sampling::Sampling;
 use super::{State, Surroundings, unlit};
+use crate::aligned::{Aligned, spaced};
 use crate::planck;
-use crate::simd::{Aligned, largest, spaced};
+use crate::simd::largest;
 use crate::spectrum::Bands;
 
 /// What a column of a [`Jacobian`] is the derivative with respect to.

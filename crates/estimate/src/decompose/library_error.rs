@@ -27,9 +27,10 @@ use super::screen::MOST_STARTS;
 use super::step::State;
 use super::thresholds::{CUT, NO_FIT};
 use filter::{BEFORE, Found, Law, filter, logarithm_of_all, room_for};
+use hadar::aligned::Aligned;
 use hadar::correlation::matern;
 use hadar::error::{Error, Result, check};
-use hadar::simd::{Aligned, LANES, dispatched};
+use hadar::simd::{LANES, dispatched};
 use hadar::statistics::chi_square_survival;
 pub(super) use other::Other;
 

@@ -23,10 +23,11 @@
 //! Source: paper S2, S44, S48.
 
 use super::setting::{Light, MOST_SURROUNDINGS, Setting, check_between};
+use hadar::aligned::Aligned;
 use hadar::error::{Error, Result, check};
 use hadar::planck;
 use hadar::scene::check_emissivity;
-use hadar::simd::{Aligned, LANES};
+use hadar::simd::LANES;
 use hadar::spectrum::Bands;
 use hadar::units::SECOND_RADIATION_CM_K;
 

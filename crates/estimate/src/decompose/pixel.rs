@@ -18,9 +18,9 @@ use super::setting::MOST_SURROUNDINGS;
 use super::step::State;
 pub(super) use super::thresholds::CUT;
 pub use super::thresholds::{NO_FIT, NO_MATERIAL};
+use hadar::aligned::Aligned;
 use hadar::cube::Sample;
 use hadar::demand::{Reason, Thing, Work};
-use hadar::simd::Aligned;
 use hadar::statistics::chi_square_survival;
 
 /// Deviation of a lighting factor, as a share of its range, beyond which it is not known: half of 1/√12, what a blind guess has.

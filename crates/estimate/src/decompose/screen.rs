@@ -22,7 +22,8 @@
 use super::model::{MOST, Model};
 use super::space::{Space, dot};
 use super::step::State;
-use hadar::simd::{Aligned, Chunk, LANES, added, dispatched, fold, fused};
+use hadar::aligned::Aligned;
+use hadar::simd::{Chunk, LANES, added, dispatched, fold, fused};
 
 /// Temperatures of the table from one start to the next.
 const STRIDE: usize = 2;

@@ -5,10 +5,11 @@
 //! (`curvature`); those along environment temperatures are left out.
 
 use super::terms::Terms;
+use crate::aligned::Aligned;
 use crate::identifiability::curvature::{Curvature, curvature_into};
 use crate::identifiability::space::Quadratic;
 use crate::scene::{Jacobian, Parameter, State};
-use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fold, padded, product};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, padded, product};
 use crate::sum::dot;
 use nalgebra::{DMatrix, DVector};
 

@@ -11,7 +11,8 @@
 //! logarithms are formed as ln(1 + r/N): the terms stay of order 1 near the truth however many photons there are, and
 //! their rounding errors of order u√N. (Gaussian terms are so by themselves.)
 
-use crate::simd::{Aligned, dispatched};
+use crate::aligned::Aligned;
+use crate::simd::dispatched;
 use crate::statistics::Statistics;
 use crate::sum;
 use std::f64::consts::LN_2;

@@ -21,11 +21,11 @@ mod lent;
 use self::kernels::{Contrast, MOST_NUISANCES, TOGETHER, contrast_into, weighted_square};
 use self::lent::{Lent, grouped};
 use super::count::check_count;
+use crate::aligned::Aligned;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
-use crate::simd::Aligned;
 use crate::spectrum::Bands;
 use rayon::prelude::*;
 

@@ -11,6 +11,8 @@ use crate::scene::{Parameter, State};
 const ITERATIONS: usize = 100;
 /// Relative step at which a refinement has converged.
 const STEP_TOLERANCE: f64 = 1e-9;
+/// To what share of the step before one must have shrunk for the next one to be taken to shrink as much.
+const SHRINKS: f64 = 1e-2;
 /// What the last step may still promise, as a share of the cost.
 const GAIN_TOLERANCE: f64 = 1e-9;
 /// Relative separation at which two refinements have come to the same minimum.
@@ -104,6 +106,7 @@ fn newton(
 ) -> NearestDistance {
     let mut state = comparison.space.within_range(&start);
     let mut at = comparison.linearise(target, &state);
+    let mut before = 0.0;
     let (mut damping, mut converged, mut iterations) = (1e-7, comparison.space.parameters.is_empty(), 0);
     while !converged && iterations < ITERATIONS && at.cost >= enough * enough {
         iterations += 1;
@@ -118,14 +121,23 @@ fn newton(
             converged = true;
             break;
         }
-        if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {
+        // By what the steps shrink the next one is known before it is computed, Newton's shrink ever faster.
+        let shrinks = size / before;
+        let next_is_last = shrinks < SHRINKS
+            && size * shrinks < STEP_TOLERANCE
+            && promised * shrinks * shrinks <= GAIN_TOLERANCE * at.cost;
+        let is_last = size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost;
+        if is_last || next_is_last {
             // The last step, whether it is taken or only rounding: the cost tells.
             let cost = comparison.cost(target, &moved);
-            if cost <= at.cost {
-                (state, at.cost) = (moved, cost);
+            let falls = cost <= at.cost;
+            if falls {
+                (state, at.cost) = (moved.clone(), cost);
             }
-            converged = true;
-            break;
+            if is_last || falls {
+                converged = true;
+                break;
+            }
         }
         if known.is_some_and(|known| {
             known.distance * known.distance <= at.cost
@@ -135,9 +147,11 @@ fn newton(
         }
         let next = comparison.linearise(target, &moved);
         if next.cost <= at.cost {
-            (state, at) = (moved, next);
+            (state, at, before) = (moved, next, size);
             damping = (damping * 0.05).max(1e-15);
         } else {
+            // What follows is shorter because it is damped.
+            before = 0.0;
             // Below this the cost changes only by rounding.
             converged = size < 10.0 * STEP_TOLERANCE;
             damping = (damping * 20.0).max(1e-9);

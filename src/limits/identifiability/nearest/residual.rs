@@ -11,12 +11,13 @@ mod sums;
 
 use self::sums::{Lines, Sums};
 use super::blackbodies::Blackbodies;
+use crate::aligned::Aligned;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::curvature::{Curvature, curvature_into};
 use crate::identifiability::space::{Quadratic, StateRange, StateSpace, value};
 use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
-use crate::simd::{Aligned, dispatched};
+use crate::simd::dispatched;
 use crate::spectrum::Bands;
 use std::sync::Arc;
 
@@ -218,12 +219,12 @@ impl<'a> Comparison<'a> {
     }
 
     /// r and √(N′ + σ²) of every band at a state.
-    pub(super) fn residual(&mut self, target: &Target<'_>, state: &State) -> (Vec<f64>, Vec<f64>) {
+    pub(super) fn residual(&mut self, target: &Target<'_>, state: &State) -> (Aligned, Aligned) {
         crate::stop::check();
         self.separate(target, state, false);
-        let mut other = vec![0.0; self.work.root.len()];
+        let mut other = Aligned::unset(self.work.root.len());
         roots_into(target.counts, self.surface.signal(), &self.work.noise, &mut other);
-        let mut residual = vec![0.0; other.len()];
+        let mut residual = Aligned::unset(other.len());
         quotients_into(target.counts, &self.work.separation, [&self.work.root, &other], &mut residual);
         (residual, other)
     }

@@ -10,7 +10,8 @@
 //! TPAMI 15, 504 (1993), doi:10.1109/34.211471 (there for maxima).
 
 use super::request::Window;
-use crate::simd::{Aligned, Chunk, LANES, dispatched, spaced};
+use crate::aligned::{Aligned, spaced};
+use crate::simd::{Chunk, LANES, dispatched};
 
 /// Makes room for `len` values, if there is not.
 pub(super) fn grow(room: &mut Aligned, len: usize) {

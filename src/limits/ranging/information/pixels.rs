@@ -15,9 +15,10 @@ use super::boxes::{Along, Image, Stack, along, window_sums};
 use super::parts::Part;
 use super::request::Cell;
 use super::samples::BandSums;
+use crate::aligned::Aligned;
 use crate::error::Result;
 use crate::ranging::derivative::Differentiator;
-use crate::simd::{Aligned, Chunk, LANES};
+use crate::simd::{Chunk, LANES};
 use std::ops::Range;
 
 /// Doubles of a pixel: Σ_b (∂N)²/(N + σ²), (Σ_b ∂N)²/Σ_b (N + σ²), Σ_b ∂N, Σ_b N, Σ_b σ², and none.

@@ -18,9 +18,10 @@ use super::checks::Checked;
 use super::direct::{Lanes, Pixels, windows};
 use super::kernels::{Below, ratios, ratios_central, ratios_ends, totals};
 use super::request::Cell;
+use crate::aligned::Aligned;
 use crate::error::Result;
 use crate::ranging::derivative::Differentiator;
-use crate::simd::{Aligned, Chunk, LANES};
+use crate::simd::{Chunk, LANES};
 
 /// A row of the cube within a strip.
 #[derive(Clone, Copy)]

@@ -4,7 +4,8 @@
 //! [`TOGETHER`] alternatives their emissivities. Both are then read from one end to the other.
 
 use super::kernels::{MOST_NUISANCES, TOGETHER, direction_into, projections, residual_square};
-use crate::simd::{Aligned, LANES};
+use crate::aligned::Aligned;
+use crate::simd::LANES;
 
 /// Largest none/d for which the one-pass difference of squares keeps 1e-14·none/d: 2u·(none/d)² below it.
 const ONE_PASS: f64 = 16.0;

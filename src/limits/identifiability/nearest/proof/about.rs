@@ -7,6 +7,7 @@ use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
 use super::vectors::{Weights, neighbours_summed, products_summed, pulls_into, weights_into};
 use super::view::View;
+use crate::aligned::Aligned;
 use crate::identifiability::nearest::blackbodies::rounded;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
@@ -37,15 +38,17 @@ impl Minimum {
         }
         // r(y + s) = N − N₀, and −p s = r.
         let pairs = pull.iter().zip(root.iter().zip(other));
-        let differences: Vec<f64> = pairs.map(|(p, (y, s))| -p * s * (y + s)).collect();
+        let differences = Aligned::filled(bands, pairs.map(|(p, (y, s))| -p * s * (y + s)));
         let differences = neighbours_summed(&differences, count);
-        let other: Vec<f64> = products_summed([other; 2], count).into_iter().map(f64::sqrt).collect();
+        let mut other = products_summed([other; 2], count);
+        other.iter_mut().for_each(|s| *s = s.sqrt());
         let over = |a: f64, b: f64| if b > 0.0 { a / b } else { 0.0 };
-        let pairs = differences.iter().zip(view.root.iter().zip(&other));
-        let residual: Vec<f64> = pairs.map(|(d, (y, s))| over(*d, y + s)).collect();
-        let pull = residual.iter().zip(&other).map(|(r, s)| over(-r, *s)).collect();
+        let pairs = differences.iter().zip(view.root.iter().zip(other.iter()));
+        let residual = Aligned::filled(other.len(), pairs.map(|(d, (y, s))| over(*d, y + s)));
+        let pull = residual.iter().zip(other.iter()).map(|(r, s)| over(-r, *s));
+        let pull = Aligned::filled(other.len(), pull);
         let of_priors: f64 = self.priors.iter().map(|prior| prior.residual * prior.residual).sum();
-        let mut weight = vec![0.0; other.len()];
+        let mut weight = Aligned::unset(other.len());
         let (reach, root) = (self.reach, &view.root);
         weights_into(Weights { root, other: &other, reach, most: None, weight: &mut weight });
         Some(Self {
@@ -80,12 +83,12 @@ impl Prover<'_, '_> {
         let others = (1..count).map(|s| self.all.spectrum(s, temperature_of(state, s)));
         let spectra: Vec<Spectrum> = std::iter::once(own).chain(others).collect();
         let bands = self.all.root.len();
-        let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
+        let [mut pull, mut seen, mut kept] = [(); 3].map(|()| Aligned::zeros(bands));
         pulls_into(&residual, &other, &self.all.root, [&mut pull, &mut seen, &mut kept]);
         let priors: Vec<PriorAt> = self.all.priors.at(state).collect();
         let of_priors: f64 = priors.iter().map(|prior| prior.residual * prior.residual).sum();
         let (cost, root, reach) = (dot(&kept, &kept) + of_priors, self.all.root.clone(), self.all.reach);
-        let mut weight = vec![0.0; bands];
+        let mut weight = Aligned::unset(bands);
         weights_into(Weights { root: &root, other: &seen, reach, most: None, weight: &mut weight });
         Minimum { amplitudes, spectra, pull, root, other: seen, weight, priors, reach, cost }
     }

@@ -23,6 +23,7 @@ use super::vectors::{
     Weights, add_into, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient,
     weights_into, whole,
 };
+use crate::aligned::Aligned;
 use crate::sum::dot;
 
 /// η at most.
@@ -47,12 +48,12 @@ pub(super) struct Minimum {
     pub(super) amplitudes: Vec<f64>,
     pub(super) spectra: Vec<Spectrum>,
     /// −r/s.
-    pub(super) pull: Vec<f64>,
+    pub(super) pull: Aligned,
     /// y and s of every band; 0 for both where a band is left out.
-    pub(super) root: Vec<f64>,
-    pub(super) other: Vec<f64>,
+    pub(super) root: Aligned,
+    pub(super) other: Aligned,
     /// √(y/s)/(s + y + reach).
-    pub(super) weight: Vec<f64>,
+    pub(super) weight: Aligned,
     /// The priors there.
     pub(super) priors: Vec<PriorAt>,
     /// The distance within which everything is.
@@ -131,7 +132,7 @@ pub(super) fn close(
         (lit.iter().map(|&s| if s == 0 { &first[..] } else { &minimum.spectra[s].counts }))
             .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
             .collect();
-    let pull_sizes: Vec<f64> = minimum.pull.iter().map(|p| p.abs()).collect();
+    let pull_sizes = Aligned::filled(minimum.pull.len(), minimum.pull.iter().map(|p| p.abs()));
     let priors = minimum.priors.iter().map(|prior| prior.entries(&lit, axes.iter().map(|(s, _)| *s)));
     let priors: Vec<Vec<f64>> = priors.collect();
     let along_priors = |i: usize| {
@@ -141,7 +142,7 @@ pub(super) fn close(
     let linear = raw.iter().enumerate();
     let linear: Vec<f64> =
         linear.map(|(i, column)| dot(&minimum.pull, column) + 2.0 * along_priors(i)).collect();
-    let bends: Vec<[Vec<f64>; 2]> = axes
+    let bends: Vec<[Aligned; 2]> = axes
         .iter()
         .map(|&(s, Reach { faces, .. })| sources.bend(s, minimum.spectra[s].temperature_k, faces))
         .collect();
@@ -154,8 +155,8 @@ pub(super) fn close(
     let mut columns = Columns { minimum, lit, axes, linear, length, triangle, lengths, bent, third };
     let bands = weight.len();
     let size = whole(bands + priors.len());
-    let mut basis = vec![vec![0.0; size]; raw.len()];
-    let mut turns: Vec<[Vec<f64>; 2]> = bends.iter().map(|_| [(); 2].map(|()| vec![0.0; size])).collect();
+    let mut basis: Vec<Aligned> = raw.iter().map(|_| Aligned::unset(size)).collect();
+    let mut turns: Vec<[Aligned; 2]> = bends.iter().map(|_| [(); 2].map(|()| Aligned::zeros(size))).collect();
     let mut closed = None;
     for round in 0..=rounds {
         for (i, (column, out)) in raw.iter().zip(&mut basis).enumerate() {
@@ -241,7 +242,7 @@ impl Columns<'_> {
     /// Better weights: a state nearer than the reach has ‖WΔN‖ ≤ D = (d + reach)·max√(y/s), and by the quadratic
     /// ‖QᵀWΔN + Qᵀh‖² ≤ reach² − d² + ‖Qᵀh‖² + 2τ‖h‖, τ what of WΔN is not along the columns; as these are few, no single band can
     /// have more of that than its share in them.
-    fn weighed(&self, weight: &[f64], basis: &[Vec<f64>], turns: &[[Vec<f64>; 2]]) -> Option<Vec<f64>> {
+    fn weighed(&self, weight: &Aligned, basis: &[Aligned], turns: &[[Aligned; 2]]) -> Option<Aligned> {
         crate::stop::check();
         let Minimum { root, other, reach, cost, .. } = self.minimum;
         let (reach, cost) = (*reach, *cost);
@@ -275,7 +276,7 @@ impl Columns<'_> {
         let along = all / (1.0 - turned);
         let changes: Vec<f64> = rows.iter().map(|row| row.sqrt() * along).collect();
         let mut steady = all + turned * along;
-        let (mut shares, mut most) = (vec![0.0; weight.len()], vec![0.0; weight.len()]);
+        let [mut shares, mut most] = [(); 2].map(|()| Aligned::zeros(weight.len()));
         basis.iter().for_each(|column| add_square_into(column, &mut shares));
         for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
             let half = down_k.max(*up_k);
@@ -285,7 +286,7 @@ impl Columns<'_> {
             add_size_into(factor * half / 3.0, &turns[j][1], &mut most);
         }
         add_root_into(steady, &shares, &mut most);
-        let mut better = weight.to_vec();
+        let mut better = weight.clone();
         weights_into(Weights { root, other, reach, most: Some(&most), weight: &mut better });
         Some(better)
     }

@@ -1,7 +1,9 @@
 //! Few long columns made orthonormal, so that nearly dependent ones keep their digits.
 
 use super::vectors::add_into;
+use crate::aligned::Aligned;
 use crate::sum::dot;
+use std::ops::{Deref, DerefMut};
 
 /// What is left of a column, as a share, below which it depends on those before.
 const DEPENDENT: f64 = 1e-15;
@@ -39,7 +41,7 @@ type Reduced = (Vec<Vec<f64>>, Vec<Vec<f64>>);
 /// column, what depends on earlier columns left out, and for each of `others` Qᵀother followed by what is left of its length.
 ///
 /// Source: L. Giraud et al., Numerische Mathematik 101, 87 (2005), doi:10.1007/s00211-005-0615-4: twice is enough.
-pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> Reduced {
+pub(super) fn reduce<C: DerefMut<Target = [f64]>>(columns: &mut [C], others: &[&[f64]]) -> Reduced {
     let size = columns.len();
     let mut triangle = vec![vec![0.0; size]; size];
     for (k, above) in triangle.iter_mut().enumerate() {
@@ -69,7 +71,7 @@ pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> Reduced {
 }
 
 /// What [`reduce`] finds, by products of the columns, which stay as they are; `None` where too many digits would cancel.
-pub(super) fn reduced(columns: &[Vec<f64>], others: &[&[f64]]) -> Option<Reduced> {
+pub(super) fn reduced(columns: &[Aligned], others: &[&[f64]]) -> Option<Reduced> {
     let size = columns.len();
     // Cholesky's factor, column by column; of the others the same column without its end.
     let along = |column: &[f64], triangle: &[Vec<f64>], count: usize| -> Vec<f64> {
@@ -108,7 +110,7 @@ pub(super) fn reduced(columns: &[Vec<f64>], others: &[&[f64]]) -> Option<Reduced
 }
 
 /// Makes columns orthonormal by their triangle.
-pub(super) fn orthonormalise(columns: &mut [Vec<f64>], triangle: &[Vec<f64>]) {
+pub(super) fn orthonormalise(columns: &mut [Aligned], triangle: &[Vec<f64>]) {
     for (k, above) in triangle.iter().enumerate() {
         let (done, rest) = columns.split_at_mut(k);
         done.iter().zip(above).for_each(|(column, part)| add_into(-part, column, &mut rest[0]));
@@ -117,7 +119,12 @@ pub(super) fn orthonormalise(columns: &mut [Vec<f64>], triangle: &[Vec<f64>]) {
 }
 
 /// Takes what lies along orthonormal columns out of another one of length `before`; what is left of its length.
-fn take_out(columns: &[Vec<f64>], other: &mut [f64], before: f64, along: &mut [f64]) -> f64 {
+fn take_out(
+    columns: &[impl Deref<Target = [f64]>],
+    other: &mut [f64],
+    before: f64,
+    along: &mut [f64],
+) -> f64 {
     crate::stop::check();
     let mut left = before;
     if columns.is_empty() {

@@ -4,8 +4,9 @@ use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
 use super::priors::Priors;
 use super::sources::Sources;
-use super::vectors::neighbours_summed;
+use super::vectors::{neighbours_summed, whole};
 use super::view::View;
+use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::identifiability::space::LARGEST_LN_GAIN;
@@ -72,8 +73,10 @@ impl<'a, 'm> Prover<'a, 'm> {
         let mut priors = Priors::new(comparison, target, reach);
         let sources =
             Sources::new(comparison, target, |parameter, range| priors.within_reach(parameter, range));
-        let counts: Vec<f64> = comparison.target.signal().iter().map(|s| target.counts * s).collect();
-        let bands = [comparison.root().to_vec(), counts, comparison.noise().to_vec()];
+        let signal = comparison.target.signal();
+        let in_chunks = |bands: &[f64]| Aligned::filled(whole(signal.len()), bands.iter().copied());
+        let counts = Aligned::filled(whole(signal.len()), signal.iter().map(|s| target.counts * s));
+        let bands = [in_chunks(comparison.root()), counts, in_chunks(comparison.noise())];
         let unknown_lighting = space.unknowns.contains(Nuisance::Lighting);
         let known_total = space.unknowns.known_lighting_total();
         let lit = target.state.lighting.iter().enumerate();
@@ -246,7 +249,8 @@ pub(super) fn merged_into<'v, 'a>(
     Some(merged.get_or_insert_with(|| {
         let bands = all.sources.bands.len();
         let [counts, noise] = [&all.counts, &all.noise].map(|x| neighbours_summed(&x[..bands], count));
-        let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
+        let root = counts.iter().zip(noise.iter()).map(|(n, v)| (n + v).sqrt());
+        let root = Aligned::filled(counts.len(), root);
         let (sources, allowed, priors) = (all.sources.merged(count), all.allowed.clone(), all.priors.clone());
         let mut view = View::new(sources, allowed, priors, [root, counts, noise], all.reach);
         view.shaped.clone_from(&all.shaped);

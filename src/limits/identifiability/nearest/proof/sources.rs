@@ -15,6 +15,7 @@
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
 use super::vectors::{multiply, neighbours_summed, product_into, products_summed, whole};
+use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::Blackbodies;
 use crate::identifiability::nearest::residual::{Comparison, Target};
@@ -31,7 +32,7 @@ use std::sync::Arc;
 /// temperature may be.
 #[derive(Debug)]
 pub(super) struct Source {
-    strength: Vec<f64>,
+    strength: Aligned,
     pub(super) temperature_k: [f64; 2],
 }
 
@@ -48,14 +49,14 @@ pub(super) struct Spectrum {
     pub(super) temperature_k: f64,
     /// What it is taken to be a function of: T, or −1/T for a shape.
     pub(super) along: f64,
-    pub(super) counts: Vec<f64>,
+    pub(super) counts: Aligned,
     /// ∂/∂along.
-    pub(super) slope: Vec<f64>,
+    pub(super) slope: Aligned,
     lengths: OnceCell<[f64; 2]>,
 }
 
 impl Spectrum {
-    fn of(temperature_k: f64, along: f64, [counts, slope]: [Vec<f64>; 2]) -> Self {
+    fn of(temperature_k: f64, along: f64, [counts, slope]: [Aligned; 2]) -> Self {
         Self { temperature_k, along, counts, slope, lengths: OnceCell::new() }
     }
 
@@ -99,7 +100,7 @@ impl<'a> Sources<'a> {
         let scale = target.counts * gain;
         let bands = comparison.target.bands();
         let weights = bands.one_node_per_band().then(|| bands.weights_cm1());
-        let strength = |share: Vec<f64>| -> Vec<f64> {
+        let strength = |share: Aligned| -> Aligned {
             let mut strength = share;
             if let Some(weights) = weights {
                 multiply(&mut strength, weights);
@@ -112,7 +113,7 @@ impl<'a> Sources<'a> {
         };
         let other = target.alternative;
         let surface = Source {
-            strength: strength(other.to_vec()),
+            strength: strength(Aligned::from(other)),
             temperature_k: span(
                 Nuisance::Temperature,
                 Parameter::Temperature,
@@ -122,7 +123,7 @@ impl<'a> Sources<'a> {
         };
         let objects = surroundings.objects().iter().zip(&target.state.environment_k).enumerate();
         let lights = objects.map(|(k, (object, &known))| {
-            let mut lit: Vec<f64> = other.iter().map(|e| 1.0 - e).collect();
+            let mut lit = Aligned::filled(other.len(), other.iter().map(|e| 1.0 - e));
             if let Some(own) = &object.emissivity {
                 multiply(&mut lit, own);
             }
@@ -209,10 +210,11 @@ impl<'a> Sources<'a> {
             return None;
         }
         let bend = planck::log_derivative(self.range_cm1.0, t);
-        let counts: Vec<f64> = spectrum.counts.iter().map(|counts| counts / scale).collect();
+        let len = spectrum.counts.len();
+        let counts = Aligned::filled(len, spectrum.counts.iter().map(|counts| counts / scale));
         let slopes = spectrum.slope.iter().zip(&spectrum.counts);
-        let slope: Vec<f64> =
-            slopes.map(|(slope, counts)| t * t * ((slope - counts * bend) / scale)).collect();
+        let slopes = slopes.map(|(slope, counts)| t * t * ((slope - counts * bend) / scale));
+        let slope = Aligned::filled(len, slopes);
         Some((Spectrum::of(t, -1.0 / t, [counts, slope]), scale))
     }
 
@@ -263,16 +265,17 @@ impl<'a> Sources<'a> {
         if self.merged > 1 { f64::EPSILON * self.merged as f64 } else { 0.0 }
     }
 
-    fn counted(&self, s: usize, radiance: &[f64]) -> Vec<f64> {
+    fn counted(&self, s: usize, radiance: &[f64]) -> Aligned {
         let (bands, strength) = (self.bands.len(), &self.list[s].strength);
         if self.merged > 1 && self.bands.one_node_per_band() {
             return products_summed([radiance, strength], self.merged);
         }
-        let mut counts = vec![0.0; whole(bands)];
+        let mut counts = Aligned::unset(whole(bands));
+        counts[bands..].fill(0.0);
         if self.bands.one_node_per_band() {
             product_into(radiance, strength, &mut counts);
         } else {
-            let mut radiance = radiance.to_vec();
+            let mut radiance = Aligned::from(radiance);
             multiply(&mut radiance, strength);
             self.bands.weigh_into(&radiance, &mut counts[..bands]);
         }
@@ -283,10 +286,10 @@ impl<'a> Sources<'a> {
     ///
     /// With n = 1/(eˣ − 1), m = x n(1 + n) and w = x(1 + 2n): T²n″ = m(w − 2), T³n‴ = m(w² − 6w + 6 + 2xm), of which
     /// |w² − 6w + 6| ≤ w² as w ≥ 2; m grows with T, x and w fall.
-    pub(super) fn bend(&self, s: usize, temperature_k: f64, [low, high]: [f64; 2]) -> [Vec<f64>; 2] {
+    pub(super) fn bend(&self, s: usize, temperature_k: f64, [low, high]: [f64; 2]) -> [Aligned; 2] {
         crate::stop::check();
         let nodes = self.bands.nodes_cm1();
-        let [mut bend, mut third] = [(); 2].map(|()| vec![0.0; nodes.len()]);
+        let [mut bend, mut third] = [(); 2].map(|()| Aligned::unset(nodes.len()));
         planck::photon_radiance_into(nodes, temperature_k, &mut bend);
         let ends = [low, high].map(|end| self.blackbodies.at(nodes, end));
         let [cold, hot] = ends.each_ref().map(|end| &end[0][..]);

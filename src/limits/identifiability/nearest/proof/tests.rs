@@ -10,6 +10,7 @@ use super::orthogonal::{inner, orthonormalise, reduce, reduced};
 use super::prover::{Memory, Prover};
 use super::sources::{Chord, chord};
 use super::tangent::{self, slopes};
+use crate::aligned::Aligned;
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::residual::{self, Comparison};
 use crate::identifiability::nearest::{NearestSolver, StateRange};
@@ -334,7 +335,7 @@ fn columns_are_reduced_alike_by_products() {
         let first: Vec<f64> = (0..40).map(|_| draw()).collect();
         let second: Vec<f64> = first.iter().map(|x| x + near * (draw() - 0.5)).collect();
         let other: Vec<f64> = (0..40).map(|_| draw()).collect();
-        let columns = vec![first, second];
+        let columns = vec![Aligned::from(&first[..]), Aligned::from(&second[..])];
         let mut basis = columns.clone();
         let (triangle, along) = reduce(&mut basis, &[&other]);
         let Some((quick, quick_along)) = reduced(&columns, &[&other]) else {

@@ -1,5 +1,6 @@
 //! Loops over the bands that a proof spends its time in.
 
+use crate::aligned::Aligned;
 use crate::simd::{Chunk, LANES, added, dispatched, fold, fold_all, padded, product};
 
 dispatched! {
@@ -164,45 +165,71 @@ pub(super) fn whole(bands: usize) -> usize {
 /// Groups that are summed at a time.
 const GROUPS: usize = 16;
 
-/// Neighbours summed, in whole chunks.
-pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Vec<f64> {
-    products_summed([bands, &vec![1.0; bands.len()]], count)
+/// So many neighbours summed each, in whole chunks.
+pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Aligned {
+    summed(bands, None, count)
 }
 
 /// Sums of so many neighbouring products each, in whole chunks.
-pub(super) fn products_summed(factors: [&[f64]; 2], count: usize) -> Vec<f64> {
-    let bands = factors[0].len();
-    let mut all = vec![0.0; whole(bands.div_ceil(count))];
+pub(super) fn products_summed([a, b]: [&[f64]; 2], count: usize) -> Aligned {
+    summed(a, Some(b), count)
+}
+
+fn summed(bands: &[f64], factor: Option<&[f64]>, count: usize) -> Aligned {
+    let mut all = Aligned::unset(whole(bands.len().div_ceil(count)));
+    let mut groups = [[0.0; LANES]; GROUPS];
     for (some, sums) in all.chunks_mut(GROUPS).enumerate() {
-        let mut groups = [[0.0; LANES]; GROUPS];
-        let first = (some * GROUPS * count).min(bands);
-        products_by_group(factors.map(|x| &x[first..]), count, &mut groups[..sums.len()]);
-        folded_into(&groups[..sums.len()], sums);
+        let first = (some * GROUPS * count).min(bands.len());
+        let groups = &mut groups[..sums.len()];
+        by_group(&bands[first..], factor.map(|x| &x[first..]), count, groups);
+        folded_into(groups, sums);
     }
     all
 }
 
 dispatched! {
-    /// Lanes of the sums of so many neighbouring products each.
-    fn products_by_group<'a>(factors: [&'a [f64]; 2], count: usize, groups: &'a mut [Chunk]) -> () {
-        let [a, b] = factors;
-        let ((a_chunks, _), (b_chunks, _)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    /// Lanes of the sums of so many neighbours each, times a factor if there is any.
+    fn by_group<'a>(bands: &'a [f64], factor: Option<&'a [f64]>, count: usize, groups: &'a mut [Chunk]) -> () {
         let per_group = count / LANES;
-        let whole = if per_group * LANES == count { (a_chunks.len() / per_group).min(groups.len()) } else { 0 };
-        let chunks = a_chunks.chunks_exact(per_group.max(1)).zip(b_chunks.chunks_exact(per_group.max(1)));
-        for (lanes, (a, b)) in groups[..whole].iter_mut().zip(chunks) {
-            for (a, b) in a.iter().zip(b) {
-                *lanes = added(*a, *b, *lanes);
+        let chunks: &[Chunk] = bands.as_chunks().0;
+        let whole = if per_group * LANES == count { (chunks.len() / per_group).min(groups.len()) } else { 0 };
+        let (in_chunks, others) = groups.split_at_mut(whole);
+        match factor {
+            Some(factor) => {
+                let factor: &[Chunk] = factor.as_chunks().0;
+                fill(in_chunks, per_group, |c| product(chunks[c], factor[c]), |c, lanes| added(chunks[c], factor[c], lanes));
             }
+            None => fill(in_chunks, per_group, |c| chunks[c], |c, lanes| added([1.0; LANES], chunks[c], lanes)),
         }
-        // Groups that are no whole chunks, and the last one.
-        let rest = (whole * count).min(a.len());
-        let (a, b) = (a[rest..].chunks(count), b[rest..].chunks(count));
-        for (lanes, (a, b)) in groups[whole..].iter_mut().zip(a.zip(b)) {
-            for (a, b) in a.chunks(LANES).zip(b.chunks(LANES)) {
-                *lanes = added(padded(a), padded(b), *lanes);
+        // Groups that are no whole chunks, the last one, and those beyond it.
+        let mut rest = (whole * count).min(bands.len());
+        for lanes in others {
+            *lanes = [0.0; LANES];
+            let end = (rest + count).min(bands.len());
+            for i in (rest..end).step_by(LANES) {
+                let part = i..(i + LANES).min(end);
+                let by = factor.map_or([1.0; LANES], |factor| padded(&factor[part.clone()]));
+                *lanes = added(padded(&bands[part]), by, *lanes);
             }
+            rest = end;
         }
+    }
+}
+
+/// Of each group its first chunk, to which the others are added.
+#[inline(always)]
+fn fill(
+    groups: &mut [Chunk],
+    per_group: usize,
+    first: impl Fn(usize) -> Chunk,
+    added: impl Fn(usize, Chunk) -> Chunk,
+) {
+    for (g, lanes) in groups.iter_mut().enumerate() {
+        let mut sum = first(g * per_group);
+        for c in g * per_group + 1..(g + 1) * per_group {
+            sum = added(c, sum);
+        }
+        *lanes = sum;
     }
 }
 
@@ -231,7 +258,10 @@ mod tests {
                     let expected: f64 = places.map(|i| a[i] * b[i]).sum();
                     assert!((sum - expected).abs() <= 1e-14 * expected, "{bands} {count} {group}");
                 }
-                assert_eq!(neighbours_summed(&a, count), products_summed([&a, &vec![1.0; bands]], count));
+                assert_eq!(
+                    neighbours_summed(&a, count)[..],
+                    products_summed([&a, &vec![1.0; bands]], count)[..]
+                );
             }
         }
     }

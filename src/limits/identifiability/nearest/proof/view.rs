@@ -7,7 +7,8 @@ use super::amplitudes::Amplitudes;
 use super::metric::Metric;
 use super::priors::Priors;
 use super::sources::{Source, Sources, Spectrum};
-use super::vectors::{largest_share, whole};
+use super::vectors::largest_share;
+use crate::aligned::Aligned;
 use crate::sum::dot;
 use std::cell::OnceCell;
 
@@ -35,10 +36,10 @@ pub(super) struct View<'a> {
     pub(super) sources: Sources<'a>,
     pub(super) allowed: Amplitudes,
     pub(super) priors: Priors,
-    /// √(N + v), N and v of every band, in whole chunks.
-    pub(super) root: Vec<f64>,
-    pub(super) counts: Vec<f64>,
-    pub(super) noise: Vec<f64>,
+    /// √(N + v), N and v of every band, in whole chunks, as all spectra here.
+    pub(super) root: Aligned,
+    pub(super) counts: Aligned,
+    pub(super) noise: Aligned,
     /// The distance within which everything is.
     pub(super) reach: f64,
     /// Sources of unknown temperature, and their spectra at the temperatures known, as far as they were needed.
@@ -52,7 +53,7 @@ pub(super) struct View<'a> {
     dark_k: Vec<f64>,
     /// Spectra of the sources of known temperature, once a box was looked at: where few bands suffice, all of them are never looked at.
     pub(super) fixed: Vec<Option<Spectrum>>,
-    brightest: OnceCell<Vec<f64>>,
+    brightest: OnceCell<Aligned>,
     in_boxes: OnceCell<InBoxes>,
 }
 
@@ -68,13 +69,9 @@ impl<'a> View<'a> {
         sources: Sources<'a>,
         allowed: Amplitudes,
         priors: Priors,
-        bands: [Vec<f64>; 3],
+        [root, counts, noise]: [Aligned; 3],
         reach: f64,
     ) -> Self {
-        let [root, counts, noise] = bands.map(|mut x| {
-            x.resize(whole(x.len()), 0.0);
-            x
-        });
         let sent = crate::sum::sum(&counts);
         // (‖y‖ + d)² − Σv without the difference, of which much noise would leave nothing.
         let total = (sent + reach * (2.0 * dot(&root, &root).sqrt() + reach)) * (1.0 + 1e-12);
@@ -131,7 +128,8 @@ impl<'a> View<'a> {
     pub(super) fn brightest(&self) -> &[f64] {
         self.brightest.get_or_init(|| {
             let bands = self.root.iter().zip(&self.noise);
-            bands.map(|(y, v)| (y + self.reach) * (y + self.reach) * (1.0 + 1e-9) - v).collect()
+            let most = bands.map(|(y, v)| (y + self.reach) * (y + self.reach) * (1.0 + 1e-9) - v);
+            Aligned::filled(self.root.len(), most)
         })
     }
 

@@ -6,9 +6,10 @@
 
 use super::table::Emission;
 use super::whitened::Whitened;
+use crate::aligned::Aligned;
 use crate::box_least_squares::BoxLeastSquares;
 use crate::scene::State;
-use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fold, fused, product};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, product};
 use crate::sum::dot;
 use nalgebra::{DMatrix, DVector};
 

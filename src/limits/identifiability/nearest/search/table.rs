@@ -4,9 +4,10 @@
 //! has computed serves the next ones; around the temperatures of a scene there are more of them. Where bands have several nodes
 //! the emission of one alternative is kept in its bands as well: whatever scene it is searched in, it is the same.
 
+use crate::aligned::Aligned;
 use crate::order;
 use crate::planck;
-use crate::simd::{Aligned, LANES};
+use crate::simd::LANES;
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
 

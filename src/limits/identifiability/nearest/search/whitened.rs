@@ -1,8 +1,8 @@
 //! A pair in thinned bands, whitened by the target's own noise.
 
 use super::table::{Emission, Thinned};
+use crate::aligned::Aligned;
 use crate::identifiability::nearest::residual::{Comparison, Target};
-use crate::simd::Aligned;
 
 /// What does not depend on the alternative's state.
 pub(super) struct Whitened {

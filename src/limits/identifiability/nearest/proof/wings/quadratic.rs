@@ -19,6 +19,7 @@ use super::super::closing::Minimum;
 use super::super::sources::{Spectrum, half_sag};
 use super::super::vectors::{counts_into, product_into, square_of_product, square_of_quotient};
 use super::super::view::View;
+use crate::aligned::Aligned;
 use crate::identifiability::rectangle::OverRectangle;
 use crate::simd::{Chunk, LANES, dispatched, fold};
 use crate::sum::dot;
@@ -44,15 +45,15 @@ pub(super) struct About<'m> {
     range: [f64; 2],
     /// N and N₀, and their rounding as a share of them.
     counts: &'m [f64],
-    seen: Vec<f64>,
+    seen: Aligned,
     rounding: f64,
 }
 
 /// Weights, and what they make of all that does not hang on the interval.
 pub(super) struct Weighed {
-    weight: Vec<f64>,
+    weight: Aligned,
     /// W q, ‖W q‖² with what a prior of it adds.
-    lit: Vec<f64>,
+    lit: Aligned,
     lit_lit: f64,
     /// ‖h‖², and the rounding of counts as a length.
     shift: f64,
@@ -79,7 +80,7 @@ impl<'m> About<'m> {
             _ => return None,
         };
         let pull_lit = light.map_or(0.0, |light| dot(&minimum.pull, light));
-        let mut seen = vec![0.0; minimum.other.len()];
+        let mut seen = Aligned::unset(minimum.other.len());
         counts_into(&minimum.other, &view.noise, &mut seen);
         let (own, counts, rounding) = (&minimum.spectra[s].counts[..], &view.counts[..], view.rounding);
         let prior = |source: Option<usize>, of_temperature: bool, units: f64| {
@@ -107,8 +108,8 @@ impl<'m> About<'m> {
         })
     }
 
-    pub(super) fn weighed(&self, weight: Vec<f64>) -> Weighed {
-        let mut lit = vec![0.0; weight.len()];
+    pub(super) fn weighed(&self, weight: Aligned) -> Weighed {
+        let mut lit = Aligned::zeros(weight.len());
         if let Some(light) = self.light {
             product_into(light, &weight, &mut lit);
         }
