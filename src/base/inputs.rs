@@ -5,7 +5,7 @@
 //! list is open nothing is noted. Readers read on the thread that asks, never in parallel.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::marker::PhantomData;
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
@@ -138,6 +138,17 @@ pub fn file(path: &Path, held: Held) {
             && !inputs.files.iter().any(|known| known.path == path && known.held == held)
         {
             inputs.files.push(FileRead { path: path.to_owned(), held });
+        }
+    });
+}
+
+/// Files were read, each of another path than the others and than those before.
+pub fn files(all: impl IntoIterator<Item = (PathBuf, Held)>) {
+    OPEN.with_borrow_mut(|open| {
+        if let Some(inputs) = open {
+            let known: HashSet<PathBuf> = inputs.files.iter().map(|read| read.path.clone()).collect();
+            let new = all.into_iter().filter(|(path, _)| !known.contains(path));
+            inputs.files.extend(new.map(|(path, held)| FileRead { path, held }));
         }
     });
 }

@@ -7,6 +7,7 @@
 use hadar::error::{Error, Result};
 use hadar::inputs::{FileRead, Held, Inputs, Stamp};
 use sha2::{Digest as _, Sha256};
+use std::collections::HashMap;
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -95,12 +96,16 @@ pub fn sha256_of_read(read: &FileRead) -> Result<String> {
 /// As [`sha256_of_read`]; a file that held one thing and then another.
 pub fn of_all_read(inputs: &Inputs) -> Result<Vec<(PathBuf, String)>> {
     let mut all: Vec<(PathBuf, String)> = Vec::with_capacity(inputs.files.len());
+    let mut places: HashMap<&Path, usize> = HashMap::new();
     for read in &inputs.files {
         let hash = sha256_of_read(read)?;
-        match all.iter().find(|(path, _)| *path == read.path) {
+        match places.get(read.path.as_path()).and_then(|place| all.get(*place)) {
             Some((_, known)) if *known != hash => return Err(changed(&read.path)),
             Some(_) => {}
-            None => all.push((read.path.clone(), hash)),
+            None => {
+                places.insert(&read.path, all.len());
+                all.push((read.path.clone(), hash));
+            }
         }
     }
     Ok(all)

@@ -39,6 +39,16 @@ impl Attributes {
         self.0.iter().find(|(name, _)| name.eq_ignore_ascii_case(key)).map(|(_, value)| value)
     }
 
+    /// All of them with their names.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&str, &Attribute)> {
+        self.0.iter().map(|(name, value)| (name.as_str(), value))
+    }
+
+    /// The unit that is stated as such.
+    pub(super) fn stated_unit(&self) -> Option<&str> {
+        UNITS.iter().find_map(|key| self.text(key))
+    }
+
     /// Whether there is an attribute of this name.
     pub(super) fn says(&self, key: &str) -> bool {
         self.get(key).is_some()
@@ -53,10 +63,7 @@ impl Attributes {
 
     /// The unit of the samples, or what they are.
     pub(super) fn unit(&self) -> Option<String> {
-        let unit = UNITS
-            .iter()
-            .find_map(|key| self.text(key))
-            .or_else(|| QUANTITIES.iter().find_map(|key| self.text(key)))?;
+        let unit = self.stated_unit().or_else(|| QUANTITIES.iter().find_map(|key| self.text(key)))?;
         (!unit.trim().is_empty()).then(|| unit.to_owned())
     }
 

@@ -103,17 +103,14 @@ impl Axes {
         }
     }
 
-    /// Axes from what their dimensions are called, outermost first, each by one name or by several that it may have: one of them
-    /// has to be that of the bands; rows come before columns unless their names say otherwise.
-    pub(super) fn of_dimensions(names: [&[String]; 3]) -> Option<Self> {
-        let axis = |names: &&[String]| {
-            let of = |name: &String| {
-                NAMES.iter().find(|(_, own)| own.contains(&name.as_str())).map(|(axis, _)| *axis)
-            };
-            let first = names.first().and_then(of)?;
-            names.iter().all(|name| of(name) == Some(first)).then_some(first)
+    /// Axes from what their dimensions are called, outermost first: one of them has to be that of the bands; rows come before columns
+    /// unless their names say otherwise.
+    pub(super) fn of_dimensions(names: [&str; 3]) -> Option<Self> {
+        let axis = |name: &str| {
+            let name = name.to_lowercase();
+            NAMES.iter().find(|(_, own)| own.contains(&name.as_str())).map(|(axis, _)| *axis)
         };
-        let found = names.each_ref().map(axis);
+        let found = names.map(axis);
         let bands = found.iter().position(|axis| *axis == Some(Axis::Bands))?;
         let mut others = found.iter().enumerate().filter(|(place, _)| *place != bands).map(|(_, axis)| *axis);
         let turned = match (others.next().flatten(), others.next().flatten()) {

@@ -17,6 +17,7 @@ use super::found::{Found, Opened};
 use super::raw::Raw;
 use super::stored::Stored;
 use super::values::{ALL_VALID, Values};
+use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use std::fs::File;
 use std::path::Path;
@@ -34,22 +35,25 @@ struct Image {
     start: u64,
     sides: Vec<usize>,
     stored: Stored,
+    /// Why it cannot be read, if it cannot.
+    unread: Option<Error>,
 }
 
 /// Opens a file whose first bytes have been seen.
 pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
     let len = file.metadata().map_err(damaged)?.len();
-    let images = images(&file, path, len)?;
+    let (images, has_list) = images(&file, path, len)?;
     let listed: Vec<Listed> = images
         .iter()
         .map(|image| Listed {
             name: image.name.clone(),
             sides: image.sides.clone(),
             stored: image.stored.name(),
+            unread: image.unread.clone(),
         })
         .collect();
     let place = choose(&listed, name)?;
-    let Some(Image { name, header, start, sides, stored }) = images.into_iter().nth(place) else {
+    let Some(Image { name, header, start, sides, stored, .. }) = images.into_iter().nth(place) else {
         return Err(damaged("an image is lost"));
     };
     let of_image = |error: Error| error.for_key(name.clone());
@@ -84,35 +88,39 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
         let is_of_bands = usual.is_some() && axes == usual;
         found.centres_cm1 = axis.unit.as_deref().filter(|_| is_of_bands).and_then(|unit| {
             let places = (1..=shape.bands()).map(|pixel| axis.at(pixel as f64)).collect::<Vec<_>>();
-            band_list::in_unit(unit, &places)
+            band_list::in_unit(SpectralUnit::spelt(unit)?, &places)
         });
         found.axis_without_unit = found.centres_cm1.is_none();
+    } else {
+        found.axis_without_unit = has_list;
     }
     let cube =
         Raw { file, path: path.to_owned(), shape, start, order, stored, little_endian: false, values }.cube();
     Ok(Opened { cube, found })
 }
 
-/// All images of two or more axes. An image without a name has its number.
-fn images(file: &File, path: &Path, len: u64) -> Result<Vec<Image>> {
-    let mut images = Vec::new();
+/// All images of two or more axes, and whether there is a table of the bands' places. An image without a name has its number.
+fn images(file: &File, path: &Path, len: u64) -> Result<(Vec<Image>, bool)> {
+    let (mut images, mut has_list) = (Vec::new(), false);
     let (mut place, mut number) = (0, 0);
     while place < len && number < MOST {
         let header = Header::read(file, path, place)?;
         let start = place + header.bytes;
-        let sides = header.sides()?;
+        let sides = header.sides("NAXIS")?;
         let stored = header.stored()?;
-        if header.text("XTENSION").is_some_and(|kind| kind.trim() == "BINTABLE")
-            && header.text("ZIMAGE").is_some()
-        {
-            return Err(Error::malformed(
-                "the image is compressed in a table (ZIMAGE)",
-                "unpack it with funpack, or with astropy: fits.writeto('cube.fits', fits.getdata('cube.fits.fz'))",
-            ));
-        }
-        let is_image = header.text("XTENSION").is_none_or(|kind| kind.trim() == "IMAGE");
-        let bytes = header.data_bytes(&sides, stored)?;
-        if is_image && matches!(sides.len(), 2..) {
+        place = start.saturating_add(header.data_bytes(&sides, stored)?.next_multiple_of(header::BLOCK));
+        let kind = header.text("XTENSION").map_or("IMAGE", str::trim);
+        has_list |= kind == "BINTABLE" && header.columns().any(band_list::may_be);
+        let (sides, unread) = match (kind, header.text("ZIMAGE")) {
+            ("IMAGE", _) => (sides, None),
+            ("BINTABLE", Some(_)) => {
+                let instead = "unpack it with funpack, or with astropy: fits.writeto('cube.fits', fits.getdata('cube.fits.fz'))";
+                let error = Error::malformed("the image is compressed in a table (ZIMAGE)", instead);
+                (header.sides("ZNAXIS")?, Some(error))
+            }
+            _ => (Vec::new(), None),
+        };
+        if sides.len() > 1 {
             let name =
                 header.text("EXTNAME").map_or_else(|| number.to_string(), |name| name.trim().to_owned());
             // The fastest axis is written first; sides of 1 before three others are none.
@@ -120,10 +128,9 @@ fn images(file: &File, path: &Path, len: u64) -> Result<Vec<Image>> {
             while sides.len() > 3 && sides.first() == Some(&1) {
                 sides.remove(0);
             }
-            images.push(Image { name, header, start, sides, stored });
+            images.push(Image { name, header, start, sides, stored, unread });
         }
-        place = start.saturating_add(bytes.next_multiple_of(header::BLOCK));
         number += 1;
     }
-    Ok(images)
+    Ok((images, has_list))
 }

@@ -120,6 +120,13 @@ pub(super) fn open(file: File, name: Option<&str>, axes: Option<Axes>) -> Result
 /// The page that the decoder is at.
 fn page(decoder: &mut Decoder<BufReader<File>>, len: u64) -> Result<Page> {
     let (width, height) = decoder.dimensions().map_err(damaged)?;
+    // The decoder turns their numbers round, as for a picture to be looked at.
+    if decoder.find_tag_unsigned::<u16>(Tag::PhotometricInterpretation).map_err(damaged)? == Some(0) {
+        return Err(Error::malformed(
+            "the picture has white for 0 (PhotometricInterpretation 0), and programs differ in what its numbers are",
+            "write it with black for 0: tifffile.imwrite('cube.tif', a, photometric='minisblack')",
+        ));
+    }
     let color = decoder.colortype().map_err(damaged)?;
     let (bits, samples) = match color {
         ColorType::Gray(bits) => (bits, 1),

@@ -21,9 +21,10 @@ use super::choice::{Listed, choose};
 use super::found::{Found, Opened};
 use super::packed;
 use super::raw::{MAX_INFLATION, Raw};
+use super::text_unit;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
-use hdf5_pure::Layout;
+use hdf5_pure::{Datatype, Layout};
 use std::fs::File;
 use std::path::Path;
 
@@ -33,12 +34,20 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let bytes = Bounded { file: file.try_clone().map_err(damaged)?, path: path.to_owned(), len };
     let source = sound(|| hdf5_pure::File::from_source(bytes).map_err(damaged))?;
     let (name, array) = sound(|| chosen(&source, name))?;
-    let axes = axes.or_else(|| sound(|| Ok(dimensions::axes(&source, &name, &array))).ok().flatten());
+    let axes = match axes {
+        None => {
+            sound(|| dimensions::axes(&source, &name, &array)).map_err(|error| error.for_key(name.clone()))?
+        }
+        said => said,
+    };
     let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
     let bands = opened.found.shape.bands();
     let axis = sound(|| Ok(BandAxis::of(&source, &name, bands, len)))?;
+    let beside = || sound(|| Ok(unit_beside(&source, &name, len))).ok().flatten();
+    let unit = opened.found.unit.clone().or_else(beside);
     let found = Found {
         variable: Some(name),
+        unit,
         centres_cm1: axis.centres_cm1,
         widths_cm1: axis.widths_cm1,
         bad_bands: axis.bad,
@@ -58,20 +67,49 @@ fn chosen(source: &hdf5_pure::File, name: Option<&str>) -> Result<(String, Array
         let array = Array::of(dataset).and_then(Array::with_values);
         return array.map(|array| (name.to_owned(), array)).map_err(|error| error.for_key(name));
     }
-    let arrays: Vec<(String, Array)> = listed(source)
-        .into_iter()
-        .filter_map(|(name, dataset)| Array::of(dataset).ok().map(|array| (name, array)))
-        .filter(|(_, array)| matches!(array.sides.len(), 2 | 3))
-        .collect();
-    let listed = |(name, array): &(String, Array)| Listed {
-        name: name.clone(),
-        sides: array.sides.clone(),
-        stored: array.stored.name(),
+    let (mut arrays, mut known, mut unread) = (Vec::new(), Vec::new(), Vec::new());
+    for (name, dataset) in listed(source) {
+        let of = |sides, stored, unread| Listed { name: name.clone(), sides, stored, unread };
+        let kind = dataset.datatype();
+        let is_number = matches!(kind, Ok(Datatype::FixedPoint { .. } | Datatype::FloatingPoint { .. }));
+        let shape = dataset.shape().unwrap_or_default();
+        match Array::of(dataset) {
+            Ok(array) if array.sides.len() > 1 => {
+                known.push(of(array.sides.clone(), array.stored.name(), None));
+                arrays.push((name, array));
+            }
+            Err(error) if is_number && shape.len() > 1 => {
+                let sides = shape.iter().map(|side| usize::try_from(*side).unwrap_or(usize::MAX)).collect();
+                unread.push(of(sides, "numbers that are not read", Some(error)));
+            }
+            _ => {}
+        }
+    }
+    // Those that can be read stand first, at their places.
+    known.extend(unread);
+    let Some((name, array)) = arrays.into_iter().nth(choose(&known, None)?) else {
+        return Err(damaged("an array is lost"));
     };
-    let place = choose(&arrays.iter().map(listed).collect::<Vec<_>>(), None)?;
-    let Some((name, array)) = arrays.into_iter().nth(place) else { return Err(damaged("an array is lost")) };
     let array = array.with_values().map_err(|error| error.for_key(name.clone()))?;
     Ok((name, array))
+}
+
+/// The unit of the samples in a text beside their array, which MATLAB writes as an array of characters.
+fn unit_beside(source: &hdf5_pure::File, array: &str, len: u64) -> Option<String> {
+    let (folder, own) = array.rsplit_once('/').unwrap_or(("", array));
+    let text = |(name, dataset): (String, hdf5_pure::Dataset)| {
+        let (other, last) = name.rsplit_once('/').unwrap_or(("", &name));
+        if other != folder || !text_unit::is_name(last, own) {
+            return None;
+        }
+        let strings = || dataset.read_string().ok().filter(|all| all.len() == 1)?.pop();
+        let text = match dataset.attrs().ok()?.contains_key("MATLAB_class") {
+            true => Array::of(dataset).ok()?.text(text_unit::MOST, len),
+            false => strings(),
+        };
+        text_unit::of(&text?)
+    };
+    listed(source).into_iter().find_map(text)
 }
 
 fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>) -> Result<Opened> {
@@ -119,7 +157,7 @@ fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>)
 
 fn found(array: &Array, shape: Shape, axes: Option<Axes>, sides: &[usize]) -> Found {
     let format = if array.matlab { "MATLAB 7.3" } else { "HDF5" };
-    let unit = array.unit.clone();
+    let unit = array.attributes.unit();
     let mut found = Found { axes, unit, ..Found::array(format, shape, array.stored.name(), sides) };
     array.values.iter().for_each(|values| values.tell(&mut found));
     found

@@ -92,10 +92,9 @@ fn samples<S: Sample>(element: &mut Element<impl Read>, shape: Shape, order: Axe
 fn lists(file: &File, variables: &[Variable], bands: usize, little_endian: bool) -> Vec<(String, Vec<f64>)> {
     let list = |variable: &Variable| {
         let head = &variable.head;
-        band_list::unit_of(&head.name)?;
-        let is_list = head.dimensions.iter().any(|side| *side as usize == bands)
-            && head.dimensions.iter().filter(|side| **side != 1).count() <= 1;
-        numeric(head).ok().filter(|_| is_list)?;
+        band_list::unit(&head.name, None)?;
+        let sides: Vec<usize> = head.dimensions.iter().map(|side| *side as usize).collect();
+        numeric(head).ok().filter(|_| band_list::is_list(&sides, bands))?;
         let content = content(file, variable).ok()?;
         let mut element = Element::of(content, variable.compressed, variable.len, little_endian).ok()?;
         element.head().ok()?;

@@ -34,6 +34,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
             name: variable.name.clone(),
             sides: header.sides(variable),
             stored: stored.name(),
+            unread: None,
         })
         .collect();
     let (variable, stored) = match numeric.get(choose(&listed, name)?) {
@@ -42,11 +43,8 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     };
     let of_variable = |error: Error| error.for_key(variable.name.clone());
     let sides = header.sides(variable);
-    let names = |place: usize| vec![header.dimension(variable, place).to_lowercase()];
-    let by_name = || {
-        let names = [names(0), names(1), names(2)];
-        Axes::of_dimensions(names.each_ref().map(Vec::as_slice)).filter(|_| sides.len() == 3)
-    };
+    let names = [0, 1, 2].map(|place| header.dimension(variable, place));
+    let by_name = || Axes::of_dimensions(names).filter(|_| sides.len() == 3);
     let axes = axes.or_else(by_name);
     let order = axes.unwrap_or_default();
     let shape = order.shape(&sides).map_err(of_variable)?;
@@ -130,26 +128,27 @@ impl Header {
             variable.dimensions.len() == 1
                 && cube.dimensions.contains(&variable.dimensions[0])
                 && self.sides(variable) == [bands]
-                && band_list::is_axis(&variable.name)
         };
         let mut unused = false;
         for variable in self.variables.iter().filter(is_axis) {
-            unused = true;
             let Some(stored) = variable.stored() else { continue };
-            let (mut word, mut numbers) = (vec![0; stored.size()], vec![0.0; bands]);
-            let step = if self.is_record(variable) { self.record_bytes } else { stored.size() as u64 };
-            let mut read = |(place, number): (usize, &mut f64)| {
-                let at = variable.begin.saturating_add(step.saturating_mul(place as u64));
-                read_at(file, path, &mut word, at)
-                    .map(|()| decode(&word, stored, false, std::slice::from_mut(number)))
+            let read = || {
+                let (mut word, mut numbers) = (vec![0; stored.size()], vec![0.0; bands]);
+                let step = if self.is_record(variable) { self.record_bytes } else { stored.size() as u64 };
+                for (place, number) in numbers.iter_mut().enumerate() {
+                    let at = variable.begin.saturating_add(step.saturating_mul(place as u64));
+                    read_at(file, path, &mut word, at).ok()?;
+                    decode(&word, stored, false, std::slice::from_mut(number));
+                }
+                Some(numbers)
             };
-            if numbers.iter_mut().enumerate().try_for_each(&mut read).is_ok()
-                && let Some((unit, numbers)) = band_list::said_by(&variable.attributes, stored, numbers)
-                && let Some(centres) = band_list::in_unit(&unit, &numbers)
-            {
-                return (Some(centres), false);
+            match band_list::of_array(&variable.name, &variable.attributes, stored, read) {
+                Some(Some(centres)) => return (Some(centres), false),
+                list => unused |= list.is_some(),
             }
         }
-        (None, unused)
+        let (centres, unknown) = band_list::of_attributes(&cube.attributes, bands);
+        let unused = centres.is_none() && (unused || unknown);
+        (centres, unused)
     }
 }

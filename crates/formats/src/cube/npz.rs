@@ -71,7 +71,7 @@ fn lists(archive: &mut ZipArchive<BufReader<File>>, bands: usize) -> Vec<(String
     let list = |place: usize| {
         let mut entry = archive.by_index(place).ok()?;
         let (len, name) = (entry.size(), array_name(entry.name()));
-        band_list::unit_of(&name)?;
+        band_list::unit(&name, None)?;
         Some((name, npy::list(&mut entry, len, bands)?))
     };
     (0..count).filter_map(list).collect()

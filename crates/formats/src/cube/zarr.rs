@@ -20,9 +20,10 @@ use super::names::is_zarr;
 use super::packed::{self, Slices};
 use super::stored::{Stored, decode};
 use super::values::Values;
+use crate::hash::stamp;
 use hadar::cube::Sample;
 use hadar::error::{Error, Result};
-use hadar::inputs;
+use hadar::inputs::{self, Held};
 use std::path::{Path, PathBuf};
 
 /// Groups within groups, and arrays, that are looked at.
@@ -43,29 +44,31 @@ struct Array {
 pub(super) fn open(path: &Path, name: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
     inputs::folder(path);
     let mut arrays: Vec<(String, PathBuf, Meta)> = Vec::new();
-    within(path, "", MOST_DEPTH, &mut arrays)?;
-    let listed: Vec<Listed> = arrays
+    let mut unread: Vec<Listed> = Vec::new();
+    within(path, "", MOST_DEPTH, &mut arrays, &mut unread)?;
+    let mut listed: Vec<Listed> = arrays
         .iter()
         .map(|(name, _, meta)| Listed {
             name: name.clone(),
             sides: meta.sides.clone(),
             stored: meta.stored.name(),
+            unread: None,
         })
         .collect();
+    // Those that can be read stand first, at their places.
+    listed.extend(unread);
     let lone = listed.len() == 1 && listed.iter().all(|array| array.name.is_empty());
     if lone && name.is_some() {
         return Err(Error::malformed("the folder is one array, which has no name", "leave the variable out"));
     }
     let place = choose(&listed, name)?;
-    let axis_of = |bands: usize, dimension: Option<&str>| band_axis(&arrays, place, bands, dimension);
     let Some((name, folder, meta)) = arrays.get(place).cloned() else {
         return Err(damaged("an array is lost"));
     };
     let of_array = |error: Error| if name.is_empty() { error } else { error.for_key(name.clone()) };
     let by_name = || {
         let [a, b, c] = meta.dimensions.as_slice() else { return None };
-        let names = [a, b, c].map(|name| vec![name.to_lowercase()]);
-        Axes::of_dimensions(names.each_ref().map(Vec::as_slice))
+        Axes::of_dimensions([a, b, c])
     };
     let axes = axes.or_else(by_name);
     let order = axes.unwrap_or_default();
@@ -77,30 +80,38 @@ pub(super) fn open(path: &Path, name: Option<&str>, axes: Option<Axes>) -> Resul
     values.iter().for_each(|values| values.tell(&mut found));
     let chunk = meta.chunk.first().copied().unwrap_or(1);
     let array = Array { folder, meta, values };
-    let (absent, of) = array.absent().map_err(of_array)?;
+    let (absent, of) = array.noted().map_err(of_array)?;
     if absent == of {
         return Err(of_array(damaged("none of its chunks is there")));
     }
-    let dimension = axes
-        .and_then(|_| array.meta.dimensions.iter().find(|name| band_list::is_axis(name)))
-        .map(String::as_str);
-    (found.centres_cm1, found.axis_without_unit) = axis_of(shape.bands(), dimension);
+    (found.centres_cm1, found.axis_without_unit) = band_axis(&arrays, place, shape.bands());
     found.absent_chunks = absent;
     let (cube, memory_bytes) = packed::cube(array, shape, order, chunk).map_err(of_array)?;
     found.memory_bytes = memory_bytes;
     Ok(Opened { cube, found })
 }
 
-/// All arrays below a folder that can be read, by their paths; the only one of a folder that is an array has no name.
-fn within(folder: &Path, name: &str, depth: usize, arrays: &mut Vec<(String, PathBuf, Meta)>) -> Result<()> {
+/// All arrays below a folder by their paths, those of numbers that cannot be read apart; the only one of a folder that is an array has no name.
+fn within(
+    folder: &Path,
+    name: &str,
+    depth: usize,
+    arrays: &mut Vec<(String, PathBuf, Meta)>,
+    unread: &mut Vec<Listed>,
+) -> Result<()> {
     match Meta::of_folder(folder) {
         Ok(Some(meta)) => {
             arrays.push((name.to_owned(), folder.to_owned(), meta));
             return Ok(());
         }
-        // Another array of a group need not be one that is read.
         Err(error) if name.is_empty() => return Err(error),
-        Err(_) => return Ok(()),
+        Err(error) => {
+            // Texts and the like are no cubes.
+            let (name, stored) = (name.to_owned(), "numbers that are not read");
+            let of_numbers = Meta::sides_of_numbers(folder);
+            unread.extend(of_numbers.map(|sides| Listed { name, sides, stored, unread: Some(error) }));
+            return Ok(());
+        }
         Ok(None) => {}
     }
     let failed = |error: std::io::Error| damaged(format!("{}: {error}", folder.display()));
@@ -116,40 +127,38 @@ fn within(folder: &Path, name: &str, depth: usize, arrays: &mut Vec<(String, Pat
         let own = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         if depth > 0 && arrays.len() < MOST_ARRAYS {
             let path_name = if name.is_empty() { own } else { format!("{name}/{own}") };
-            within(&path, &path_name, depth - 1, arrays)?;
+            within(&path, &path_name, depth - 1, arrays, unread)?;
         }
     }
     Ok(())
 }
 
-/// Centres of the bands, cm⁻¹, of an array of one dimension beside that of the cube, of the dimension's name or one of an axis; and whether there
-/// is only one that does not say its unit.
-fn band_axis(
-    arrays: &[(String, PathBuf, Meta)],
-    cube: usize,
-    bands: usize,
-    dimension: Option<&str>,
-) -> (Option<Vec<f64>>, bool) {
+/// Centres of the bands, cm⁻¹, by a list beside the cube or an attribute of it; and whether there is only one whose unit is not known.
+fn band_axis(arrays: &[(String, PathBuf, Meta)], cube: usize, bands: usize) -> (Option<Vec<f64>>, bool) {
     let folder = |name: &str| name.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
     let own = arrays.get(cube).map_or_else(String::new, |(name, ..)| folder(name));
     let mut unused = false;
     for (name, path, meta) in arrays {
         let last = name.rsplit('/').next().unwrap_or(name);
-        let is_axis = band_list::is_axis(last) || dimension == Some(last);
-        if meta.sides != [bands] || folder(name) != own || !is_axis {
+        if meta.sides != [bands] || folder(name) != own {
             continue;
         }
-        unused = true;
         let array = Array { folder: path.clone(), meta: meta.clone(), values: None };
-        let mut numbers = vec![0.0_f64; bands];
-        if array.slices(0, bands, &mut numbers).is_ok()
-            && let Some((unit, numbers)) = band_list::said_by(&meta.attributes, meta.stored, numbers)
-            && let Some(centres) = band_list::in_unit(&unit, &numbers)
-        {
-            return (Some(centres), false);
+        let read = || {
+            let mut numbers = vec![0.0_f64; bands];
+            array.slices(0, bands, &mut numbers).is_ok().then_some(numbers)
+        };
+        match band_list::of_array(last, &meta.attributes, meta.stored, read) {
+            Some(Some(centres)) => return (Some(centres), false),
+            list => unused |= list.is_some(),
         }
     }
-    (None, unused)
+    let (centres, unknown) = match arrays.get(cube) {
+        Some((_, _, meta)) => band_list::of_attributes(&meta.attributes, bands),
+        None => (None, false),
+    };
+    let unused = centres.is_none() && (unused || unknown);
+    (centres, unused)
 }
 
 impl Array {
@@ -158,21 +167,27 @@ impl Array {
         self.meta.sides.iter().zip(&self.meta.chunk).map(|(side, chunk)| side.div_ceil(*chunk)).collect()
     }
 
-    /// How many chunks are not there, of how many.
+    /// Notes the chunks that are there as they are now: how many are not, of how many.
     ///
     /// # Errors
     /// More than anybody has.
-    fn absent(&self) -> Result<(usize, usize)> {
+    fn noted(&self) -> Result<(usize, usize)> {
         let counts = self.counts();
         let all = counts.iter().try_fold(1_usize, |all, count| all.checked_mul(*count));
         let Some(all) = all.filter(|all| *all <= MOST_CHUNKS) else {
             return Err(damaged(format!("it announces more than {MOST_CHUNKS} chunks")));
         };
-        let absent = |number: &usize| {
+        let mut there = Vec::new();
+        for number in 0..all {
             hadar::stop::check();
-            !self.folder.join(self.meta.key(&places(*number, &counts))).is_file()
-        };
-        Ok(((0..all).filter(absent).count(), all))
+            let path = self.folder.join(self.meta.key(&places(number, &counts)));
+            if let Some(found) = path.metadata().ok().filter(std::fs::Metadata::is_file) {
+                there.push((path, Held::Since(stamp(&found))));
+            }
+        }
+        let absent = all - there.len();
+        inputs::files(there);
+        Ok((absent, all))
     }
 
     /// The numbers of a chunk, in the order of the array's dimensions; none of one that is not there.

@@ -31,8 +31,19 @@ const AXES: &[(&str, &[&str])] = &[
 ];
 const EMISSIVITY: &[&str] =
     &["emissivity", "emissivities", "emittance", "emiss", "emis", "epsilon", "eps", "emissionsgrad"];
-const REFLECTANCE: &[&str] =
-    &["reflectance", "reflectances", "reflectivity", "reflection", "refl", "rho", "reflexionsgrad"];
+const REFLECTANCE: &[&str] = &[
+    "reflectance",
+    "reflectances",
+    "reflectivity",
+    "reflection",
+    "refl",
+    "rho",
+    "reflexionsgrad",
+    "dhr",
+    "bhr",
+    "hdrf",
+    "albedo",
+];
 const OTHER: &[&str] = &[
     "transmittance",
     "transmission",
@@ -271,11 +282,21 @@ pub(super) fn values(cell: &str) -> Meaning {
     {
         return Meaning::Other;
     }
-    match LETTERS.iter().find(|(letter, _)| letter == before.first().unwrap_or(last)) {
-        Some((_, Some(quantity))) if before.is_empty() => return of(Some(*quantity), String::new()),
-        Some((_, None)) if before.is_empty() => return Meaning::Other,
-        // `R 1` may be the reflectance of a sample.
-        Some(_) if before.len() == 1 && last.bytes().all(|byte| byte.is_ascii_digit()) => {
+    let letter = |word: &str| LETTERS.iter().find(|(letter, _)| *letter == word);
+    let of_letter = |quantity: Option<Quantity>| match quantity {
+        Some(_) => of(quantity, before.join("-")),
+        None => Meaning::Other,
+    };
+    match (letter(before.first().unwrap_or(last)), letter(last)) {
+        (Some((_, quantity)), _) if before.is_empty() => return of_letter(*quantity),
+        // `brick %R`, `brick (R)`, `brick ρ` say what the numbers are; `brick R (%)` may.
+        (_, Some((letter, quantity))) if is_marked(cell, letter) => return of_letter(*quantity),
+        (_, Some(_)) if percent => return Meaning::Unclear,
+        // `R 1` and `R_brick` may be the reflectance of a sample; of emissivities they need not say it.
+        (Some((_, quantity)), _) if !is_said && *quantity != Some(Quantity::Emissivity) => {
+            return Meaning::Unclear;
+        }
+        (Some(_), _) if before.len() == 1 && last.bytes().all(|byte| byte.is_ascii_digit()) => {
             return Meaning::Unclear;
         }
         _ => {}
@@ -297,6 +318,16 @@ pub(super) fn values(cell: &str) -> Meaning {
         // A name, in which nothing of a quantity is.
         _ => of(None, name),
     }
+}
+
+/// Whether a letter stands in a header as a quantity: in brackets, beside a sign of percent, or as none of the alphabet's.
+fn is_marked(cell: &str, letter: &str) -> bool {
+    let lower = cell.to_lowercase();
+    let plain = lower.trim_end_matches([' ', ')', ']']);
+    let before = plain.strip_suffix(letter).map(str::trim_end);
+    !letter.is_ascii()
+        || before.is_some_and(|before| before.ends_with(['%', '(', '[']))
+        || plain.ends_with(&format!("{letter}%"))
 }
 
 /// Wavelengths of emissivities, µm: 0.2 µm to 1 mm.
@@ -499,6 +530,18 @@ mod tests {
             ("white reflectance panel", Meaning::Unclear),
             ("transmittance_300K", Meaning::Unclear),
             ("R 2", Meaning::Unclear),
+            ("brick %R", of(Reflectance, true, "brick")),
+            ("brick (R)", of(Reflectance, false, "brick")),
+            ("brick ρ", of(Reflectance, false, "brick")),
+            ("brick DHR", of(Reflectance, false, "brick")),
+            ("brick albedo", of(Reflectance, false, "brick")),
+            ("brick %T", Meaning::Other),
+            ("brick [A]", Meaning::Other),
+            ("R_brick", Meaning::Unclear),
+            ("T_glass", Meaning::Unclear),
+            ("A_brick", Meaning::Unclear),
+            ("brick R (%)", Meaning::Unclear),
+            ("T-shirt emissivity", of(Emissivity, false, "t-shirt")),
             ("Reflectance (0-1)", of(Reflectance, false, "")),
             ("emissivity_300K", of(Emissivity, false, "emissivity-300k")),
         ] {
@@ -508,6 +551,8 @@ mod tests {
             |name: &str, percent| Meaning::Values(Values { quantity: None, percent, name: name.to_owned() });
         assert_eq!(values("al2o3"), named("al2o3", false));
         assert_eq!(values("skin (%)"), named("skin", true));
+        assert_eq!(values("sample A"), named("sample-a", false));
+        assert_eq!(values("e-glass"), named("e-glass", false));
     }
 
     #[test]

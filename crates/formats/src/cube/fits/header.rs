@@ -14,7 +14,10 @@ const MOST: u64 = 1000;
 /// Axes that an image may have.
 const MOST_AXES: usize = 9;
 /// Kinds of spectral coordinates that are linear in what they are called after, vacuum wavelengths among them.
-const SPECTRAL: [&str; 3] = ["WAVE", "WAVN", "FREQ"];
+/// Columns of a table that are looked at.
+const MOST_COLUMNS: usize = 999;
+const SPECTRAL: [&str; 6] = ["WAVE", "WAVN", "FREQ", "WAVELENGTH", "LAMBDA", "WAVENUMBER"];
+/// Of those that have one by the standard.
 const STANDARD_UNITS: [&str; 3] = ["m", "m-1", "Hz"];
 
 /// The cards of an image.
@@ -91,14 +94,19 @@ impl Header {
         Ok(Some(number))
     }
 
-    /// Lengths of the axes, the fastest first.
-    pub(super) fn sides(&self) -> Result<Vec<usize>> {
-        let count = self.whole("NAXIS")?.and_then(|count| usize::try_from(count).ok()).unwrap_or(0);
+    /// What the columns of a table are called.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
+        (1..=MOST_COLUMNS).map_while(|column| self.text(&format!("TTYPE{column}"))).map(str::trim)
+    }
+
+    /// Lengths of the axes that are counted by a keyword, the fastest first.
+    pub(super) fn sides(&self, counted_by: &str) -> Result<Vec<usize>> {
+        let count = self.whole(counted_by)?.and_then(|count| usize::try_from(count).ok()).unwrap_or(0);
         if count > MOST_AXES {
             return Err(damaged(format!("an image of {count} axes")));
         }
         let side = |axis: usize| {
-            let keyword = format!("NAXIS{axis}");
+            let keyword = format!("{counted_by}{axis}");
             let side = self.whole(&keyword)?.ok_or_else(|| damaged(format!("there is no {keyword}")))?;
             Ok(usize::try_from(side).unwrap_or(usize::MAX))
         };

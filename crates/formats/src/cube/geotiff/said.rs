@@ -71,7 +71,8 @@ impl Said {
         let centres_um = numbers(&named("CENTRAL_WAVELENGTH_UM"), None);
         let is_axis = |item: &Item<'_>| item.name.to_lowercase().contains("wavelength");
         let widths_um = numbers(&named("FWHM_UM"), None);
-        let centres_cm1 = band_list::in_unit("um", &centres_um).filter(|centres| !centres.is_empty());
+        let centres_cm1 =
+            band_list::in_unit(SpectralUnit::Micrometre, &centres_um).filter(|centres| !centres.is_empty());
         let widths_cm1 = band_list::widths_cm1(SpectralUnit::Micrometre, &centres_um, &widths_um);
         Ok(Self {
             scale: numbers(&role("scale"), Some(1.0)),

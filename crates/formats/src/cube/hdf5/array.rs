@@ -1,7 +1,7 @@
 //! Arrays of an HDF5 file: their type, their dimensions, what their attributes say.
 
 use super::sound::{damaged, sound};
-use super::source::step;
+use super::source::{check_chunks, step};
 use crate::cube::attributes::{Attribute, Attributes};
 use crate::cube::packed::Slices;
 use crate::cube::stored::{Stored, decode};
@@ -26,8 +26,7 @@ pub(super) struct Array {
     pub(super) sides: Vec<usize>,
     pub(super) matlab: bool,
     pub(super) values: Option<Values>,
-    /// The unit of the samples, as the file says it.
-    pub(super) unit: Option<String>,
+    pub(super) attributes: Attributes,
 }
 
 impl Array {
@@ -44,14 +43,33 @@ impl Array {
         }
         let attributes = said(&attributes);
         let stored = attributes.stored(stored);
-        let unit = attributes.unit();
-        Ok(Self { dataset, stored, little_endian, sides, matlab, values: None, unit })
+        Ok(Self { dataset, stored, little_endian, sides, matlab, values: None, attributes })
     }
 
     /// The same with what its numbers stand for.
     pub(super) fn with_values(self) -> Result<Self> {
-        let attributes = self.dataset.attrs().map_err(damaged)?;
-        Ok(Self { values: said(&attributes).values(self.stored)?, ..self })
+        Ok(Self { values: self.attributes.values(self.stored)?, ..self })
+    }
+
+    /// All its numbers, of so many.
+    pub(super) fn numbers(&self, count: usize, len: u64) -> Option<Vec<f64>> {
+        check_chunks(&self.dataset, len).ok()?;
+        let bytes = sound(|| self.dataset.read_raw().map_err(damaged)).ok()?;
+        let mut numbers = vec![0.0; count];
+        (bytes.len() == count * self.stored.size()).then(|| {
+            decode(&bytes, self.stored, self.little_endian, &mut numbers);
+            numbers
+        })
+    }
+
+    /// The text that MATLAB has written as an array of its characters, of no more than so many.
+    pub(super) fn text(&self, most: usize, len: u64) -> Option<String> {
+        let count: usize = self.sides.iter().product();
+        if self.attributes.text("MATLAB_class") != Some("char") || count > most {
+            return None;
+        }
+        let letter = |code: f64| char::from_u32(code as u32);
+        self.numbers(count, len)?.into_iter().map(letter).collect()
     }
 }
 

@@ -57,6 +57,25 @@ impl Meta {
         }
     }
 
+    /// The sides of an array of numbers that cannot be read otherwise.
+    pub(super) fn sides_of_numbers(folder: &Path) -> Option<Vec<usize>> {
+        let json = |name: &str| -> Option<Value> {
+            serde_json::from_slice(&bytes(&folder.join(name), "read the array", LONGEST).ok()?).ok()
+        };
+        let (array, is_number) = match json(".zarray") {
+            Some(array) => {
+                let is_number = array["dtype"].as_str().is_some_and(|kind| of_numpy(kind).is_some());
+                (array, is_number)
+            }
+            None => {
+                let array = json("zarr.json")?;
+                let is_number = array["data_type"].as_str().is_some_and(|kind| of_name(kind).is_some());
+                (array, is_number)
+            }
+        };
+        sides(&array["shape"]).ok().filter(|_| is_number)
+    }
+
     fn of_version_2(array: &Value, attributes: &Value) -> Result<Self> {
         let (stored, little_endian) =
             array["dtype"].as_str().and_then(of_numpy).ok_or_else(|| other_type(&array["dtype"]))?;
@@ -203,6 +222,25 @@ fn number(value: &Value) -> Option<f64> {
     }
 }
 
+/// The number of the eight bytes, the least first, that a text of base 64 stands for (RFC 4648).
+fn double_in_base64(text: &str) -> Option<f64> {
+    let digits = text.strip_suffix('=').filter(|digits| digits.len() == 11)?;
+    let mut bits: u128 = 0;
+    for digit in digits.bytes() {
+        let value = match digit {
+            b'A'..=b'Z' => digit - b'A',
+            b'a'..=b'z' => digit - b'a' + 26,
+            b'0'..=b'9' => digit - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        bits = bits << 6 | u128::from(value);
+    }
+    // Of the last digit two bits are none of the number's.
+    Some(f64::from_bits(((bits >> 2) as u64).swap_bytes()))
+}
+
 /// Attributes as those of NetCDF.
 fn said(attributes: &Value) -> Attributes {
     let of = |value: &Value| {
@@ -217,8 +255,12 @@ fn said(attributes: &Value) -> Attributes {
             _ => Attribute::Other,
         }
     };
-    let all = attributes.as_object().into_iter().flatten();
-    Attributes::of(all.map(|(name, value)| (name.clone(), of(value))))
+    let all = attributes.as_object().into_iter().flatten().map(|(name, value)| {
+        // Xarray writes the bytes of a double where JSON might have no number.
+        let double = value.as_str().filter(|_| name == "_FillValue").and_then(double_in_base64);
+        (name.clone(), double.map_or_else(|| of(value), |fill| Attribute::Floating(vec![fill])))
+    });
+    Attributes::of(all)
 }
 
 /// A type as NumPy spells it, with the order of its bytes.
