@@ -21,6 +21,7 @@ pub fn bundle(result: &AirRanging) -> Result<Bundle> {
     if !result.witness.is_empty() {
         bundle.add_table("estimates.csv", estimates(result))?;
     }
+    bundle.add_conditions(&result.verdict.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
     bundle.add_warnings(&result.warnings)?;
     let plots: Vec<_> = [error_over_distance(result), information(result)]
         .into_iter()

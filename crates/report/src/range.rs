@@ -3,7 +3,7 @@
 mod figures;
 mod maps;
 
-pub use crate::words::range::text;
+pub use crate::words::range::{text, verdict};
 pub use figures::{bound_maps, derivative_errors, lines, matched_maps, picture_plot, views};
 pub use maps::MapFiles;
 
@@ -26,6 +26,7 @@ pub fn bundle(result: &Ranging, large: Option<&MapFiles>) -> Result<Bundle> {
     if let Some(cells) = cells(result) {
         bundle.add_table("cells.csv", cells)?;
     }
+    bundle.add_conditions(&result.verdict.conditions.iter().map(|one| ("", one)).collect::<Vec<_>>())?;
     bundle.add_warnings(&result.warnings)?;
     add_maps(&mut bundle, result, large)?;
     let plots: Vec<_> = [views(result), bound_maps(result), matched_maps(result)]

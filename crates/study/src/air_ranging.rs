@@ -208,7 +208,7 @@ impl AirRangingStudy {
         let sight = self.sight(&solvers.asked, distance_m)?;
         let met_between_m = self.met_between(&solvers.asked, &curve, distance_m)?;
         let stereo_crossing_m = results::crossing(&curve);
-        let verdict = self.verdict(&at, &sight, met_between_m);
+        let verdict = self.verdict(&at, &sight, met_between_m)?;
         let bands = self.band_information(&solvers.asked, distance_m)?;
         let mut stats = self.study.looked_up.clone();
         stats.compute(hadar::demand::Thing::Readings, witness.iter().map(|one| one.trials as u64).sum());

@@ -159,6 +159,8 @@ conditions! {
     } = "emissivities", Proviso, "sensitivity.emissivity_error";
     /// The emissivity of what is measured is exactly as entered.
     EmissivityKnown = "emissivity-known", Assumed, "sensitivity.emissivity_error";
+    /// The temperature of the air on the path is exactly as entered.
+    AirTemperatureKnown = "air-temperature-known", Assumed, "unknown.nuisances";
     /// What is ranged looks as in the one scene that is rendered.
     OneScene = "one-scene", Assumed, "stereo";
     /// The pixels that are added up are the target's, and all see the same of it.
@@ -416,6 +418,7 @@ impl Condition {
             | Self::NobodyCrosses
             | Self::NoAir
             | Self::EmissivityKnown
+            | Self::AirTemperatureKnown
             | Self::OneScene
             | Self::PatternOfEachBand
             | Self::PatternOfEachPixel

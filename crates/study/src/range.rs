@@ -260,7 +260,8 @@ impl RangeStudy {
         })?;
         let mut result = Ranging {
             scenario: self.scenario.clone(),
-            verdict: self.verdict(objects.first(), self.windows_of(&informed, shape))?,
+            verdict: self
+                .resting(self.verdict(objects.first(), self.windows_of(&informed, shape))?, maps.brightest),
             read: self.read(),
             shape,
             geometry: self.geometry(ground.var_diffraction_px2)?,

@@ -413,6 +413,28 @@ pub(crate) fn of_measured(
     found.extend(meanwhile(camera, bands, speed_m_s, is_timed));
     found.extend(path);
     found.extend(settings(set, true));
+    that_count(found, met)
+}
+
+/// What ranging by stereo rests on: a camera, if there is one, that reads so many bands, and `more` that is known of the views.
+pub(crate) fn of_stereo(
+    camera: Option<(&Camera, usize, Option<f64>)>,
+    more: Vec<Condition>,
+    set: &[Setting],
+    met: bool,
+) -> Vec<Condition> {
+    let mut found = more;
+    if let Some((camera, bands, brightest)) = camera {
+        found.extend(of_figures(camera, bands, brightest));
+        found.extend(meanwhile(camera, bands, None, false));
+        found.extend(camera.pattern.is_shared().then_some(Condition::PatternOfEachPixel));
+    }
+    found.extend(settings(set, false));
+    that_count(found, met)
+}
+
+/// Those on which such a verdict rests, hardest first.
+pub(crate) fn that_count(mut found: Vec<Condition>, met: bool) -> Vec<Condition> {
     found.retain(|one| one.counts(met));
     hardest_first(&mut found);
     found

@@ -346,3 +346,56 @@ for number in (1, 0):
     jpeg += b"\xff\xe1" + struct.pack(">H", 8) + b"Exif\0\0"
 open("flir.jpg", "wb").write(jpeg + b"\xff\xda\x00\x02\xff\xd9")
 open("picture.jpg", "wb").write(b"\xff\xd8\xff\xe0\x00\x04JF\xff\xda\x00\x02\xff\xd9")
+
+# h5py: dimensions of one length by scales that say it, by labels, and by scales of lengths of their own
+with h5py.File("h5py_scales.h5", "w") as f:
+    square = np.arange(4 * 4 * 7, dtype="u2").reshape(4, 4, 7)
+    for name, size in [("band", 4), ("y", 4), ("x", 7), ("lambda", 5), ("rows", 3)]:
+        f[name] = np.arange(size, dtype="f4")
+        f[name].make_scale(name)
+    for name, data, dimensions in [("scaled", square, "band y x"), ("apart", square[:3, 0, :, None].repeat(5, 2), "rows x lambda")]:
+        f[name] = data
+        for place, scale in enumerate(dimensions.split()):
+            f[name].dims[place].attach_scale(f[scale])
+    f["labelled"] = square
+    for place, label in enumerate(["band", "y", "x"]):
+        f["labelled"].dims[place].label = label
+
+# Lists of bands under every name, each beside a cube, and a list that is an attribute of it
+with h5py.File("h5py_listed.h5", "w") as f:
+    lists = {"Wavelength": "um", "wavelengths_um": None, "band_wavelength": "um", "wl": "um", "nu": "cm-1", "channel": "um", "Lambda_um": ""}
+    for name, unit in lists.items():
+        group = f.create_group(name.lower())
+        group["cube"] = CUBE.astype("<f4")
+        group[name] = 1e4 / LISTED_UM if unit == "cm-1" else LISTED_UM
+        if unit is not None:
+            group[name].attrs["units"] = unit
+    f["attribute/cube"] = CUBE.astype("<f4")
+    f["attribute/cube"].attrs.update({"wavelength": LISTED_UM, "wavelength_units": "um"})
+    for name, unit in [("wavelength", "furlong"), ("band", "1"), ("wavelength_error", "um")]:
+        f[f"no_{name}/cube"] = CUBE.astype("<f4")
+        f[f"no_{name}/{name}"] = LISTED_UM
+        f[f"no_{name}/{name}"].attrs["units"] = unit
+# Version 7.3 of MATLAB with what scipy_listed.mat has, and the unit of the samples
+with h5py.File("matlab73_listed.mat", "w", userblock_size=512) as f:
+    f["S"] = np.transpose(CUBE)
+    f["wavelengths_um"] = LISTED_UM[:, None]
+    f["units"] = np.frombuffer("microflick".encode("utf-16-le"), "u2")[:, None]
+    for name, kind in [("S", "double"), ("wavelengths_um", "double"), ("units", "char")]:
+        f[name].attrs["MATLAB_class"] = np.bytes_(kind)
+with open("matlab73_listed.mat", "r+b") as f:
+    f.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM")
+
+# An array that is not read, beside one that is: shards, four dimensions, a compressed image
+group = zarr.open_group("zarr_unread.zarr", mode="w", zarr_format=3)
+for name, shards in [("bt", (4, 4)), ("bt_background", None)]:
+    one = group.create_array(name, shape=(4, 4), chunks=(2, 2), shards=shards, dtype="f4", compressors=None)
+    one[:] = 300.0
+    # As xarray says that nothing is missing.
+    one.attrs["_FillValue"] = "AAAAAAAA+H8="
+with h5py.File("h5py_four.h5", "w") as f:
+    f["radiance"] = CUBE[None].astype("<f4")
+    f["quality"] = CUBE[:, :, 0].astype("<f4")
+images = [fits.PrimaryHDU(), fits.ImageHDU(IMAGES.astype(">f4"), name="RADIANCE"), fits.CompImageHDU(IMAGES.astype(">i2"), name="PACKED")]
+fits.HDUList(images).writeto("astropy_packed_beside.fits", overwrite=True)
+tifffile.imwrite("tifffile_white.tif", CUBE[:, :, 0].astype("u2"), photometric="miniswhite")

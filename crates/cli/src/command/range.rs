@@ -1,12 +1,11 @@
 //! `hadar range`: bounds of passive ranging: by stereo from a scene or a heat cube, or by the air on the path (`signal = "air"`).
 
 use super::decompose::FoundBad;
-use super::global::Global;
+use super::global::{Global, condition};
 use super::several;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_report::range::MapFiles;
-use hadar_report::words::Say;
 use hadar_report::{air_ranging, range};
 use hadar_scenario::range::Subject;
 use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario};
@@ -25,9 +24,13 @@ pub(super) struct RangeArgs {
     /// at each of some distances
     #[arg(long, value_name = "N", default_value_t = 0)]
     trials: usize,
-    /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
+    /// Exit with code 3 unless the demand is met under no condition except those of --accept; a cube of one view and one depth is decided by
+    /// the cheapest proofs alone
     #[arg(long, conflicts_with = "trials")]
     check: bool,
+    /// Codes of conditions under which a 'yes' is accepted; `hadar explain CODE` explains them
+    #[arg(long, value_name = "CODE", num_args = 1.., value_delimiter = ',', value_parser = condition)]
+    accept: Vec<String>,
     /// What is done with pixels of a cube that are found to be bad: cube.bad of the scenario; without a cube it is refused
     #[arg(long, value_enum)]
     bad: Option<FoundBad>,
@@ -76,10 +79,11 @@ fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> R
     let bar = global.progress("distances");
     let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
+    result.verdict.accepted.clone_from(&args.accept);
     let text = air_ranging::text(&result);
     result.stats.add(&global.report(&text, || air_ranging::bundle(&result))?);
     global.answer(&result, &text, &result.stats)?;
-    let failed = args.check && result.verdict.met != Some(true);
+    let failed = args.check && !result.verdict.holds();
     Ok(if failed { 3 } else { 0 })
 }
 
@@ -104,12 +108,13 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
     let sink = maps.as_ref().map(|maps| maps as &dyn MapSink);
     let mut result = study.range(&plan, sink, &|done, total| bar.set(done, total))?;
     bar.finish();
+    result.verdict.accepted.clone_from(&args.accept);
     let text = match plan.verdict_alone {
-        true => result.verdict.sentence.say(),
+        true => range::verdict(&result.verdict),
         false => range::text(&result),
     };
     result.stats.add(&global.report(&text, || range::bundle(&result, maps.as_ref()))?);
     global.answer(&result, &text, &result.stats)?;
-    let failed = args.check && result.verdict.met != Some(true);
+    let failed = args.check && !result.verdict.holds();
     Ok(if failed { 3 } else { 0 })
 }

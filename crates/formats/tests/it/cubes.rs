@@ -401,11 +401,22 @@ fn dimensions_of_netcdf_are_read_by_name() {
         assert_eq!(found.axes.unwrap().to_string(), axes);
         assert_eq!(found.centres_cm1.unwrap().len(), 5);
     }
-    // What is said counts, and what may be either is as it would be without names.
+    // What is said counts.
     let said = open("netcdf_dimensions.nc", Some("a"), Some("rows,columns,bands")).unwrap();
     assert_eq!(said.cube.shape(), Shape::new(5, 3, 4).unwrap());
-    let square = open("netcdf_dimensions.nc", Some("square/s"), None).unwrap();
-    assert_eq!((square.cube.shape(), square.found.axes), (Shape::new(4, 4, 7).unwrap(), None));
+    // Dimensions of one length are told apart by their numbers, or by labels; where there are neither they have to be written.
+    let named = |file: &str, variable: &str| {
+        let found = open(file, Some(variable), None).unwrap().found;
+        (found.shape, found.axes.unwrap().to_string())
+    };
+    let bands_first = (Shape::new(4, 7, 4).unwrap(), "bands,rows,columns".to_owned());
+    assert_eq!(named("netcdf_dimensions.nc", "square/s"), bands_first);
+    assert_eq!(named("h5py_scales.h5", "labelled"), bands_first);
+    let refused = refusal("h5py_scales.h5", Some("scaled"), None);
+    assert!(refused.contains("4 may be band or y") && refused.contains("write axes = "), "{refused}");
+    let said = open("h5py_scales.h5", Some("scaled"), Some("bands,rows,columns")).unwrap();
+    assert_eq!(said.cube.shape(), bands_first.0);
+    assert_eq!(named("h5py_scales.h5", "apart").1, "rows,columns,bands");
 }
 
 /// Lists of NumPy and SciPy say where the bands are, if their names have a unit.

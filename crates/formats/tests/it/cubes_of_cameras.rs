@@ -17,6 +17,55 @@ fn says_its_bands(name: &str, variable: Option<&str>) {
     assert!(near(&centres, &MICROMETRES.map(|um| 1e4 / um)), "{name}: {centres:?}");
 }
 
+/// Whatever the list is called, if its name or its attributes say what it is.
+#[cfg(feature = "hdf5")]
+#[test]
+fn bands_are_found_by_every_name_of_their_list() {
+    let groups =
+        ["wavelength", "wavelengths_um", "band_wavelength", "wl", "nu", "channel", "lambda_um", "attribute"];
+    for group in groups {
+        let found = open("h5py_listed.h5", Some(&format!("{group}/cube")), None).unwrap().found;
+        let expected: Vec<f64> = (0..5).map(|band| 1e4 / (8.0 + f64::from(band))).collect();
+        assert!(near(&found.centres_cm1.unwrap_or_default(), &expected), "{group}");
+    }
+    for (group, unused) in [("no_wavelength", true), ("no_band", false), ("no_wavelength_error", false)] {
+        let found = open("h5py_listed.h5", Some(&format!("{group}/cube")), None).unwrap().found;
+        assert_eq!((found.centres_cm1, found.axis_without_unit), (None, unused), "{group}");
+    }
+    let found = open("matlab73_listed.mat", Some("S"), None).unwrap().found;
+    assert_eq!(
+        (found.unit.as_deref(), found.centres_cm1.map(|all| all.len())),
+        (Some("microflick"), Some(5))
+    );
+}
+
+/// Another array is not taken in the place of one that cannot be read.
+#[test]
+fn an_array_that_is_not_read_is_not_passed_over() {
+    for (name, message) in [
+        #[cfg(feature = "zarr")]
+        ("zarr_unread.zarr", "2 arrays that may be meant: `bt_background` (4 x 4 f32), `bt` (4 x 4 numbers"),
+        #[cfg(feature = "hdf5")]
+        ("h5py_four.h5", "radiance: the array has 4 dimensions (1 x 3 x 4 x 5); write it with"),
+        (
+            "astropy_packed_beside.fits",
+            "2 arrays that may be meant: `RADIANCE` (5 x 3 x 4 f32), `PACKED` (5 x 3 x 4",
+        ),
+    ] {
+        let refused = refusal(name, None, None);
+        assert!(refused.contains(message), "{refused}");
+    }
+    #[cfg(feature = "zarr")]
+    {
+        assert!(refusal("zarr_unread.zarr", Some("bt"), None).contains("sharding"));
+        let found = open("zarr_unread.zarr", Some("bt_background"), None).unwrap().found;
+        assert_eq!(found.missing, Vec::<f64>::new());
+    }
+    check("astropy_packed_beside.fits", Some("RADIANCE"), None, "f32", plain);
+    assert!(refusal("astropy_packed_beside.fits", Some("PACKED"), None).contains("ZIMAGE"));
+    assert!(refusal("tifffile_white.tif", None, None).contains("white for 0"));
+}
+
 #[cfg(feature = "hdf5")]
 #[test]
 fn links_of_hdf5_are_no_arrays_and_hide_none() {

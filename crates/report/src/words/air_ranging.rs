@@ -5,20 +5,25 @@ mod text;
 pub use text::text;
 pub(crate) use text::{one_reading, window, without_sky};
 
-use super::Say;
 use super::demand::error_of;
+use super::range::saturates;
 use super::text::numbers::in_a_row;
+use super::{Say, conditions};
 use hadar::words::{length, significant};
 use hadar_study::air_ranging::{AirFinding, BlindChange};
 
 impl Say for AirFinding {
     fn say(&self) -> String {
         match self {
-            Self::Seen { distance_m, sigma_m, unknown, demand } => {
-                let start = match demand {
-                    None => "At",
-                    Some((_, true, _)) => "Yes: at",
-                    Some((_, false, _)) => "No: at",
+            Self::Seen { distance_m, sigma_m, unknown, demand, overfull, conditions } => {
+                let start = match (demand, overfull) {
+                    (None, None) => "At".to_owned(),
+                    (None, Some(full)) => format!("If all could be counted, where {}, at", saturates(*full)),
+                    (Some(_), Some(full)) => {
+                        format!("No, as {}; if all could be counted, at", saturates(*full))
+                    }
+                    (Some((_, true, _)), _) => conditions::yes(conditions).replacen('y', "Y", 1) + ": at",
+                    (Some((_, false, _)), _) => "No: at".to_owned(),
                 };
                 let mut out = format!(
                     "{start} {} m the distance is known to +- {} at best",

@@ -197,6 +197,7 @@ impl Say for Condition {
                 format!("the decision may wait {} until all is read", quantity(*time_s, "s"))
             }
             Self::EmissivityKnown => "the emissivity of the measured surface is exactly as entered".into(),
+            Self::AirTemperatureKnown => "the temperature of the air on the path is exactly as entered".into(),
             Self::OneScene => "real objects have the texture of the one scene that is rendered".into(),
             Self::SurroundingsKnown => "the temperatures of the surroundings are known".into(),
             Self::Calibrated => "the gain of the camera is known".into(),
@@ -215,7 +216,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 37] = [
     [
         "range",
         "A range that the scenario sets for the alternatives excludes states that could not be distinguished.",
@@ -377,6 +378,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 36] = [
         "emissivity-known",
         "The emissivity of the measured surface is taken as exact: its error is not included in the bound of the temperature.",
         "Write [sensitivity] with emissivity_error: the clause is undecided then.",
+    ],
+    [
+        "air-temperature-known",
+        "The temperature of the air is not among the unknowns: it is taken as entered, and an error of it imitates a distance.",
+        "Add \"air-temperature\" to unknown.nuisances.",
     ],
     [
         "one-scene",

@@ -3,10 +3,10 @@
 pub(crate) mod captions;
 mod text;
 
-pub use text::text;
+pub use text::{text, verdict};
 
-use super::Say;
 use super::demand::error_of;
+use super::{Say, conditions};
 use hadar::words::{self, significant};
 use hadar_study::range::{DepthFinding, Signal};
 use std::fmt::Write as _;
@@ -14,13 +14,24 @@ use std::fmt::Write as _;
 impl Say for DepthFinding {
     fn say(&self) -> String {
         match self {
-            Self::Judged { met, error, share, required_share, signal, beside, windows: [judged, of] } => {
+            Self::Judged {
+                met,
+                error,
+                share,
+                required_share,
+                signal,
+                beside,
+                windows: [judged, of],
+                overfull,
+                conditions,
+            } => {
                 let mut out = format!(
                     "{}: depth can be measured to within {} in {} of {} at best, by the {} ({} required)",
-                    match met {
-                        Some(true) => "Yes",
-                        Some(false) => "No",
-                        None => "Undecided",
+                    match (met, overfull) {
+                        (_, Some(full)) => format!("No, as {}; if all could be counted", saturates(*full)),
+                        (Some(true), _) => conditions::yes(conditions).replacen('y', "Y", 1),
+                        (Some(false), _) => "No".into(),
+                        (None, _) => "Undecided".into(),
                     },
                     error_of(*error),
                     words::share(*share),
@@ -62,4 +73,13 @@ const fn beside_it(signal: Signal) -> &'static str {
         Signal::ReconstructedBlind => "heat cube, temperature and emissivity estimated,",
         Signal::ScatteredAsMeasured => "scattered signal, as if it were measured,",
     }
+}
+
+/// That the brightest reading does not fit into the well, of photons of both.
+pub(crate) fn saturates([counts, full_well]: [f64; 2]) -> String {
+    format!(
+        "the brightest reading holds {} photons and the full well {} (the pixel saturates)",
+        significant(counts, 2),
+        significant(full_well, 2)
+    )
 }

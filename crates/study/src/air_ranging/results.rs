@@ -1,6 +1,6 @@
 //! What a study of ranging by air finds, as data.
 
-use crate::Warning;
+use crate::{Condition, Warning};
 use hadar::demand::Work;
 use hadar::fisher::precision::Sight;
 use hadar::ranging::depth::Demand;
@@ -58,6 +58,18 @@ pub struct AirVerdict {
     pub met: Option<bool>,
     /// What is said, in JSON a sentence.
     pub sentence: AirFinding,
+    /// What a 'yes' rests on, hardest first; of a 'no' what was taken on the unfavourable side.
+    pub conditions: Vec<Condition>,
+    /// Codes of conditions that whoever asks accepts.
+    pub accepted: Vec<String>,
+}
+
+impl AirVerdict {
+    /// Whether a program may rely on it: it is met, under no condition but the accepted ones.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.met == Some(true) && Condition::unaccepted(&self.conditions, &self.accepted).next().is_none()
+    }
 }
 
 /// What the answer says.
@@ -73,6 +85,10 @@ pub enum AirFinding {
         unknown: Vec<String>,
         /// What is demanded, whether that is met, and between which distances.
         demand: Option<(Demand, bool, Option<[f64; 2]>)>,
+        /// Photons of the brightest reading and of the full well, where they do not fit: nothing is met then.
+        overfull: Option<[f64; 2]>,
+        /// What a 'yes' rests on, hardest first.
+        conditions: Vec<Condition>,
     },
     /// It changes nothing.
     Unchanged {

@@ -5,7 +5,6 @@ use super::results::AirRanging;
 use crate::Warning;
 use hadar::error::Result;
 use hadar::fisher::precision::Sight;
-use hadar::instrument::View;
 use hadar_scenario::{AtmosphereSource, MaterialRef};
 
 /// Width of the bands that the embedded tables are means over, cm⁻¹.
@@ -49,10 +48,7 @@ impl AirRangingStudy {
             warnings.push(Warning::AirMirroredSky);
         }
         if let Some(full_well) = camera.full_well {
-            let state = self.state(at_m);
-            let signal = self.scene()?.evaluate(self.scene()?.emissivity, &state, &[], &[], false)?.signal;
-            let view = View { signal: signal.clone(), ..View::at(Some(at_m)) };
-            let counts = camera.brightest_reading(&self.bands, &signal, &view);
+            let counts = self.brightest(at_m)?;
             if counts > full_well {
                 warnings.push(Warning::FullWell { counts, full_well });
             }

@@ -1,7 +1,7 @@
 //! What a ranging study finds, as data.
 
-use crate::Warning;
 use crate::cube_bad::BadPixels;
+use crate::{Condition, Warning};
 use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::ranging::depth::DepthSolution;
@@ -127,10 +127,22 @@ pub struct DepthVerdict {
     pub windows: usize,
     /// All windows of the left view, but for those that show what is stated to be infinitely far; of a scene those that both cameras see.
     pub windows_of: usize,
+    /// What a 'yes' rests on, hardest first; of a 'no' what was taken on the unfavourable side.
+    pub conditions: Vec<Condition>,
+    /// Codes of conditions that whoever asks accepts.
+    pub accepted: Vec<String>,
+}
+
+impl DepthVerdict {
+    /// Whether a program may rely on it: it is met, under no condition but the accepted ones.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.met == Some(true) && Condition::unaccepted(&self.conditions, &self.accepted).next().is_none()
+    }
 }
 
 /// What there is to be said of depth.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum DepthFinding {
     /// Windows were held against the demand.
     Judged {
@@ -148,6 +160,10 @@ pub enum DepthFinding {
         beside: Option<(Signal, f64)>,
         /// Windows that were judged, and all that there are.
         windows: [usize; 2],
+        /// Photons of the brightest reading and of the full well, where they do not fit: no window is met then.
+        overfull: Option<[f64; 2]>,
+        /// What a 'yes' rests on, hardest first.
+        conditions: Vec<Condition>,
     },
     /// Depth is not known.
     NoDepth {

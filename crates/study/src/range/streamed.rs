@@ -153,7 +153,7 @@ impl RangeStudy {
         demand::spared(Thing::Sections, Reason::NotAsked, 1);
         let mut result = Ranging {
             scenario: self.scenario.clone(),
-            verdict: self.verdict(Some(&all), Some(windows))?,
+            verdict: self.resting(self.verdict(Some(&all), Some(windows))?, None),
             shape,
             read: self.read(),
             geometry: self.geometry(var_diffraction_px2)?,

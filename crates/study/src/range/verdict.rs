@@ -5,7 +5,8 @@ use super::looked_up::{RangeStudy, SECTIONS};
 use super::results::{BoundMaps, DepthFinding, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use super::subject::{Depth, Measured, Resolved};
 use super::watched::Tally;
-use crate::Warning;
+use crate::rests_on::of_stereo;
+use crate::{Condition, Warning};
 use hadar::cube::Shape;
 use hadar::demand::{Reason, Thing};
 use hadar::error::Result;
@@ -58,7 +59,10 @@ impl RangeStudy {
             signal: Signal::HeatCube,
             windows,
             windows_of: windows,
+            conditions: Vec::new(),
+            accepted: Vec::new(),
         };
+        let verdict = self.resting(verdict, None);
         let mut stats = self.looked_up.clone().and(&decision.stats.work(shape.len()));
         stats.compute(Thing::Sections, 1);
         stats.spare(Thing::Sections, Reason::NotAsked, SECTIONS - 1);
@@ -148,7 +152,31 @@ impl RangeStudy {
             signal,
             windows: judged,
             windows_of,
+            conditions: Vec::new(),
+            accepted: Vec::new(),
         })
+    }
+
+    /// A verdict with what it rests on, the brightest reading holding so many photons: one that does not fit into the well meets nothing.
+    pub(super) fn resting(&self, mut verdict: DepthVerdict, brightest: Option<f64>) -> DepthVerdict {
+        let camera = self.camera.as_ref();
+        let full = brightest.zip(camera).and_then(|(counts, camera)| Overfull::of(counts, camera));
+        let DepthFinding::Judged { met, overfull, conditions, .. } = &mut verdict.sentence else {
+            return verdict;
+        };
+        if let Some(full) = full {
+            (verdict.met, *met) = (Some(false), Some(false));
+            *overfull = Some([full.counts, full.full_well]);
+        }
+        let more = match &self.subject {
+            Resolved::Scene(_) => vec![Condition::NoAir, Condition::OneScene],
+            Resolved::Cube(_) => Vec::new(),
+        };
+        let bands = self.bands.as_ref().map_or(1, hadar::spectrum::Bands::len);
+        let camera = camera.map(|camera| (camera, bands, brightest));
+        *conditions = of_stereo(camera, more, &self.scenario.source.settings, verdict.met == Some(true));
+        verdict.conditions.clone_from(conditions);
+        verdict
     }
 
     fn judged(
@@ -167,6 +195,8 @@ impl RangeStudy {
             signal,
             beside,
             windows,
+            overfull: None,
+            conditions: Vec::new(),
         }
     }
 }

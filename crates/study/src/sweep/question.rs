@@ -114,7 +114,7 @@ impl Question {
             let part = column.split_once('.').map(|(part, _)| part);
             let of_pair = column.starts_with("pairs[") && (part.is_none() || column.ends_with(".told_apart"));
             match self {
-                Self::Size if part == Some("verdict") => Some("verdict.conditions".to_owned()),
+                Self::Size | Self::Range if part == Some("verdict") => Some("verdict.conditions".to_owned()),
                 Self::Identify if part == Some("identifiability") || of_pair => Some("conditions".to_owned()),
                 Self::Rule => {
                     part.filter(|part| part.starts_with("cameras[")).map(|part| format!("{part}.conditions"))

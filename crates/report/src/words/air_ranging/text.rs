@@ -3,7 +3,7 @@
 use crate::text::columns::{Columns, right};
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use crate::text::numbers::{listed, some};
-use crate::words::Say;
+use crate::words::{Say, conditions};
 use hadar::order;
 use hadar::words::{fixed, length, share, significant};
 use hadar_scenario::air_ranging::AirStereo;
@@ -18,7 +18,9 @@ const LISTED: usize = 5;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &AirRanging) -> String {
-    let mut out = format!("{}\n\n", result.verdict.sentence.say());
+    let verdict = &result.verdict;
+    let mut out = format!("{}\n\n", verdict.sentence.say());
+    out += &conditions::paragraph(&verdict.conditions, verdict.met == Some(true));
     out.push_str(&distances(result));
     out.push_str(&bands(result));
     out.push_str(&best(result));

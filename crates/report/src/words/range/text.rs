@@ -2,18 +2,18 @@
 
 use crate::text::columns::{Columns, left, right};
 use crate::text::footing::{read_as, warnings};
-use crate::words::Say;
+use crate::words::{Say, conditions};
 use hadar::ranging::depth::DepthSolution as Solution;
 use hadar::ranging::derivative::Derivative;
 use hadar::words::{self, quantity, share as percent, significant};
 use hadar_scenario::range::{Diffraction, Subject};
-use hadar_study::range::{ObjectBounds, Ranging, Signal, SignalBounds};
+use hadar_study::range::{DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use std::fmt::Write as _;
 
 /// The whole answer.
 #[must_use]
 pub fn text(result: &Ranging) -> String {
-    let mut out = format!("{}\n\n", result.verdict.sentence.say());
+    let mut out = verdict(&result.verdict);
     out.extend(result.read.as_ref().map(read_as));
     out.push_str(&bounds(result));
     out.push_str(&cells(result));
@@ -22,6 +22,13 @@ pub fn text(result: &Ranging) -> String {
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
     out
+}
+
+/// The verdict with what it rests on.
+#[must_use]
+pub fn verdict(verdict: &DepthVerdict) -> String {
+    format!("{}\n\n", verdict.sentence.say())
+        + &conditions::paragraph(&verdict.conditions, verdict.met == Some(true))
 }
 
 /// A disparity error beyond any image, pixels.
