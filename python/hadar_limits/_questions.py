@@ -132,7 +132,7 @@ def range_(scenario: Scenario, *, trials: int = 0, bands: int | None = None, **c
     ``trials``: match so many noisy views, or fit so many spectra; ``bands``: by air, the best so many of all bands.
     As ``hadar range --json``; the rest as :func:`size`.
     """
-    return _answered(Ranging, _hadar.range_(scenario, trials, bands, _common(**common)))
+    return _answered(Ranging, _hadar.range_(scenario, {"trials": trials, "bands": bands}, _common(**common)))
 
 
 def simulate(

@@ -1,8 +1,9 @@
 //! The commands `size`, `identify`, `rule`, `range` and `simulate`: the same study, the same JSON.
 
+use crate::asked::{asked, keyword};
 use crate::error::{named, raised};
 use crate::question::Question;
-use crate::threads::{Counted, with_limits, with_threads};
+use crate::threads::{Counted, Threads, with_limits, with_threads};
 use hadar::demand::{Reason, Skipping, Thing, Work, ledger_of};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
@@ -50,27 +51,19 @@ impl Answer {
     }
 }
 
-/// What all commands share.
-#[derive(FromPyObject)]
-pub(crate) struct Common {
-    #[pyo3(item)]
-    library: Vec<PathBuf>,
-    #[pyo3(item)]
-    only_library: bool,
-    #[pyo3(item)]
-    skip_uncovered: bool,
-    #[pyo3(item)]
-    seed: u64,
-    #[pyo3(item)]
-    skipping: bool,
-    #[pyo3(item)]
-    threads: Option<usize>,
-    #[pyo3(item)]
-    time_limit: Option<String>,
-    #[pyo3(item)]
-    memory_limit: Option<String>,
-    #[pyo3(item)]
-    progress: Option<Py<PyAny>>,
+asked! {
+    /// What all commands share.
+    Common {
+        library: Vec<PathBuf>,
+        only_library: bool,
+        skip_uncovered: bool,
+        seed: u64,
+        skipping: bool,
+        threads: Option<Threads>,
+        time_limit: Option<String>,
+        memory_limit: Option<String>,
+        progress: Option<Py<PyAny>>,
+    }
 }
 
 /// Found by a command: text, JSON, pictures to be drawn.
@@ -202,33 +195,22 @@ pub(crate) fn size(
     })
 }
 
-/// What `hadar identify` can be asked besides.
-#[derive(FromPyObject)]
-pub(crate) struct Identify {
-    #[pyo3(item)]
-    matrix: bool,
-    #[pyo3(item)]
-    apart: bool,
-    #[pyo3(item)]
-    prove: Option<f64>,
-    #[pyo3(item)]
-    scaling: bool,
-    #[pyo3(item)]
-    bands: Option<usize>,
-    #[pyo3(item)]
-    filters: Option<usize>,
-    #[pyo3(item)]
-    exact: bool,
-    #[pyo3(item)]
-    statistics: Option<String>,
-    #[pyo3(item)]
-    photons: Option<f64>,
-    #[pyo3(item)]
-    half_width: f64,
-    #[pyo3(item)]
-    trials: u64,
-    #[pyo3(item)]
-    average: bool,
+asked! {
+    /// What `hadar identify` can be asked besides.
+    Identify {
+        matrix: bool,
+        apart: bool,
+        prove: Option<f64>,
+        scaling: bool,
+        bands: Option<usize>,
+        filters: Option<usize>,
+        exact: bool,
+        statistics: Option<String>,
+        photons: Option<f64>,
+        half_width: f64,
+        trials: u64,
+        average: bool,
+    }
 }
 
 const LAWS: [(Law, &str); 3] =
@@ -304,16 +286,23 @@ pub(crate) fn rule(
     })
 }
 
+asked! {
+    /// What `hadar range` can be asked besides.
+    Range {
+        trials: usize,
+        bands: Option<usize>,
+    }
+}
+
 /// `hadar range`.
 #[pyfunction]
 pub(crate) fn range_(
     py: Python<'_>,
     scenario: &Bound<'_, PyAny>,
-    trials: usize,
-    bands: Option<usize>,
+    more: Range,
     common: Common,
 ) -> PyResult<Answer> {
-    let question = Question::of(scenario)?;
+    let (question, Range { trials, bands }) = (Question::of(scenario)?, more);
     common.answer(py, &question, |_, reading| {
         let scenario = question.read(RangingScenario::from_file, RangingScenario::from_toml)?;
         scenario.check_asked(trials, bands)?;
@@ -342,31 +331,21 @@ pub(crate) fn range_(
     })
 }
 
-/// What `hadar simulate` can be asked besides.
-#[derive(FromPyObject)]
-pub(crate) struct Simulate {
-    #[pyo3(item)]
-    classifiers: Vec<String>,
-    #[pyo3(item)]
-    spectra: usize,
-    #[pyo3(item)]
-    photons: Vec<f64>,
-    #[pyo3(item)]
-    sweep: Option<usize>,
-    #[pyo3(item)]
-    statistics: String,
-    #[pyo3(item)]
-    shot_noise_only: bool,
-    #[pyo3(item)]
-    against: Vec<String>,
-    #[pyo3(item)]
-    model: Vec<PathBuf>,
-    #[pyo3(item)]
-    skip_spectra: bool,
-    #[pyo3(item)]
-    thermometry: Option<String>,
-    #[pyo3(item)]
-    temperatures: usize,
+asked! {
+    /// What `hadar simulate` can be asked besides.
+    Simulate {
+        classifiers: Vec<String>,
+        spectra: usize,
+        photons: Vec<f64>,
+        sweep: Option<usize>,
+        statistics: String,
+        shot_noise_only: bool,
+        against: Vec<String>,
+        model: Vec<PathBuf>,
+        skip_spectra: bool,
+        thermometry: Option<String>,
+        temperatures: usize,
+    }
 }
 
 const PHOTON_LAWS: [(PhotonLaw, &str); 3] = [

@@ -5,7 +5,7 @@ use crate::error::{named, raised};
 use crate::lent::Lent;
 use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, RADIANCE};
 use crate::scene::bands;
-use crate::threads::with_limits;
+use crate::threads::{Threads, with_limits};
 use hadar::demand::Skipping;
 use hadar::error::Error;
 use hadar_estimate::decompose::{
@@ -46,7 +46,7 @@ pub(crate) fn decompose<'py>(
     potts: Option<(f64, Option<f64>)>,
     tex_sgd: Option<f64>,
     skipping: bool,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let temperature_k = temperature_range.map_or(Ok(RANGE_K), |given| ends(given, "temperature_range"))?;

@@ -1,8 +1,9 @@
 //! Errors of the library as exceptions, with the same message as the command prints.
 
 use hadar::Error;
-use pyo3::PyErr;
 use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 pyo3::create_exception!(
     hadar_limits,
@@ -14,6 +15,17 @@ pyo3::create_exception!(
 /// As an exception.
 pub(crate) fn raised(error: Error) -> PyErr {
     HadarError::new_err(error.to_string())
+}
+
+/// A value as Python writes it, if that is short, else its type.
+pub(crate) fn shown(given: &Bound<'_, PyAny>) -> String {
+    const LONGEST: usize = 60;
+    let kind =
+        || given.get_type().name().map_or_else(|_| "?".to_owned(), |name| format!("a value of type {name}"));
+    // Of lists and arrays only the type is sure to be short.
+    let written = given.len().is_err() || given.is_instance_of::<PyString>();
+    let text = written.then(|| given.repr().ok()).flatten().map(|text| text.to_string());
+    text.filter(|text| text.len() <= LONGEST).unwrap_or_else(kind)
 }
 
 /// One of some names, or an error that lists those it resembles.

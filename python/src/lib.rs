@@ -8,6 +8,7 @@ use hadar_elementary as _;
 
 mod answer;
 mod array;
+mod asked;
 mod decompose;
 mod error;
 mod lent;

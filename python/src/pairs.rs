@@ -4,7 +4,7 @@ use crate::array::{flat, rows, shaped};
 use crate::error::{named, raised};
 use crate::quantity::In;
 use crate::scene::Scene;
-use crate::threads::{with_limits, with_threads};
+use crate::threads::{Threads, with_limits, with_threads};
 use hadar::error::check;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
@@ -156,7 +156,7 @@ pub(crate) fn nearest(
     let target = scene.emissivity(target, "target")?;
     let alternative = scene.emissivity(alternative, "alternative")?;
     let prove = share(prove)?;
-    let found = with_threads(py, Some(1), || {
+    let found = with_threads(py, Some(Threads(1)), || {
         let Scene { bands, surroundings, unknowns, range, state, .. } = scene;
         let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
         let mut solver = match prove {
@@ -198,7 +198,7 @@ pub(crate) fn matrix<'py>(
     scene: &Bound<'py, Scene>,
     by: &str,
     prove: Option<f64>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get();

@@ -5,7 +5,7 @@ use crate::error::{named, raised};
 use crate::pairs::{DISTANCES, share};
 use crate::quantity::In;
 use crate::scene::Scene;
-use crate::threads::with_limits;
+use crate::threads::{Threads, with_limits};
 use hadar::error::Error;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::NearestSolver;
@@ -39,7 +39,7 @@ pub(crate) fn over_states<'py>(
     lighting: &Bound<'py, PyAny>,
     by: &str,
     prove: Option<f64>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get();

@@ -6,11 +6,11 @@
 //! left. A process that was
 //! forked has none of its parent's threads, so a pool is one of its process; the pool that all of rayon shares is never started.
 
-use crate::error::raised;
+use crate::error::{raised, shown};
 use hadar::Error;
 use hadar::stop::{self, Reason, Stop};
 use hadar_study::budget::Limits;
-use pyo3::{Py, PyAny, PyErr, PyResult, Python};
+use pyo3::{Borrowed, FromPyObject, Py, PyAny, PyErr, PyResult, Python};
 use rayon::ThreadPool;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -20,6 +20,25 @@ use std::time::Duration;
 
 /// Most threads that can be asked for.
 const MOST: usize = 1024;
+/// How many threads are asked for; 0 for all cores.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Threads(pub(crate) usize);
+
+impl Threads {
+    pub(crate) const INSTEAD: &str = "give a whole number from 1 to 1024, or None for all cores";
+}
+
+impl FromPyObject<'_, '_> for Threads {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        given.extract().map(Self).map_err(|_| {
+            let found = format!("threads: {}", shown(&given));
+            raised(Error::malformed(found, Self::INSTEAD))
+        })
+    }
+}
+
 /// How often the interpreter is asked whether it was interrupted.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -60,7 +79,7 @@ impl Counted {
 /// Does the work on as many threads as asked for, or as the command would take, while others have the interpreter.
 pub(crate) fn with_threads<T: Send>(
     py: Python<'_>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     work: impl FnOnce() -> hadar::Result<T> + Send,
 ) -> PyResult<T> {
     with_limits(py, threads, &Limits::default(), None, |_| work())
@@ -69,7 +88,7 @@ pub(crate) fn with_threads<T: Send>(
 /// The same within limits; `progress` is called with how far it is, and ends the work with what it raises.
 pub(crate) fn with_limits<T: Send>(
     py: Python<'_>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     limits: &Limits,
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&Counted) -> hadar::Result<T> + Send,
@@ -136,7 +155,8 @@ pub(crate) fn with_limits<T: Send>(
     }
 }
 
-fn pool(threads: Option<usize>) -> hadar::Result<((u32, usize), Pool)> {
+fn pool(threads: Option<Threads>) -> hadar::Result<((u32, usize), Pool)> {
+    let threads = threads.map(|Threads(count)| count);
     if let Some(most) = threads.filter(|threads| *threads > MOST) {
         let expected = format!("at most {MOST}, or 0 for all cores");
         return Err(Error::out_of_range("threads", most as f64, "", expected));

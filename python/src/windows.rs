@@ -4,7 +4,7 @@ use crate::array::{list, numbers, shaped};
 use crate::error::{named, raised};
 use crate::lent::Lent;
 use crate::quantity::COUNTS_SQUARED;
-use crate::threads::with_threads;
+use crate::threads::{Threads, with_threads};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, InformationMap, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
@@ -35,7 +35,7 @@ pub(crate) fn window_information<'py>(
     derivative: &str,
     var_added: Option<&Bound<'py, PyAny>>,
     joined: &str,
-    threads: Option<usize>,
+    threads: Option<Threads>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let lent = Lent::of(cube)?;
     let view = lent.view()?;

@@ -108,6 +108,23 @@ def test_mistakes_in_a_dict_name_its_key_and_no_line():
         hadar.size("nowhere.toml")
 
 
+def test_mistakes_in_keywords_name_them():
+    for ask, wrong, message in [
+        (hadar.size, dict(seed=-1), "seed: -1; give a whole number from 0 to"),
+        (hadar.size, dict(seed=1.5), "seed: 1.5; give a whole number"),
+        (hadar.size, dict(threads=-1), "threads: -1; give a whole number"),
+        (hadar.size, dict(threads="2"), "threads: '2'; give a whole number"),
+        (hadar.size, dict(time_limit=3), "time_limit: 3; give text"),
+        (hadar.identify, dict(bands=-3), "bands: -3; give a whole number"),
+        (hadar.identify, dict(prove="no"), "prove: 'no'; give a number, or None"),
+        (hadar.range_, dict(trials=-1), "trials: -1; give a whole number"),
+        (hadar.simulate, dict(spectra=-1), "spectra: -1; give a whole number"),
+    ]:
+        with pytest.raises(hadar.HadarError) as error:
+            ask(SMALL, **wrong)
+        assert message in str(error.value)
+
+
 def test_an_answer_is_its_json_with_names(tmp_path):
     answer = hadar.size(SMALL)
     data = answer.to_dict()
