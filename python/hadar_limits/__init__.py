@@ -5,9 +5,9 @@ Questions about a camera and a scene, as the command ``hadar`` answers them, wit
 
 Functions on arrays: :func:`planck`, :func:`local`, :func:`nearest`, :func:`matrix`, :func:`over_states` in a :class:`Scene`, and
 :func:`decompose` and :func:`window_information` of heat cubes. Wavenumbers are in cm⁻¹, temperatures in K, radiances in
-photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, cubes ``[row][column][band]`` in counts. Quantities of astropy, pint and unyt, and arrays whose attributes
-name a unit (xarray, pandas), are converted where they mean the same (temperatures, wavelengths, frequencies, percent), and else refused by
-the name of their unit.
+photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, cubes ``[row][column][band]`` in counts. Quantities of astropy, pint and unyt are converted by their own
+library, and arrays whose attributes name a unit (xarray, pandas) by its name, where they mean the same (temperatures, wavelengths,
+frequencies, percent), and else refused by the name of their unit. Masked arrays are refused: nan says what is missing.
 
 >>> import hadar_limits as hadar
 >>> answer = hadar.size({

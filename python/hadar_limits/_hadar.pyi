@@ -25,9 +25,9 @@ class Scene:
         environment_emissivity: Numbers | None = None,
         unknown: Sequence[Unknown] | None = None,
         priors: Priors | None = None,
-        lighting_total: float | None = None,
+        lighting_total: Numbers | None = None,
         temperature_range: Numbers | None = None,
-        lighting_range: tuple[float, float] | None = None,
+        lighting_range: Numbers | None = None,
         counts_per_radiance: Numbers | None = None,
         var_added: Numbers | None = None,
     ) -> Scene: ...

@@ -64,17 +64,17 @@ class DecomposeOptions(TypedDict, total=False):
 
     counts_per_radiance: Required[Numbers]
     var_added: Numbers | None
-    units_per_count: float
+    units_per_count: Numbers
     temperature_range: Numbers | None
-    lighting_total: float | None
+    lighting_total: Numbers | None
     gain: bool
-    bad_bands: Sequence[int] | Sequence[bool] | NDArray[Any] | None
+    bad_bands: Sequence[int] | Sequence[bool] | HasArray | None
     light_in_counts: bool
     prior: Numbers | None
-    emissivity_error: tuple[float, float] | None
+    emissivity_error: tuple[Numbers, Numbers] | None
     method: Literal["ml", "te", "analytic-inverse", "grey-body"]
-    potts: tuple[float, float | None] | None
-    tex_sgd: float | None
+    potts: tuple[Numbers, Numbers | None] | None
+    tex_sgd: Numbers | None
     skipping: bool
     threads: int | None
     progress: Progress | None

@@ -227,8 +227,11 @@ def _array(cube: Any, dims: tuple[str, str, str]) -> xarray.DataArray:
         if missing or cube.ndim != 3:
             raise hadar.HadarError(f"a cube over {cube.dims}; name its rows, columns and bands with dims={dims}")
         # Blocks know no unit.
-        _hadar.plain(xarray.DataArray(0.0, attrs=cube.attrs), "cube", "counts")
+        _hadar.plain(xarray.DataArray(0.0, attrs=cube.attrs) if cube.chunks else cube[:1, :1, :1], "cube", "counts")
         return cube.transpose(*dims)
+    # What has a unit or a mask would lose it here.
+    if type(cube) not in (np.ndarray, np.memmap, dask.array.Array):
+        cube = _hadar.plain(cube, "cube", "counts")
     return xarray.DataArray(cube, dims=dims)
 
 

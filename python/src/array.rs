@@ -4,13 +4,14 @@
 //! would be taken wrongly without notice is refused: masked arrays, complex numbers, text, objects.
 
 use crate::error::raised;
-use crate::quantity::{In, converted};
+use crate::quantity::{In, converted, refuse_masked};
 use hadar::Error;
 use numpy::ndarray::{ArrayD, IxDyn, arr0};
 use numpy::{
     Element, IntoPyArray as _, PyArray, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods as _,
 };
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::type_object::PyTypeInfo as _;
@@ -33,21 +34,35 @@ pub(crate) fn numbers<'py, T: Element>(
         }
     }
     let values = converted(given, what, wanted)?;
-    let given = values.as_ref().unwrap_or(given);
-    let numpy = py.import(intern!(py, "numpy"))?;
+    let array = array_of(values.as_ref().unwrap_or(given), what)?;
     let refused = |found: &str, instead: &str| raised(Error::malformed(format!("{what}: {found}"), instead));
-    if given.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
-        return Err(refused("a masked array", "say what is missing with nan: array.filled(nan)"));
-    }
-    let array = numpy.call_method1("asarray", (given,))?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if !"iuf".contains(&kind) {
         let dtype = array.getattr("dtype")?.str()?;
-        return Err(refused(&format!("an array of {dtype}"), "give real numbers, f32 or f64"));
+        return Err(refused(
+            &format!("an array of {dtype}"),
+            "give real numbers, f32 or f64, and nan for what is missing",
+        ));
     }
     let wanted = numpy::dtype::<T>(py);
-    let converted = numpy.call_method1("require", (array, wanted, ("A",)))?;
+    let numpy = py.import(intern!(py, "numpy"))?;
+    let converted = numpy.call_method1("require", (array, wanted, ("A", "E")))?;
     as_it_lies(&converted)?.ok_or_else(|| refused("no array", "give an array of numbers"))
+}
+
+/// What NumPy makes an array of, none of it under a mask.
+pub(crate) fn array_of<'py>(given: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyAny>> {
+    refuse_masked(given, what)?;
+    let numpy = given.py().import(intern!(given.py(), "numpy"))?;
+    // What is more than an array says so again once it is one.
+    let array = numpy.call_method1("asanyarray", (given,)).map_err(|error| {
+        let py = given.py();
+        let of_value = error.is_instance_of::<PyValueError>(py) || error.is_instance_of::<PyTypeError>(py);
+        let found = format!("{what}: {}", error.value(py));
+        if of_value { raised(Error::malformed(found, "give one array of numbers")) } else { error }
+    })?;
+    refuse_masked(&array, what)?;
+    Ok(array)
 }
 
 /// The array itself, if it is one of `T`, and of no class that means more by it.
@@ -75,8 +90,8 @@ pub(crate) fn list(given: &Bound<'_, PyAny>, what: &str, wanted: In) -> PyResult
 }
 
 /// A range of temperatures, K: its two ends.
-pub(crate) fn ends(given: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; 2]> {
-    let values = list(given, what, In::Kelvin)?;
+pub(crate) fn ends(given: &Bound<'_, PyAny>, what: &str, wanted: In) -> PyResult<[f64; 2]> {
+    let values = list(given, what, wanted)?;
     let found = values.len();
     values
         .try_into()

@@ -1,9 +1,9 @@
 //! Heat cubes taken apart.
 
-use crate::array::{ends, list, numbers, rows, shaped};
-use crate::error::{named, raised};
+use crate::array::{array_of, ends, list, numbers, rows, shaped};
+use crate::error::{named, raised, shown};
 use crate::lent::Lent;
-use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, RADIANCE};
+use crate::quantity::{COUNTS_SQUARED, In, PER_RADIANCE, RADIANCE, number};
 use crate::scene::bands;
 use crate::threads::{Threads, with_limits};
 use hadar::demand::Skipping;
@@ -13,7 +13,6 @@ use hadar_estimate::decompose::{
 };
 use hadar_study::budget::Limits;
 use numpy::PyUntypedArrayMethods as _;
-use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -22,7 +21,7 @@ const RANGE_K: [f64; 2] = [200.0, 400.0];
 
 /// Material, temperature and lighting of every pixel, by the names of [`Maps`].
 #[pyfunction]
-#[pyo3(signature = (cube, library, light, bands, *, counts_per_radiance, var_added=None, units_per_count=1.0,
+#[pyo3(signature = (cube, library, light, bands, *, counts_per_radiance, var_added=None, units_per_count=None,
     temperature_range=None, lighting_total=None, gain=false, bad_bands=None, light_in_counts=false, prior=None,
     emissivity_error=None, method="ml", potts=None, tex_sgd=None, skipping=true, threads=None, progress=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -34,26 +33,32 @@ pub(crate) fn decompose<'py>(
     bands: &Bound<'py, PyAny>,
     counts_per_radiance: &Bound<'py, PyAny>,
     var_added: Option<&Bound<'py, PyAny>>,
-    units_per_count: f64,
+    units_per_count: Option<&Bound<'py, PyAny>>,
     temperature_range: Option<&Bound<'py, PyAny>>,
-    lighting_total: Option<f64>,
+    lighting_total: Option<&Bound<'py, PyAny>>,
     gain: bool,
     bad_bands: Option<&Bound<'_, PyAny>>,
     light_in_counts: bool,
     prior: Option<&Bound<'py, PyAny>>,
-    emissivity_error: Option<(f64, f64)>,
+    emissivity_error: Option<&Bound<'py, PyAny>>,
     method: &str,
-    potts: Option<(f64, Option<f64>)>,
-    tex_sgd: Option<f64>,
+    potts: Option<&Bound<'py, PyAny>>,
+    tex_sgd: Option<&Bound<'py, PyAny>>,
     skipping: bool,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let temperature_k = temperature_range.map_or(Ok(RANGE_K), |given| ends(given, "temperature_range"))?;
+    let temperature_k =
+        temperature_range.map_or(Ok(RANGE_K), |given| ends(given, "temperature_range", In::Kelvin))?;
     let lent = Lent::of(cube)?;
     let view = lent.view()?;
     let bands = self::bands(bands)?;
     let bad_bands = bad_bands.map_or(Ok(Vec::new()), |given| left_out(given, bands.len()))?;
+    let one = |given: Option<&Bound<'_, PyAny>>, what: &str| -> PyResult<Option<f64>> {
+        given.map(|given| number(given, what, In::One)).transpose()
+    };
+    let (units_per_count, lighting_total) =
+        (one(units_per_count, "units_per_count")?.unwrap_or(1.0), one(lighting_total, "lighting_total")?);
     let each = |given: &Bound<'_, PyAny>, what: &str| -> PyResult<Vec<f64>> {
         let stated = if what == "var_added" { COUNTS_SQUARED } else { PER_RADIANCE };
         let alone = numbers::<f64>(given, what, stated)?.ndim() == 0;
@@ -73,20 +78,32 @@ pub(crate) fn decompose<'py>(
         _ => rows(light, "light", lit)?.into_iter().map(kind).collect::<Vec<_>>(),
     };
     let method = named("method", method, &Method::ALL, Method::name).map_err(raised)?;
-    let spatial = match (potts, tex_sgd) {
+    let spatial = match (potts, one(tex_sgd, "tex_sgd")?) {
         (None, None) => None,
-        (Some((weight, temperature_step_k)), None) => {
-            Some(SpatialPrior::Potts { weight, temperature_step_k })
+        (Some(given), None) => {
+            let (weight, step) = pair(given, "potts", "give (weight, step in K), or None as the step")?;
+            let step = Some(step).filter(|step| !step.is_none());
+            Some(SpatialPrior::Potts {
+                weight: number(&weight, "potts[0]", In::One)?,
+                temperature_step_k: step.map(|step| number(&step, "potts[1]", In::Kelvins)).transpose()?,
+            })
         }
         (None, Some(weight)) => Some(SpatialPrior::TexSgd { weight }),
         (Some(_), Some(_)) => {
             return Err(raised(Error::malformed("two priors over the image", "take potts or tex_sgd")));
         }
     };
+    let library_error = |given: &Bound<'py, PyAny>| -> PyResult<LibraryError> {
+        let what = "emissivity_error";
+        let (relative, correlation) = pair(given, what, "give (share, correlation length in cm^-1)")?;
+        Ok(LibraryError {
+            relative: number(&relative, "emissivity_error[0]", In::One)?,
+            correlation_cm1: number(&correlation, "emissivity_error[1]", In::PerCentimetres)?,
+        })
+    };
     let options = Options {
         prior: prior.map_or(Ok(Vec::new()), |given| list(given, "prior", In::One))?,
-        library_error: emissivity_error
-            .map(|(relative, correlation_cm1)| LibraryError { relative, correlation_cm1 }),
+        library_error: emissivity_error.map(library_error).transpose()?,
         skipping: if skipping { Skipping::On } else { Skipping::Off },
         spatial,
         ..Options::default()
@@ -113,14 +130,26 @@ pub(crate) fn decompose<'py>(
     given_back(py, lent.pixels(), surroundings.len(), maps)
 }
 
+/// Two values.
+fn pair<'py>(
+    given: &Bound<'py, PyAny>,
+    what: &str,
+    instead: &str,
+) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    let found = given.try_iter().and_then(|items| items.take(3).collect::<PyResult<Vec<_>>>());
+    match found.as_deref() {
+        Ok([one, other]) => Ok((one.clone(), other.clone())),
+        _ => Err(raised(Error::malformed(format!("{what}: {}", shown(given)), instead))),
+    }
+}
+
 /// Bands that are left out: their places, or a mask of all of them.
 fn left_out(given: &Bound<'_, PyAny>, bands: usize) -> PyResult<Vec<usize>> {
-    let numpy = given.py().import(intern!(given.py(), "numpy"))?;
     let refused = |found: String| {
         let instead = "name bands by numbers from 0, or give a mask with a truth value for each";
         Err(raised(Error::malformed(format!("bad_bands: {found}"), instead)))
     };
-    let array = numpy.call_method1("asarray", (given,))?;
+    let array = array_of(given, "bad_bands")?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if kind == "b" {
         let mask: Vec<bool> = array.call_method0("ravel")?.call_method0("tolist")?.extract()?;

@@ -1,13 +1,16 @@
 //! Scenarios and rules as Python says them: a file, text, or a dict.
 
 use crate::error::raised;
-use crate::quantity::{as_written, parts};
+use crate::quantity::{as_written, parts, refuse_masked};
 use hadar::error::{Error, Result};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::{Path, PathBuf};
 use toml::{Table, Value};
+
+/// No scenario is as deep, and Rust's stack deeper.
+const DEEPEST: usize = 32;
 
 /// What is asked, before it is read.
 #[derive(Debug, Clone)]
@@ -22,7 +25,7 @@ impl Question {
     /// A path-like object is a file; so is a string on one line without `=`, or one that ends in `.toml`. Any other is TOML.
     pub(crate) fn of(given: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(dict) = given.cast::<PyDict>() {
-            let text = toml::to_string(&table(dict, "")?);
+            let text = toml::to_string(&table(dict, "", DEEPEST)?);
             let text = text.map_err(|error| {
                 raised(Error::malformed(
                     format!("the dict cannot be written as TOML ({error})"),
@@ -70,7 +73,7 @@ impl Question {
     }
 }
 
-fn table(dict: &Bound<'_, PyDict>, key: &str) -> PyResult<Table> {
+fn table(dict: &Bound<'_, PyDict>, key: &str, deepest: usize) -> PyResult<Table> {
     let mut table = Table::new();
     for (name, value) in dict {
         let Ok(name) = name.extract::<String>() else {
@@ -78,19 +81,26 @@ fn table(dict: &Bound<'_, PyDict>, key: &str) -> PyResult<Table> {
             return Err(raised(Error::malformed(found, "name tables and keys by strings")));
         };
         let full = if key.is_empty() { name.clone() } else { format!("{key}.{name}") };
-        table.insert(name, of_object(&value, &full)?);
+        table.insert(name, of_object(&value, &full, deepest)?);
     }
     Ok(table)
 }
 
 /// Plain values; numbers of NumPy, paths and days are taken for what they say.
-fn of_object(given: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
+fn of_object(given: &Bound<'_, PyAny>, key: &str, deepest: usize) -> PyResult<Value> {
+    let Some(deepest) = deepest.checked_sub(1) else {
+        let found = format!("tables and lists more than {DEEPEST} deep");
+        return Err(raised(
+            Error::malformed(found, "write no dict or list that contains itself").for_key(key),
+        ));
+    };
+    refuse_masked(given, key)?;
     let items = |items: Vec<Bound<'_, PyAny>>| -> PyResult<Value> {
-        let each = items.iter().enumerate().map(|(i, item)| of_object(item, &format!("{key}[{i}]")));
+        let each = items.iter().enumerate().map(|(i, item)| of_object(item, &format!("{key}[{i}]"), deepest));
         Ok(Value::Array(each.collect::<PyResult<_>>()?))
     };
     if let Ok(dict) = given.cast::<PyDict>() {
-        return table(dict, key).map(Value::Table);
+        return table(dict, key, deepest).map(Value::Table);
     }
     if given.is_instance_of::<PyBool>() {
         return given.extract().map(Value::Boolean);
@@ -112,21 +122,21 @@ fn of_object(given: &Bound<'_, PyAny>, key: &str) -> PyResult<Value> {
     if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
         return items(given.try_iter()?.collect::<PyResult<_>>()?);
     }
-    if let Some((values, unit)) = parts(given)? {
-        let value = of_object(&values, key)?;
-        let text = match value {
-            Value::Integer(number) => number.to_string(),
-            Value::Float(number) => number.to_string(),
+    if let Some(parts) = parts(given)? {
+        let number = match of_object(&parts.values, key, deepest)? {
+            Value::Integer(number) => number as f64,
+            Value::Float(number) => number,
             _ => {
-                let found = format!("an array in `{unit}`");
+                let found = format!("an array in `{}`", parts.unit);
                 let instead = "write a list of texts, a number and its unit in each";
                 return Err(raised(Error::malformed(found, instead).for_key(key)));
             }
         };
-        return Ok(Value::String(format!("{text} {}", as_written(&unit))));
+        let (number, unit) = as_written(&parts, number)?;
+        return Ok(Value::String(format!("{number} {unit}")));
     }
     if given.hasattr("tolist")? {
-        return of_object(&given.call_method0("tolist")?, key);
+        return of_object(&given.call_method0("tolist")?, key, deepest);
     }
     if given.hasattr("isoformat")? {
         let text: String = given.call_method0("isoformat")?.extract()?;

@@ -99,9 +99,9 @@ impl Scene {
         environment_emissivity: Option<&Bound<'_, PyAny>>,
         unknown: Option<Vec<String>>,
         priors: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        lighting_total: Option<f64>,
+        lighting_total: Option<&Bound<'_, PyAny>>,
         temperature_range: Option<&Bound<'_, PyAny>>,
-        lighting_range: Option<[f64; 2]>,
+        lighting_range: Option<&Bound<'_, PyAny>>,
         counts_per_radiance: Option<&Bound<'_, PyAny>>,
         var_added: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
@@ -117,7 +117,11 @@ impl Scene {
         };
         let temperature = number(temperature, "temperature", In::Kelvin)?;
         let temperature_range =
-            temperature_range.map(|given| ends(given, "temperature_range")).transpose()?;
+            temperature_range.map(|given| ends(given, "temperature_range", In::Kelvin)).transpose()?;
+        let lighting_range =
+            lighting_range.map(|given| ends(given, "lighting_range", In::One)).transpose()?;
+        let lighting_total =
+            lighting_total.map(|given| number(given, "lighting_total", In::One)).transpose()?;
         let counts_per_radiance = counts_per_radiance
             .map(|given| number(given, "counts_per_radiance", PER_RADIANCE))
             .transpose()?;

@@ -1,7 +1,12 @@
 """Functions on arrays, held against the same equations in NumPy."""
 
+import astropy.units as u
+import dask.array.ma
 import numpy as np
+import pandas
 import pytest
+import xarray
+from astropy.utils.masked import Masked
 
 import hadar_limits as hadar
 
@@ -74,6 +79,47 @@ def test_what_would_be_taken_wrongly_is_refused():
             refused()
         assert message in str(error.value), str(error.value)
     assert np.isnan(hadar.planck(1000.0, [np.nan, 300.0])).tolist() == [True, False]
+
+
+def test_a_mask_is_never_dropped():
+    hidden = np.arange(NU.size) == 3
+    masked = np.ma.array(METAL, mask=hidden)
+    nullable = pandas.array(METAL, dtype="Float64")
+    nullable[3] = pandas.NA
+    behind = dask.array.ma.masked_array(METAL, mask=hidden)
+    for wrong in (masked, Masked(METAL, mask=hidden), Masked(METAL * u.one, mask=hidden), nullable, pandas.Series(nullable), behind):
+        # What pandas calls missing may come as nan, which no emissivity is.
+        for ask in (lambda: hadar.local(SKIN, wrong, SCENE), lambda: hadar.matrix([SKIN, wrong], SCENE)):
+            with pytest.raises(hadar.HadarError, match="masked|nan|NaN"):
+                ask()
+    cube = np.full((5, 5, 3), 100.0)
+    for wrong in (Masked(cube, mask=cube > 0), Masked(cube * u.ct, mask=cube > 0), [np.ma.array(row, mask=row > 0) for row in cube]):
+        with pytest.raises(hadar.HadarError, match="cube: a masked array"):
+            hadar.window_information(wrong)
+    for wrong in (np.ma.masked, Masked(310.0, mask=True), Masked(310.0 * u.K, mask=True)):
+        with pytest.raises(hadar.HadarError, match="masked"):
+            hadar.Scene(NU, wrong)
+    light = hadar.planck(NU, 290.0)
+    with pytest.raises(hadar.HadarError, match="bad_bands: a masked array"):
+        hadar.decompose(light, [SKIN], [light], NU, counts_per_radiance=1.0, bad_bands=np.ma.array([1, 2], mask=[0, 1]))
+
+
+def test_what_numpy_makes_no_array_of_is_refused_by_its_name():
+    for wrong in ([[1.0], [1.0, 2.0]], [1.0, {}], xarray.Dataset({"a": 3.0})):
+        with pytest.raises(hadar.HadarError, match="nu: "):
+            hadar.planck(wrong, 300.0)
+
+
+def test_lists_without_end_are_refused():
+    endless, deep = [1.0], 1.0
+    endless.append(endless)
+    for _ in range(100_000):
+        deep = [deep]
+    for wrong in (endless, deep):
+        with pytest.raises(hadar.HadarError, match="nu: lists in lists without end"):
+            hadar.planck(wrong, 300.0)
+        with pytest.raises(hadar.HadarError, match="lists in lists without end"):
+            hadar.local(wrong, SKIN, SCENE)
 
 
 def test_local_distance_is_that_of_a_qr_decomposition():

@@ -11,8 +11,12 @@ import hadar_limits as hadar
 pytest.importorskip("distributed")
 pytest.importorskip("xarray")
 
+import astropy.units as u
 import dask.array
+import dask.array.ma
+import pint
 import xarray
+from astropy.utils.masked import Masked
 from distributed import Client, Event, LocalCluster
 
 import hadar_limits.dask
@@ -244,3 +248,23 @@ def test_units_of_a_cube_and_of_bands_hold_in_chunks_too():
         hadar.dask.decompose(given, LIBRARY, LIGHT, NU, **OPTIONS)
     with pytest.raises(hadar.HadarError, match="give counts"):
         hadar.dask.window_information(given)
+
+
+def test_what_a_cube_says_besides_is_not_lost_in_chunks():
+    counts = cube()
+    for wrong, message in [
+        (counts * u.K, "the unit `K`"),
+        (xarray.DataArray(pint.UnitRegistry().Quantity(counts, "K"), dims=("y", "x", "band")), "the unit `kelvin`"),
+        (Masked(counts, mask=counts > 0), "a masked array"),
+        (np.ma.array(counts, mask=counts > 0), "a masked array"),
+    ]:
+        for ask in (lambda: hadar.dask.decompose(wrong, LIBRARY, LIGHT, NU, **OPTIONS), lambda: hadar.dask.window_information(wrong)):
+            with pytest.raises(hadar.HadarError, match=message):
+                ask().compute(scheduler="synchronous")
+    # In an xarray a mask is nan.
+    hidden = np.arange(NU.size) == 3
+    chunked = dask.array.ma.masked_array(dask.array.from_array(counts), mask=hidden + 0 * counts > 0)
+    found = [hadar.dask.decompose(each, LIBRARY, LIGHT, NU, **OPTIONS) for each in (chunked, np.where(hidden, np.nan, counts))]
+    np.testing.assert_array_equal(*(each.compute(scheduler="synchronous").temperature_k for each in found))
+    counted = hadar.dask.window_information(counts * u.ct)
+    np.testing.assert_array_equal(counted.full, hadar.dask.window_information(counts).full)

@@ -108,6 +108,16 @@ def test_mistakes_in_a_dict_name_its_key_and_no_line():
         hadar.size("nowhere.toml")
 
 
+def test_a_dict_without_end_is_refused():
+    itself, deep = dict(SMALL), 1
+    itself["x"] = itself
+    for _ in range(100_000):
+        deep = [deep]
+    for wrong in (itself, dict(SMALL, target=deep), dict(SMALL, target=(deep,))):
+        with pytest.raises(hadar.HadarError, match="more than 32 deep; write no dict or list that contains itself"):
+            hadar.size(wrong)
+
+
 def test_mistakes_in_keywords_name_them():
     for ask, wrong, message in [
         (hadar.size, dict(seed=-1), "seed: -1; give a whole number from 0 to"),

@@ -93,6 +93,67 @@ def test_what_means_something_else_is_refused(what, call):
         call()
 
 
+@pytest.mark.parametrize(
+    ("what", "call"),
+    [
+        ("temperature: the unit `C`", lambda: scene(37.0 * u.C)),
+        ("temperature: the unit `F`", lambda: scene(98.6 * u.F)),
+        ("temperature: the unit `coulomb`", lambda: scene(UR.Quantity(37.0, "C"))),
+        ("temperature: the unit `farad`", lambda: scene(UR.Quantity(98.6, "F"))),
+        ("temperature: the unit `k`", lambda: scene(xarray.DataArray(310.0, attrs={"units": "k"}))),
+        ("nu: the unit `Mm`", lambda: hadar.planck(xarray.DataArray(NU, attrs={"units": "Mm"}), 300.0)),
+        ("nu: the unit `rad / s`", lambda: hadar.planck(NU * u.rad / u.s, 300.0)),
+        ("nu: the unit `radian / second`", lambda: hadar.planck(UR.Quantity(NU, "radian/second"), 300.0)),
+        ("nu: the unit `revolutions_per_minute`", lambda: hadar.planck(UR.Quantity(NU, "rpm"), 300.0)),
+        ("cube: the unit `cT`", lambda: hadar.window_information(np.ones((9, 9, 3)) * u.cT)),
+        ("cube: the unit `Ph`", lambda: hadar.window_information(np.ones((9, 9, 3)) * u.Ph)),
+        ("temperature: a list of quantities", lambda: hadar.planck(NU, [300.0] * 11 + [20.0 * u.deg_C])),
+        ("lighting_total: the unit `m`", lambda: scene(lighting_total=xarray.DataArray(0.5, attrs={"units": "m"}))),
+    ],
+)
+def test_letters_keep_their_case(what, call):
+    with pytest.raises(hadar.HadarError, match=what):
+        call()
+
+
+def test_quantities_are_converted_by_their_own_library():
+    assert same(scene(310150.0 * u.mK), scene())
+    assert same(scene(np.float32(310.15) * u.K), scene(float(np.float32(310.15))))
+    assert same(scene(UR.Quantity(310150, "millikelvin")), scene())
+    assert same(scene(lighting_total=xarray.DataArray(50.0, attrs={"units": "percent"})), scene(lighting_total=0.5))
+    expected = hadar.planck(NU, 300.0)
+    for given in (1e-8 / NU * u.Mm, (1e8 / NU) * u.AA, UR.Quantity(1e8 / NU, "angstrom"), UR.Quantity(0.1 * NU, "1/mm")):
+        assert np.allclose(hadar.planck(given, 300.0), expected, rtol=1e-11, atol=0.0)
+    with pytest.raises(hadar.HadarError, match="the unit `delta_degree_Celsius`"):
+        hadar.planck(NU, UR.Quantity(np.full(12, 20.0), "delta_degC"))
+    for pair in (2.0 * u.K, 2000.0 * u.mK, UR.Quantity(2.0, "delta_degC")):
+        scene(priors={"temperature": pair})
+
+
+def test_pairs_of_a_decomposition_have_units():
+    light, library = hadar.planck(NU, 290.0), [E, np.linspace(0.9, 0.6, len(NU))]
+    cube = 1e-12 * np.gradient(NU) * hadar.planck(NU, np.array([[310.0, 311.0], [312.0, 313.0]])[..., None])
+
+    def apart(**more):
+        return hadar.decompose(cube, library, [light], NU, counts_per_radiance=1e-12, **more).p_value
+
+    stated = apart(emissivity_error=(1.0 * u.percent, 50.0 / u.cm))
+    assert np.array_equal(stated, apart(emissivity_error=(0.01, 50.0)))
+    assert np.array_equal(apart(potts=(1.0, 2.0 * u.K)), apart(potts=(1.0, 2.0)))
+    for wrong, message in [
+        (dict(emissivity_error=(0.01, 0.5 * u.um)), r"emissivity_error\[1\]: the unit `um`"),
+        (dict(emissivity_error=(1.0 * u.K, 50.0)), r"emissivity_error\[0\]: the unit `K`"),
+        (dict(emissivity_error=0.01), r"emissivity_error: 0.01; give \(share"),
+        (dict(emissivity_error=(0.01,)), "emissivity_error: a value of type tuple; give"),
+        (dict(potts=(1.0, 2.0 * u.deg_C)), r"potts\[1\]: the unit `deg_C`"),
+        (dict(potts=1.0), r"potts: 1.0; give \(weight"),
+        (dict(threads=-1), "threads: -1; give a whole number"),
+        (dict(threads="2"), "threads: '2'; give a whole number"),
+    ]:
+        with pytest.raises(hadar.HadarError, match=message):
+            apart(**wrong)
+
+
 def test_a_prior_is_a_difference():
     plain = scene(priors={"temperature": 2.0})
     pair = [hadar.local(E, E - 0.01, one).distance for one in (plain, scene(priors={"temperature": 2.0 * u.K}))]
@@ -194,3 +255,22 @@ def test_a_scenario_has_quantities_too():
         assert abs(found.pairs[0].distance_nearest / hadar.size(said).pairs[0].distance_nearest - 1) < 1e-9
     with pytest.raises(hadar.HadarError, match="target.temperature"):
         hadar.size({**said, "target": {"material": "skin", "temperature": 37.0 * u.m}})
+
+
+def test_a_length_is_one_in_any_unit_of_it():
+    said = {"target": {"material": "skin", "temperature": "37 degC"}, "alternatives": {"materials": ["aluminium"]}}
+
+    def distance(given):
+        scenario = {**said, "target": {**said["target"], "distance": given}, "camera": {"preset": "flir-a325sc"}}
+        return hadar.size(scenario).verdict.lower
+
+    expected = distance("30 m")
+    assert distance("3 km") != expected
+    metres = [30.0 * u.m, 0.03 * u.km, 3000.0 * u.cm, 3e-5 * u.Mm, 3e10 * u.nm]
+    metres += [UR.Quantity(*each) for each in ((30, "m"), (0.03, "km"), (3000, "cm"), (30 / 0.3048, "foot"), (3e-5, "Mm"))]
+    metres += [xarray.DataArray(30.0, attrs={"units": unit}) for unit in ("m", "meter")]
+    for given in metres:
+        assert abs(distance(given) / expected - 1) < 1e-9, given
+    for wrong in (37.0 * u.C, UR.Quantity(37.0, "C"), UR.Quantity(37.0, "delta_degC"), xarray.DataArray(30.0, attrs={"units": "Mm"})):
+        with pytest.raises(hadar.HadarError, match="is not a unit of length"):
+            distance(wrong)
