@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hadar_limits import _hadar
+from hadar_limits._order import as_cube_has, bands_last, in_order, left_out
 from hadar_limits._types import DecomposeOptions, Numbers, WindowOptions
 
 #: The material of a pixel that has none.
@@ -25,46 +26,6 @@ FLAGS = {
     "skipped": 64,
     "temperature-unknown": 128,
 }
-
-
-#: Coordinates that say where bands are, beside that of their dimension: how their names begin.
-_SPECTRAL = ("wavelength", "wavenumber", "frequency")
-
-
-def in_order(given: Any, bands: Any, what: str, dim: Any = None, at_nodes: bool = False) -> Any:
-    """An array of xarray, or a list of them, with its bands in rising wavenumber, as its coordinates say; any other as it is.
-
-    A coordinate over the bands (that of their dimension, or one whose name begins with wavelength, wavenumber or frequency) states
-    its unit in ``attrs["units"]`` and must be that of ``bands``. Numbers 0, 1, 2 … or 1, 2, 3 … count the bands.
-    """
-    if isinstance(given, (list, tuple)) and any(hasattr(one, "coords") for one in given):
-        return [in_order(one, bands, f"{what}[{place}]", dim, at_nodes) for place, one in enumerate(given)]
-    if not (hasattr(given, "dims") and hasattr(given, "coords")) or not given.dims:
-        return given
-    dim = given.dims[-1] if dim is None else dim
-    order, counted = None, None
-    for name, coordinate in given.coords.items():
-        spectral = str(name).lower().startswith(_SPECTRAL)
-        if spectral and coordinate.dims and coordinate.dims != (dim,):
-            raise _hadar.HadarError(f"{what}: its bands are over `{dim}`, but {name} is over {coordinate.dims}; transpose it, bands last")
-        if coordinate.dims != (dim,) or not (name == dim or spectral):
-            continue
-        said, values = f"{what}.{name}", coordinate.values
-        stated = [coordinate.attrs.get(unit) for unit in ("units", "unit")]
-        if any(unit not in (None, "", "1") for unit in stated) or hasattr(coordinate.data, "units"):
-            order = _hadar.order_of_bands(coordinate, bands, said, at_nodes)
-        elif values.dtype.kind in "iu" and np.array_equal(np.sort(values) - (values.min(initial=1) > 0), np.arange(values.size)):
-            counted = np.argsort(values)
-        else:
-            try:
-                order = _hadar.order_of_bands(values, bands, said, at_nodes)
-            except _hadar.HadarError as error:
-                raise _hadar.HadarError(
-                    f'{said}: a coordinate without a unit that is not that of the bands in cm^-1; write .attrs["units"] = "um" or '
-                    f'"cm^-1" to it, or leave it out by .drop_vars("{name}") if the order is that of the bands'
-                ) from error
-    order = counted if order is None else order
-    return given if order is None or np.array_equal(order, np.arange(len(order))) else given.isel({dim: order})
 
 
 class _Arrays:
@@ -147,7 +108,7 @@ def decompose(cube: Numbers, library: Numbers, light: Numbers, bands: Numbers, *
     gain : bool
         Whether the overall scale is unknown.
     bad_bands : list of int, or truth values (bands,)
-        Bands that are left out, counted from 0, or a mask of them.
+        Bands that are left out, counted from 0 as the cube has them, or a mask of them.
     prior : (materials,)
         Prior probabilities of the materials, in any scale; equal where silent.
     emissivity_error : (relative, correlation)
@@ -162,10 +123,16 @@ def decompose(cube: Numbers, library: Numbers, light: Numbers, bands: Numbers, *
     progress : callable
         Called with (rows done, rows) now and then; what it raises ends the call.
 
-    Arrays of xarray that have a coordinate over their bands are taken in its order: see :func:`hadar_limits.dask.decompose`.
+    Arrays of xarray and pandas may have their dimensions and bands in any order. Which dimension is which is said by its name (``y``,
+    ``x``, ``band`` and what else they are called), else the bands are last. Where bands are is said by a coordinate over them (that of
+    their dimension, or another with a spectral unit in ``attrs["units"]``), or by an index or columns in cm⁻¹; it must be that of
+    ``bands``, each within half its width. Values without such labels are in the order of ``bands``.
 
     Source: paper S44, S48; as ``hadar decompose``.
     """
+    cube = bands_last(cube)
+    if "bad_bands" in options:
+        options["bad_bands"] = left_out(options["bad_bands"], cube, bands)
     cube = in_order(cube, bands, "cube")
     library = in_order(library, bands, "library", at_nodes=True)
     light = in_order(light, bands, "light", at_nodes=not options.get("light_in_counts"))
@@ -192,5 +159,10 @@ def window_information(cube: Numbers, window: tuple[int, int] = (5, 5), **option
     joined : {"sum-of-readings", "one-reading"}
         What the electronic noise of joined samples is.
     threads : int
+
+    Dimensions and bands of arrays of xarray and pandas are told by their labels, as of :func:`decompose`.
     """
+    cube = bands_last(cube)
+    if "var_added" in options:
+        options["var_added"] = as_cube_has(options["var_added"], cube, None, "var_added")
     return Windows(**_hadar.window_information(cube, window, **options))

@@ -34,7 +34,7 @@ except ImportError as error:
 
 import hadar_limits as hadar
 from hadar_limits import _hadar
-from hadar_limits._cubes import in_order
+from hadar_limits._order import as_cube_has, in_order, left_out, order_of, taken
 from hadar_limits._types import Cell, DecomposeOptions, Derivative, NoiseOptions, Numbers
 
 #: Fields of a decomposition: type, unit, what it is.
@@ -260,12 +260,9 @@ def decompose(
     Parameters
     ----------
     cube : xarray.DataArray, dask array or array of (rows, columns, bands)
-        All bands of a pixel are put into one chunk. A coordinate of an xarray array over its bands says where they are, and with
-        it their order: that of their dimension, or one called ``wavelength``, ``wavenumber`` or ``frequency``, with the unit in
-        ``attrs["units"]``. They are put in rising wavenumber, and must be those of ``bands``, each within half its width. So are
-        ``library`` and ``light`` where they are xarray arrays. Lists over bands among the options have the order of ``bands``.
+        All bands of a pixel are put into one chunk.
     library, light, bands, options
-        As :func:`hadar_limits.decompose`; every task has one thread.
+        As :func:`hadar_limits.decompose`, whose rules of labels hold here too; every task has one thread.
     dims : names of rows, columns and bands
     names : names of the library's materials, kept with the answer
     overlap : int
@@ -281,7 +278,10 @@ def decompose(
         same bits.
     """
     bands = _hadar.plain(bands, "bands", "cm^-1")
-    data = in_order(_array(cube, dims), bands, "cube", dims[2])
+    data = _array(cube, dims)
+    if "bad_bands" in options:
+        options["bad_bands"] = left_out(options["bad_bands"], data, bands, dims[2])
+    data = taken(data, order_of(data, bands, "cube", dim=dims[2]), dims[2])
     in_counts = bool(options.get("light_in_counts"))
     library = _hadar.plain(in_order(library, bands, "library", at_nodes=True), "library", "1")
     light = _hadar.plain(in_order(light, bands, "light", at_nodes=not in_counts), "light", "counts" if in_counts else "radiance")
@@ -347,6 +347,7 @@ def window_information(
     data = _array(cube, dims)
     rows, columns, band = dims
     options = {"threads": 1, "derivative": derivative} | options
+    options["var_added"] = as_cube_has(options.get("var_added"), data, None, "var_added", band)
     names = [*cells, "photons"]
     margin = _MARGINS.get(derivative, 0)
     if data.sizes[rows] < window[0] or data.sizes[columns] < window[1] + 2 * margin:

@@ -144,7 +144,8 @@ fn pair<'py>(
 }
 
 /// Bands that are left out: their places, or a mask of all of them.
-fn left_out(given: &Bound<'_, PyAny>, bands: usize) -> PyResult<Vec<usize>> {
+#[pyfunction]
+pub(crate) fn left_out(given: &Bound<'_, PyAny>, bands: usize) -> PyResult<Vec<usize>> {
     let refused = |found: String| {
         let instead = "name bands by numbers from 0, or give a mask with a truth value for each";
         Err(raised(Error::malformed(format!("bad_bands: {found}"), instead)))

@@ -29,7 +29,7 @@ mod _hadar {
     #[pymodule_export]
     use crate::answer::{Answer, identify, range_, rule, simulate, size};
     #[pymodule_export]
-    use crate::decompose::decompose;
+    use crate::decompose::{decompose, left_out};
     #[pymodule_export]
     use crate::error::HadarError;
     #[pymodule_export]

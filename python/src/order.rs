@@ -1,6 +1,6 @@
 //! Arrays over bands whose coordinate says where each band is: in which order they are to be read.
 
-use crate::array::{list, numbers, shaped};
+use crate::array::{as_it_lies, list, numbers, shaped};
 use crate::error::{named, raised};
 use crate::quantity::{In, RADIANCE};
 use crate::scene::bands;
@@ -10,7 +10,6 @@ use hadar::words::significant;
 use numpy::{PyArrayDyn, PyUntypedArrayMethods as _};
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
 
 const WANTED: [(In, &str); 4] =
     [(In::PerCentimetre, "cm^-1"), (In::One, "1"), (In::Counts, "counts"), (RADIANCE, "radiance")];
@@ -27,25 +26,21 @@ pub(crate) fn plain<'py>(
     shaped(given.py(), values.shape(), values.as_array().iter().copied().collect())
 }
 
-/// An array of xarray, or a list of them, with its bands in the order of `bands`, as its coordinates say; any other as it is.
+/// An array of xarray or pandas, or a list of them, with its bands in the order of `bands`, as its labels say; any other as it is.
 pub(crate) fn in_order<'py>(
     given: &Bound<'py, PyAny>,
     bands: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
     what: &str,
     at_nodes: bool,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let py = given.py();
-    let is_list = given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>();
-    if !is_list && !given.hasattr(intern!(py, "coords"))? {
+    if as_it_lies::<f64>(given)?.is_some() {
         return Ok(given.clone());
     }
-    let named = PyDict::new(py);
-    named.set_item("at_nodes", at_nodes)?;
-    let cubes = py.import(intern!(py, "hadar_limits._cubes"))?;
-    cubes.call_method(intern!(py, "in_order"), (given, bands()?, what), Some(&named))
+    let order = given.py().import(intern!(given.py(), "hadar_limits._order"))?;
+    order.call_method1(intern!(given.py(), "in_order"), (given, bands()?, what, at_nodes))
 }
 
-/// Places in rising wavenumber of the bands of an array whose coordinate says where they are, each no further from the centre of its band
+/// Places in the order of `bands` of those of an array whose coordinate says where they are, each no further from the centre of its band
 /// than half of its width, as heat cubes in files are read. `at_nodes`: the array is one of spectra at the nodes of the bands.
 #[pyfunction]
 pub(crate) fn order_of_bands(
@@ -56,23 +51,32 @@ pub(crate) fn order_of_bands(
 ) -> PyResult<Vec<usize>> {
     let bands = self::bands(bands)?;
     let own = list(coordinate, what, In::PerCentimetre)?;
-    if at_nodes && !bands.one_node_per_band() {
-        let found = format!("{what}: a coordinate of spectra at the nodes of bands that are ranges");
-        return Err(raised(Error::malformed(found, "give the values alone, in the order of the nodes")));
-    }
-    if own.len() != bands.len() {
+    let expected: Vec<(f64, f64)> = match at_nodes && !bands.one_node_per_band() {
+        // Nodes are as near as the bands are wide to each other: their own numbers, but for rounding.
+        true => bands.nodes_cm1().iter().map(|node| (*node, 1e-6 * node)).collect(),
+        false => {
+            let each = bands.bands().iter().zip(bands.widths_cm1());
+            each.map(|(band, width)| (band.center_cm1, 0.5 * width.max(band.high_cm1 - band.low_cm1)))
+                .collect()
+        }
+    };
+    if own.len() != expected.len() {
         let what = format!("bands by {what}");
-        return Err(raised(Error::Length { what, found: own.len(), expected: bands.len() }));
+        return Err(raised(Error::Length { what, found: own.len(), expected: expected.len() }));
     }
     for nu in &own {
         check::positive(what, *nu, "cm^-1").map_err(raised)?;
     }
-    let mut order: Vec<usize> = (0..own.len()).collect();
-    let at = |band: &usize| own.get(*band).copied().unwrap_or(f64::NAN);
-    order::ascending(&mut order, at);
-    for ((place, band), width) in order.iter().zip(bands.bands()).zip(bands.widths_cm1()) {
-        let half = 0.5 * width.max(band.high_cm1 - band.low_cm1);
-        let (own, centre) = (at(place), band.center_cm1);
+    let sorted = |at: &dyn Fn(usize) -> f64| {
+        let mut order: Vec<usize> = (0..own.len()).collect();
+        order::ascending(&mut order, |place| at(*place));
+        order
+    };
+    let own_at = |place: usize| own.get(place).copied().unwrap_or(f64::NAN);
+    let mut order = vec![0; own.len()];
+    let at = |place: usize| expected.get(place).copied().unwrap_or((f64::NAN, 0.0));
+    for (place, band) in sorted(&own_at).into_iter().zip(sorted(&|band| at(band).0)) {
+        let (own, (centre, half)) = (own_at(place), at(band));
         if (own - centre).abs() > half {
             let (own, centre) = (significant(own, 6), significant(centre, 6));
             let found = format!("{what}: band {place} is at {own} cm^-1, but at {centre} cm^-1 in bands");
@@ -80,6 +84,9 @@ pub(crate) fn order_of_bands(
                 found,
                 "give the bands of the array, or mend its coordinate",
             )));
+        }
+        if let Some(ordered) = order.get_mut(band) {
+            *ordered = place;
         }
     }
     Ok(order)

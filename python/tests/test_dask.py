@@ -221,14 +221,12 @@ def test_coordinates_that_contradict_the_bands_are_refused():
         (over(np.where(NU == 1000.0, np.nan, NU), "band", "cm^-1"), NU, "NaN"),
         (good, NU[:-1], "bands by cube.wavelength"),
         (good, NU * 1.2, "but at"),
-        (good.transpose("band", "y", "x"), NU, None),
+        (good.assign_coords(wavelength=("y", np.arange(12.0))), NU, "one dimension of bands"),
     ]
     for given, bands, message in refusals:
         library, light = LIBRARY[:, : bands.size], LIGHT[:, : bands.size]
         for decompose in (hadar.decompose, hadar.dask.decompose):
-            if message is None and decompose is hadar.dask.decompose:
-                continue
-            with pytest.raises(hadar.HadarError, match=message or "transpose it"):
+            with pytest.raises(hadar.HadarError, match=message):
                 decompose(given, library, light, bands, **OPTIONS)
 
 
