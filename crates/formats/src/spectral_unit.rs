@@ -71,6 +71,7 @@ impl SpectralUnit {
     /// assert_eq!(SpectralUnit::spelt("(µm)"), Some(SpectralUnit::Micrometre));
     /// assert_eq!(SpectralUnit::spelt("[cm^-1]"), Some(SpectralUnit::PerCentimetre));
     /// assert_eq!(SpectralUnit::spelt("furlong"), None);
+    /// assert_eq!(SpectralUnit::spelt("Mm"), None);
     /// ```
     #[must_use]
     pub fn spelt(text: &str) -> Option<Self> {
@@ -126,7 +127,8 @@ impl SpectralUnit {
 /// A spelling without what only decorates it; none of a text too long for a unit.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 40;
-    if text.len() > LONGEST {
+    // Capitals say nothing, as in `UM`, but for the megametre.
+    if text.len() > LONGEST || text.contains("Mm") {
         return None;
     }
     // What was written as UTF-8 and read as Latin-1: the micro sign, and the Greek letter.

@@ -289,9 +289,17 @@ pub(super) fn values(cell: &str) -> Meaning {
     };
     match (letter(before.first().unwrap_or(last)), letter(last)) {
         (Some((_, quantity)), _) if before.is_empty() => return of_letter(*quantity),
-        // `brick %R`, `brick (R)`, `brick ρ` say what the numbers are; `brick R (%)` may.
+        // `brick %R`, `brick (R)`, `brick ρ` say what the numbers are; `brick R` may.
         (_, Some((letter, quantity))) if is_marked(cell, letter) => return of_letter(*quantity),
-        (_, Some(_)) if percent => return Meaning::Unclear,
+        (_, Some((letter, quantity)))
+            if percent || (*letter != "a" && *quantity != Some(Quantity::Emissivity)) =>
+        {
+            return Meaning::Unclear;
+        }
+        // `1 - R`.
+        _ if matches!(before[..], ["1" | "one", word, ..] if letter(word).is_some()) => {
+            return Meaning::Other;
+        }
         // `R 1` and `R_brick` may be the reflectance of a sample; of emissivities they need not say it.
         (Some((_, quantity)), _) if !is_said && *quantity != Some(Quantity::Emissivity) => {
             return Meaning::Unclear;
@@ -541,6 +549,8 @@ mod tests {
             ("T_glass", Meaning::Unclear),
             ("A_brick", Meaning::Unclear),
             ("brick R (%)", Meaning::Unclear),
+            ("brick R", Meaning::Unclear),
+            ("1-R_brick", Meaning::Other),
             ("T-shirt emissivity", of(Emissivity, false, "t-shirt")),
             ("Reflectance (0-1)", of(Reflectance, false, "")),
             ("emissivity_300K", of(Emissivity, false, "emissivity-300k")),

@@ -57,7 +57,7 @@ impl BandAxis {
     }
 
     fn of_folder(source: &File, all: &[(String, Dataset)], folder: &str, bands: usize, len: u64) -> Self {
-        // MATLAB has lists of one row or one column.
+        // Some have lists of one row or one column, as MATLAB has.
         let of_bands = |name: &str| {
             let array = Array::of(source.dataset(name).ok()?).and_then(Array::with_values).ok()?;
             (array.sides == [bands] || array.matlab && band_list::is_list(&array.sides, bands))
