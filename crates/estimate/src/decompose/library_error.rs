@@ -25,7 +25,7 @@ use super::kernel::Sums;
 use super::model::{Hermite, Model};
 use super::screen::MOST_STARTS;
 use super::step::State;
-use super::thresholds::{CUT, NO_FIT};
+use super::thresholds::NO_FIT;
 use filter::{BEFORE, Found, Law, filter, logarithm_of_all, room_for};
 use hadar::aligned::Aligned;
 use hadar::correlation::matern;
@@ -36,8 +36,8 @@ pub(super) use other::Other;
 
 /// Shares of the stated error at which materials are compared, besides all of it.
 const LADDER: [f64; 5] = [0.5, 0.25, 0.125, 0.0625, 0.0];
-/// Cost beyond the best one from which on the share of the errors is no matter: more than what counts.
-const BESIDE: f64 = CUT + 6.0;
+/// Cost beyond what still counts from which on the share of the errors is no matter.
+const BESIDE: f64 = 6.0;
 /// Cost beyond what a material has at another share from which on a share is not looked at again: more than steps still bring.
 const WORSE: f64 = 10.0;
 /// Share of the χ² that a step promises which all further steps leave: C is that of the state at hand, and its contrast may grow.

@@ -2,7 +2,8 @@
 //!
 //! With Dₘ the least deviance of material m and πₘ its prior, the posterior is πₘ exp(−Dₘ/2)/Σ (profile likelihoods). The candidates are
 //! the fewest materials that hold 95 % of it. Materials are looked at in the order of their bounds ([`super::screen`]); those whose
-//! bound alone makes them e^([`CUT`]/2) times less likely than the best do not count, fitted or not.
+//! bound alone makes them e^([`super::thresholds::CUT`]/2) times less likely than the best do not count, fitted or not, unless the counts alone do not exclude
+//! the category of one that its prior makes so unlikely ([`super::possible`]).
 //!
 //! The residual is Pearson's χ² of the best, with one degree of freedom for each band less the unknowns that no limit holds.
 
@@ -16,7 +17,7 @@ use super::ranked::Ranked;
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::setting::MOST_SURROUNDINGS;
 use super::step::State;
-pub(super) use super::thresholds::CUT;
+use super::thresholds::beyond;
 pub use super::thresholds::{NO_FIT, NO_MATERIAL};
 use hadar::aligned::Aligned;
 use hadar::cube::Sample;
@@ -246,7 +247,7 @@ impl Task {
             Some(errors) => self.fit_with_errors(errors, room, spared),
         }
         let best = room.fits.iter().map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
-        room.fits.retain(|(_, fit)| fit.deviance <= best + CUT);
+        room.fits.retain(|(kind, fit)| fit.deviance <= best + self.handicap[*kind] + self.beyond(*kind));
         let order = |a: &(usize, Fit), b: &(usize, Fit)| {
             a.1.deviance
                 .total_cmp(&b.1.deviance)
@@ -257,6 +258,16 @@ impl Task {
         let asked = room.fits.iter().find(|(one, _)| Some(*one) == kind);
         let Some(&(kind, fit)) = asked.or(room.fits.first()) else { return Pixel::SKIPPED };
         self.described(kind, fit, room, spared)
+    }
+
+    /// Deviance of a kind without the handicap of its prior, beyond the best one with it, from which on it no longer counts.
+    pub(super) fn beyond(&self, kind: usize) -> f64 {
+        beyond(self.handicap[kind], self.members.as_ref())
+    }
+
+    /// The same of every kind: none has less handicap than none.
+    pub(super) fn beyond_any(&self) -> f64 {
+        beyond(0.0, self.members.as_ref())
     }
 
     /// Fits what no bound excludes; deviances with the handicap of the prior.
@@ -289,7 +300,7 @@ impl Task {
                 let found = self.least(kind, &starts[..count], shifted, sums, spared);
                 fits.push((kind, found));
                 if self.skip && found.deviance < best {
-                    reach = screen.reach(found.deviance.max(0.0) + CUT, seen);
+                    reach = screen.reach(found.deviance.max(0.0) + self.beyond_any(), seen);
                 }
                 best = best.min(found.deviance);
                 if place == 1 {

@@ -15,8 +15,10 @@
 //!
 //! Shares: Σₘ qₘ [c ∈ Cₘ]/|Cₘ|, the posterior of a material in equal parts for its categories.
 //!
-//! Assumptions: the model and the library hold. Materials that are e¹² times less likely than the best count as excluded, which makes the
-//! second condition void in libraries of more than some 1600 of them.
+//! With Dₘ the least deviance of m, both conditions fail where Dₘ > minₗ (Dₗ − 2 ln πₗ) + 2 ln 99 and m is e¹² times less probable than the best: the
+//! one l alone makes the ratio exceed 99. No fit is dropped on less, whatever the priors and however many materials there are.
+//!
+//! Assumptions: the model and the library hold.
 
 use super::fit::Fit;
 use hadar::error::{Error, Result};
@@ -65,6 +67,8 @@ pub(super) struct Members {
     odds_against: Vec<f64>,
     /// How many of the equal materials of each kind there are.
     alike: Vec<usize>,
+    /// Deviance without a prior, beyond the best one with it, from which on a kind of little posterior is excluded: 2 ln (99 Σ π/max π).
+    pub(super) cut: f64,
     /// How many categories there are.
     pub(super) count: usize,
 }
@@ -104,7 +108,9 @@ impl Members {
         let priors: Vec<f64> = handicap.iter().map(|h| libm::exp(-0.5 * h)).collect();
         let sum: f64 = priors.iter().zip(alike).map(|(prior, alike)| prior * *alike as f64).sum();
         let odds_against = priors.iter().map(|prior| (sum - prior) / prior).collect();
-        Ok(Some(Self { all, common, parts, odds_against, alike: alike.to_vec(), count }))
+        let most = priors.iter().copied().fold(0.0, f64::max);
+        let cut = 2.0 * libm::log((1.0 - MISSED) / MISSED * sum / most);
+        Ok(Some(Self { all, common, parts, odds_against, alike: alike.to_vec(), cut, count }))
     }
 
     /// What the fits of a pixel leave, the likeliest first; `weight` is the posterior of one material of a fit, `candidates` how many of the
@@ -162,7 +168,9 @@ impl Members {
         for (kind, each) in posteriors {
             let Some(kind) = kind else { return ANYTHING };
             let odds = each / (1.0 - each).max(f64::MIN_POSITIVE);
-            let is_left = odds * self.odds_against[kind] > MISSED / (1.0 - MISSED);
+            let is_excluded = odds * self.odds_against[kind] <= MISSED / (1.0 - MISSED);
+            // What is too small to be a number is not excluded.
+            let is_left = !is_excluded;
             if held < 1.0 - MISSED || each >= last * (1.0 - TIE) || is_left {
                 left |= self.all[kind];
             }
@@ -242,6 +250,42 @@ mod tests {
     }
 
     proptest! {
+        /// A material that would be left with a prior of a half is left: its fit is among those that count, whatever its prior and however
+        /// many others there are.
+        #[test]
+        fn what_a_prior_of_a_half_leaves_is_left(
+            deviances in prop::collection::vec(0.0_f64..60.0, 2..8),
+            logs in prop::collection::vec(-27.0_f64..0.0, 8),
+            alike in prop::collection::vec(prop_oneof![Just(1_usize), 1..20_000_usize], 8),
+        ) {
+            let count = deviances.len();
+            let (alike, priors) = (&alike[..count], logs[..count].iter().map(|log| libm::exp(*log)));
+            let priors: Vec<f64> = priors.collect();
+            let most = priors.iter().copied().fold(0.0, f64::max);
+            let handicap: Vec<f64> = priors.iter().map(|prior| -2.0 * libm::log(prior / most)).collect();
+            let kind_of: Vec<usize> =
+                (0..count).flat_map(|kind| std::iter::repeat_n(kind, alike[kind])).collect();
+            let categories: Vec<u64> = kind_of.iter().map(|kind| 1 << kind).collect();
+            let members = Members::new(&categories, &kind_of, alike, &handicap).unwrap().unwrap();
+            let with = |kind: usize| deviances[kind] + handicap[kind];
+            let best = (0..count).map(with).fold(f64::INFINITY, f64::min);
+            let beyond = |kind: usize| super::super::thresholds::beyond(handicap[kind], Some(&members));
+            let mut kept: Vec<(usize, f64)> = (0..count)
+                .filter(|kind| deviances[*kind] <= best + beyond(*kind))
+                .map(|kind| (kind, libm::exp(-0.5 * (with(kind) - best))))
+                .collect();
+            kept.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let total: f64 = kept.iter().map(|(kind, weight)| alike[*kind] as f64 * weight).sum();
+            let left = members.left(kept.iter().map(|(kind, weight)| (Some(*kind), weight / total)));
+            for kind in 0..count {
+                let others = |other: usize| alike[other] as f64 - f64::from(u8::from(other == kind));
+                let sum = |of: &dyn Fn(usize) -> f64| (0..count).map(|o| others(o) * of(o)).sum::<f64>();
+                let mean = sum(&|o| priors[o] * libm::exp(-0.5 * deviances[o])) / sum(&|o| priors[o]);
+                let ratio = libm::exp(-0.5 * deviances[kind]) / mean;
+                prop_assert!(ratio < 1.001 * MISSED / (1.0 - MISSED) || left >> kind & 1 == 1, "{kind}: {ratio}");
+            }
+        }
+
         /// What is a candidate is not excluded, and what all candidates are is what one of them is.
         #[test]
         fn sets_hold_one_another(

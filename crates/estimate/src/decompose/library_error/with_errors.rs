@@ -47,7 +47,7 @@ impl Task {
                     starts[0] = self.scan(*kind, shifted, sums, spared);
                     count = 1;
                 }
-                let beside = beside - self.handicap[*kind];
+                let beside = beside + self.beyond(*kind);
                 let asked = |start: &State| self.asked(*kind, *start, [beside, f64::INFINITY]);
                 workplace.queue.extend(starts[..count].iter().map(asked));
             }
@@ -55,7 +55,9 @@ impl Task {
             workplace.collect(&self.handicap, fits);
             let (best, is_fitting) = self.best_of(errors, fits);
             let within = if self.skip { best + BESIDE } else { f64::INFINITY };
-            for (_, kind) in some.iter().filter(|(_, kind)| workplace.floors[*kind] <= within) {
+            let counts =
+                |kind: usize| workplace.floors[kind] <= within + self.handicap[kind] + self.beyond(kind);
+            for (_, kind) in some.iter().filter(|(_, kind)| counts(*kind)) {
                 let (_, fit) = fits[*kind];
                 let worse = fit.deviance - self.handicap[*kind] + WORSE;
                 let asked = self.asked(*kind, fit.state, [f64::INFINITY, worse]);
@@ -67,7 +69,8 @@ impl Task {
             if self.skip && is_fitting {
                 beside = self.best_of(errors, fits).0 + BESIDE;
                 if let (Some(screen), Some(seen)) = (&self.screen, screened.as_ref()) {
-                    let most = screen.most_chi_square(beside - logarithm_of_all(shifted), shifted);
+                    let farthest = beside + self.beyond_any();
+                    let most = screen.most_chi_square(farthest - logarithm_of_all(shifted), shifted);
                     reach = screen.reach(most, seen);
                 }
             }

@@ -1,5 +1,7 @@
 //! Deviations of lighting and texture against drawn counts and against least squares written out; ranks of the materials.
 
+mod priors;
+
 use super::{NO_MATERIAL, flag};
 use crate::decompose::{Light, Maps, Options, Setting, decompose};
 use hadar::cube::{Cube, MemoryCube, Shape};
