@@ -56,8 +56,10 @@ pub fn safety(all: &[SafetyOfTarget]) -> Table {
         "compared",
         "excluded",
         "probability_left_at_least",
+        "conditions",
     ]);
     for found in all {
+        let conditions = found.conditions.iter().map(RestsOn::code).collect::<Vec<_>>().join(" ");
         for one in &found.materials {
             table.push(vec![
                 found.category.clone(),
@@ -68,6 +70,7 @@ pub fn safety(all: &[SafetyOfTarget]) -> Table {
                 yes_no(one.compared),
                 yes_no(one.excluded),
                 optional(one.probability_left_at_least),
+                if one.excluded { conditions.clone() } else { String::new() },
             ]);
         }
     }

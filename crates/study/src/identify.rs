@@ -72,7 +72,7 @@ impl Study {
             photon_radiance: self.photon_radiance(),
             identifiability: self.identifiability(&pairs),
             prior_average: None,
-            safety: self.safety(&pairs),
+            safety: self.safety(&pairs)?,
             pairs,
             limiting,
             classes: self.classes.clone(),

@@ -84,23 +84,35 @@ impl Study {
         pairs: &[PairResult],
         apart: &[&Apart],
     ) -> Result<Vec<Condition>> {
+        let told = pairs.iter().enumerate().filter(|(_, pair)| pair.told_apart == Some(true));
+        let told: Vec<(usize, f64)> =
+            told.map(|(index, pair)| (index, bounds_lower(pair).unwrap_or_default())).collect();
+        self.conditions_of_told(camera, &told, apart)
+    }
+
+    /// The same of the alternatives that are told, by their places, and of what is proved of the distance of each.
+    pub(crate) fn conditions_of_told(
+        &self,
+        camera: &Camera,
+        told: &[(usize, f64)],
+        apart: &[&Apart],
+    ) -> Result<Vec<Condition>> {
         let mut found = self.unstated(camera, self.brightest_member(camera));
-        let told = || pairs.iter().enumerate().filter(|(_, pair)| pair.told_apart == Some(true));
         let others = apart.iter().flat_map(|found| &found.told_apart);
-        let constants = told()
-            .find_map(|(_, pair)| self.one_numbers(&pair.alternative))
+        let constants = told
+            .iter()
+            .find_map(|(index, _)| self.against(*index).target.placeholders(self.alternatives.get(*index)?))
             .or_else(|| self.one_numbers_among(others.clone()));
         found.extend(constants.map(|emissivities| Condition::Constants { emissivities }));
-        let least = |pair: &PairResult| bounds_lower(pair).unwrap_or_default();
-        let hardest = told().min_by(|(_, a), (_, b)| least(a).total_cmp(&least(b)));
-        if let Some((index, pair)) = hardest {
+        let hardest = told.iter().copied().min_by(|(_, a), (_, b)| a.total_cmp(b));
+        if let Some((index, lower)) = hardest {
             let own = self.against(index);
             let alternative = own.alternatives.get(index);
             let is_object = self.scenario.is_of_object();
             let of_pixel = alternative.filter(|_| !is_object);
             let errors = of_pixel.map(|other| own.emissivity_errors(camera, other, index)).transpose()?;
             let errors = errors.map(|found| [found.error, found.share_met]);
-            found.extend(own.of_pair(camera, bounds_lower(pair), errors));
+            found.extend(own.of_pair(camera, Some(lower), errors));
             for other in alternative.into_iter().filter(|_| is_object) {
                 found.extend(own.usual_errors(other)?);
             }
@@ -109,9 +121,8 @@ impl Study {
             found.push(Condition::EmissivityKnown);
         }
         // Distances alone are compared here.
-        let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
-        found.extend(spoiled.into_iter().map(|by| Condition::Spoiled { by }));
-        let of_told = self.only(&told().map(|(index, _)| index).collect::<Vec<_>>());
+        found.extend(self.spoiled_here().into_iter().map(|by| Condition::Spoiled { by }));
+        let of_told = self.only(&told.iter().map(|(index, _)| *index).collect::<Vec<_>>());
         let mut ranges = of_told.ranges_that_decide(true, &|range| of_told.holds_in(range))?;
         if ranges.is_empty() && others.clone().next().is_some() {
             let hold_in = |range: StateRange| {
@@ -176,7 +187,9 @@ impl Study {
         let mut found = more;
         found.extend(self.of_camera(camera, brightest));
         found.extend(self.of_scene(camera, asked));
-        if self.scenario.is_of_object() {
+        let is_of_errors =
+            |one: &Condition| matches!(one, Condition::SharedErrors { .. } | Condition::EmissivityKnown);
+        if self.scenario.is_of_object() && !found.iter().any(is_of_errors) {
             found.push(Condition::EmissivityKnown);
         }
         found.retain(|one| one.counts(met));

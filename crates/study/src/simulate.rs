@@ -324,6 +324,7 @@ impl Study {
         let bands = self.bands.len() as f64;
         let fewest = points.iter().map(|point| point.photons).fold(f64::INFINITY, f64::min);
         let most = points.iter().map(|point| point.photons).fold(0.0, f64::max);
+        warnings.extend(self.image_warnings_at(most));
         if fewest < 1.0 {
             warnings.push(Warning::SpectraEmpty { photons: fewest });
         }

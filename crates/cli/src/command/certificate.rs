@@ -1,6 +1,6 @@
 //! `hadar rule --verify CERTIFICATE`: a certificate computed again, and the report that it is in.
 
-use super::global::Global;
+use super::global::{Global, known_condition};
 use super::verify::{Again, VerifyArgs};
 use hadar::error::{Error, Result};
 use hadar::inputs::{self, inputs_of};
@@ -51,6 +51,9 @@ pub(super) fn verify(
         set => set,
     })
     .map_err(|error| told(format!("what it set is not readable: {error}")))?;
+    let accepted: Vec<String> = serde_json::from_value(of(&before, "accepted"))
+        .map_err(|error| told(format!("what it accepts is not readable: {error}")))?;
+    accepted.iter().try_for_each(|code| known_condition(code)).map_err(|error| error.in_file(certificate))?;
     let on = of(&before, "on").as_str().and_then(day);
     let listed: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
@@ -93,7 +96,6 @@ pub(super) fn verify(
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");
-    let accepted: Vec<String> = serde_json::from_value(of(&before, "accepted")).unwrap_or_default();
     let answer =
         study.answer(&RuleAsked { on, accepted, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
     bar.finish();

@@ -462,11 +462,16 @@ pub(super) fn day(text: &str) -> std::result::Result<Date, String> {
 
 /// The code of a condition given to a flag.
 pub(super) fn condition(text: &str) -> std::result::Result<String, String> {
+    known_condition(text).map(|()| text.to_owned()).map_err(|error| error.to_string())
+}
+
+/// Refuses a code that no condition has.
+pub(super) fn known_condition(code: &str) -> Result<()> {
     let codes = Condition::codes();
-    if codes.iter().any(|code| code == text) {
-        return Ok(text.to_owned());
+    if codes.iter().any(|one| one == code) {
+        return Ok(());
     }
-    Err(Error::unknown_name("condition", text, codes.iter().map(String::as_str)).to_string())
+    Err(Error::unknown_name("condition", code, codes.iter().map(String::as_str)))
 }
 
 /// A number given to a flag.

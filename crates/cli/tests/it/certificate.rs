@@ -226,6 +226,9 @@ fn what_was_changed_is_named() {
         (own.replacen("\"path\": \"coat.csv\"", "\"path\": \"cote.csv\"", 1), "cote.csv"),
         (own.replacen("2030-06-01", "2029-06-01", 1), "reasons"),
         (own.replace('{', "["), "this is not JSON"),
+        // What nobody can accept by `--accept`.
+        (own.replacen("\"accepted\": []", "\"accepted\": [\"x\"]", 1), "there is no condition `x`"),
+        (own.replacen("\"accepted\": []", "\"accepted\": \"x\"", 1), "what it accepts"),
     ] {
         assert_ne!(changed, own, "{named}");
         folder.file("changed.json", &changed);

@@ -52,6 +52,7 @@ mod rule_evidence;
 mod rule_mistakes;
 mod rule_uncertainty;
 mod safety;
+mod safety_of_cameras;
 mod safety_of_pairs;
 mod segmentation;
 mod serve;

@@ -190,13 +190,19 @@ fn a_rule_of_one_scene_rests_on_what_its_camera_does_in_it() {
         codes.sort();
         codes
     };
-    let (mut yes, mut ranges) = (0, 0);
-    for which in 0..32 {
+    let (mut yes, mut ranges, mut of_objects) = (0, 0, 0);
+    for which in 0..64 {
         for demand in [2.0, 20.0] {
             let camera = "[camera]\npreset = \"flir-boson-plus-640\"\nfocal_length = \"14 mm\"\nfield_of_view = \"32 deg\"";
-            let folder = Folder::with(&scene(which, demand, "").replace("[CAMERA]", camera));
+            let scene = match which < 32 {
+                true => scene(which, demand, ""),
+                false => scene(which, demand, "")
+                    .replace("\n[[environment]]", "\nsize = \"0.5 m\"\n[background]\ntemperature = \"5 degC\"\n[[environment]]")
+                    .replace("[requirement]", "[requirement]\nof = \"object\""),
+            };
+            let folder = Folder::with(&scene.replace("[CAMERA]", camera));
             let size = folder.json(&["size", "a.toml"]);
-            let rule = scene(which, demand, "")
+            let rule = scene
                 .replace("[CAMERA]", &camera.replace("[camera]", "[[camera]]\nname = \"b\""));
             folder.file("r.toml", &format!("{rule}[envelope]\ndistance = [\"8 m\", \"8 m\"]\n"));
             let rule = folder.run(&["rule", "r.toml", "--check", "--json"]);
@@ -208,10 +214,11 @@ fn a_rule_of_one_scene_rests_on_what_its_camera_does_in_it() {
             yes += 1;
             let codes = sorted(&verdict["conditions"]);
             ranges += u32::from(codes.contains(&"range".to_owned()));
+            of_objects += u32::from(codes.contains(&"shared-emissivity-errors".to_owned()));
             assert_eq!(codes, sorted(&size["verdict"]["conditions"]), "{which} {demand}");
         }
     }
-    assert!(yes > 20 && ranges > 0, "{yes} {ranges}");
+    assert!(yes > 20 && ranges > 0 && of_objects > 20, "{yes} {ranges} {of_objects}");
 }
 
 /// A temperature and pixels on the target rest on scene and lens as well, and a table of chosen columns keeps what its verdicts rest on.

@@ -412,13 +412,21 @@ pub(crate) fn yes(conditions: &[Condition]) -> String {
     }
 }
 
-/// A 'yes' on a line of its own: the hardest of its conditions in words, the others by their codes.
+/// A 'yes' on a line of its own.
 pub(crate) fn yes_alone(conditions: &[Condition]) -> String {
-    let mut open = Condition::open(conditions);
-    let Some(hardest) = open.next() else { return "met".into() };
+    match under(conditions) {
+        none if none.is_empty() => "met".into(),
+        under => format!("yes{under}"),
+    }
+}
+
+/// What follows a statement that holds under conditions: the hardest in words, the others by their codes; nothing without.
+pub(crate) fn under<'c>(conditions: impl IntoIterator<Item = &'c Condition>) -> String {
+    let mut open = conditions.into_iter().filter(|one| one.favourable());
+    let Some(hardest) = open.next() else { return String::new() };
     let more: Vec<String> = open.map(Condition::code).collect();
     let more = if more.is_empty() { String::new() } else { format!(" (and {})", more.join(", ")) };
-    format!("yes, if {}{more}", hardest.say())
+    format!(", if {}{more}", hardest.say())
 }
 
 /// All conditions of a 'yes', or of a 'no', in a paragraph of their own; nothing without.

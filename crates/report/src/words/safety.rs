@@ -1,8 +1,10 @@
 //! Where a category that matters for safety cannot be excluded, of a target and of the cameras of a rule.
 
+use super::conditions::under;
+use super::shortfall::clauses;
 use crate::text::numbers::{listed, significant};
 use hadar::words::share;
-use hadar_study::{SafetyMaterial, SafetyOfRule, SafetyOfTarget};
+use hadar_study::{Condition, SafetyMaterial, SafetyOfRule, SafetyOfTarget};
 use std::fmt::Write as _;
 
 /// The article of a name at the beginning of a sentence.
@@ -20,14 +22,23 @@ fn sentence(found: &SafetyOfTarget) -> String {
     match (found.is_target, found.excluded) {
         (true, _) => format!("{article} {name} cannot be excluded: {target} is of it."),
         (_, true) => format!(
-            "{article} {name} is excluded where {target} is, at 99 %: at most 1 % of its readings are taken for {target}{}.",
+            "{article} {name} is excluded where {target} is, at 99 %{}: at most 1 % of its readings are taken for {target}{}.",
+            under(&found.conditions),
             if_constant(&found.constants)
         ),
         (_, false) => format!(
             "{article} {name} cannot be excluded where {target} is, at 99 %: {}.",
-            found.materials.iter().filter(|one| !one.excluded).map(why).collect::<Vec<_>>().join("; ")
+            why_not(found).join("; ")
         ),
     }
+}
+
+/// What spoils the readings, and what is known of materials that are left whatever spoils them; else of all that are left.
+fn why_not(found: &SafetyOfTarget) -> Vec<String> {
+    let spoiled = (!found.spoiled_by.is_empty()).then(|| clauses(&found.spoiled_by));
+    let is_told = |one: &&SafetyMaterial| !one.excluded && (spoiled.is_none() || is_left(one));
+    let materials: Vec<String> = found.materials.iter().filter(is_told).map(why).collect();
+    spoiled.into_iter().chain(materials).collect()
 }
 
 /// Of every material of a matrix, category by category: where it cannot be excluded, then where it is.
@@ -44,6 +55,7 @@ pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
             all.iter().filter(|found| found.category == *name).partition(|found| found.excluded);
         let all = left.len() + excluded.len();
         let (article, where_left) = (article(name), left.len());
+        let conditions = under(of_any(&excluded));
         let _ = match where_left {
             0 => {
                 let mut constants: Vec<String> =
@@ -53,7 +65,7 @@ pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
                 let rests = if_constant(&constants);
                 writeln!(
                     out,
-                    "{article} {name} is excluded where any of the {all} materials is, at 99 %{rests}"
+                    "{article} {name} is excluded where any of the {all} materials is, at 99 %{rests}{conditions}"
                 )
             }
             _ if where_left == all => {
@@ -78,11 +90,28 @@ pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
             })
             .collect();
         if !where_excluded.is_empty() {
-            let _ = writeln!(out, "  excluded, at 99 %, where these are: {}", listed(&where_excluded));
+            // Where all are excluded the first line has them.
+            let conditions = if where_left == 0 { "" } else { conditions.as_str() };
+            let _ = writeln!(
+                out,
+                "  excluded, at 99 %, where these are{conditions}: {}",
+                listed(&where_excluded)
+            );
         }
         out.push('\n');
     }
     out
+}
+
+/// The conditions of all rows that are excluded, each code once.
+fn of_any<'f>(excluded: &[&'f SafetyOfTarget]) -> Vec<&'f Condition> {
+    let mut all: Vec<&Condition> = Vec::new();
+    for one in excluded.iter().flat_map(|found| &found.conditions) {
+        if !all.iter().any(|known| known.code() == one.code()) {
+            all.push(one);
+        }
+    }
+    all
 }
 
 /// Beside a simulation, whose draws have no part in it.
@@ -112,11 +141,16 @@ fn listed_constants(constants: &[String]) -> String {
     format!("the one number of {}", listed(constants))
 }
 
+/// Whether more is known of a material than that no proof excludes it.
+fn is_left(one: &SafetyMaterial) -> bool {
+    !one.compared || one.probability_left_at_least.is_none_or(|left| left > 0.01)
+}
+
 fn why(one: &SafetyMaterial) -> String {
     match (one.compared, one.probability_left_at_least) {
         (false, _) => format!("{} is not among the alternatives, and was not compared", one.material),
         // What is left this rarely is left for want of proof.
-        (_, Some(left)) if left > 0.01 => {
+        (_, Some(left)) if is_left(one) => {
             format!("{} is left in {} of the readings or more, by any test", one.material, share(left))
         }
         (_, Some(_)) => {
@@ -135,8 +169,9 @@ fn of_camera(found: &SafetyOfRule) -> String {
     let (article, name, camera) = (article(&found.category), &found.category, &found.camera);
     match (found.excluded, found.not_compared.as_slice(), found.statistical_distance_lower) {
         (true, ..) => format!(
-            "{article} {name} is excluded by {camera} where any of the materials that the rule compares with it is, at 99 %{}.",
-            if_constant(&found.constants)
+            "{article} {name} is excluded by {camera} where any of the materials that the rule compares with it is, at 99 %{}{}.",
+            if_constant(&found.constants),
+            under(&found.conditions)
         ),
         (_, [_, ..], _) => format!(
             "{article} {name} cannot be excluded by {camera}: {} not compared.",

@@ -1,6 +1,6 @@
 //! What is known of every pair, and of the target against all alternatives, as data.
 
-use super::super::{ClassAnswer, Condition, PriorAverage, Warning};
+use super::super::{ClassAnswer, Condition, PriorAverage, Shortfall, Warning};
 use crate::decision::YesNo;
 use hadar::demand::Work;
 use hadar::identifiability::Status;
@@ -251,6 +251,11 @@ pub struct SafetyOfTarget {
     /// What of it and of the target is entered as one number: an exclusion rests on it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constants: Vec<String>,
+    /// What it rests on that it, or any of its materials, is excluded, hardest first; empty where none is.
+    pub conditions: Vec<Condition>,
+    /// What spoils the readings of the camera, which then exclude nothing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub spoiled_by: Vec<Shortfall>,
 }
 
 /// A material of a category that matters for safety, against the target.

@@ -19,7 +19,6 @@ use super::envelope::{Estimate, Sighted};
 use super::ideal::Scenes;
 use super::pairs::Searched;
 use super::results::CameraVerdict;
-use super::safety;
 use crate::Study;
 use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::Result;
@@ -137,8 +136,8 @@ impl TellApart {
         }
         constants.sort_unstable();
         constants.dedup();
-        let categories = &self.scenario.categories;
-        let safety = safety::rows(categories, &envelope, &cameras, self.required, &constants);
+        let found: Vec<&Searched> = worst.iter().map(|(_, (worst, _))| worst).collect();
+        let safety = self.safety(&envelope, &cameras, &found, &constants)?;
         let answer = ApartAnswer { requirement, envelope, cameras, not_identifiable, companions, safety };
         Ok((answer, Earlier { apart: self, worst, ideal }))
     }

@@ -3,10 +3,17 @@
 //! A camera excludes it where its materials are all of one side of the pairs that the clause searches (those of a side are not compared with
 //! each other), the camera meets the clause, and
 //! the least statistical distance that is proved over the envelope reaches Φ⁻¹(0.99): of every scene then at most 1 % of the readings are
-//! taken for the other side. The bound is that of the worst pair, whether the category is in it or not, which is the safe side.
+//! taken for the other side. The bound is that of the worst pair, whether the category is in it or not, which is the safe side. It rests on
+//! what meeting the clause would rest on, did it demand that distance.
 
+use super::apart::TellApart;
+use super::pairs::Searched;
 use super::results::{CameraVerdict, EnvelopeResult};
+use super::search::Limit;
+use crate::Study;
+use crate::condition::Condition;
 use crate::identify::AT_99;
+use hadar::error::Result;
 use hadar_scenario::decompose::CategorySpec;
 use serde::Serialize;
 
@@ -29,14 +36,59 @@ pub struct SafetyOfRule {
     /// What of the materials that are compared is entered as one number: an exclusion rests on it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constants: Vec<String>,
+    /// What it rests on that it is excluded, hardest first; empty where it is not.
+    pub conditions: Vec<Condition>,
 }
 
-/// Of every category with `safety = true` and every camera.
-pub(super) fn rows(
+impl TellApart {
+    /// Of every category with `safety = true` and every camera, each with the worst that was found of it.
+    pub(super) fn safety(
+        &self,
+        envelope: &EnvelopeResult,
+        cameras: &[CameraVerdict],
+        worst: &[&Searched],
+        constants: &[String],
+    ) -> Result<Vec<SafetyOfRule>> {
+        let mut rows = rows(&self.scenario.categories, envelope, cameras, constants);
+        for row in rows.iter_mut().filter(|row| row.excluded) {
+            let Some(index) = cameras.iter().position(|camera| camera.name == row.camera) else { continue };
+            row.conditions = match worst.get(index) {
+                Some(worst) if self.required < AT_99 => {
+                    self.conditions_at(AT_99, index, worst, cameras[index].lower_bound)?
+                }
+                _ => cameras[index].conditions.clone(),
+            };
+        }
+        Ok(rows)
+    }
+
+    /// What meeting a demand that is more than the clause's own rests on.
+    fn conditions_at(
+        &self,
+        required: f64,
+        index: usize,
+        worst: &Searched,
+        lower_bound: Option<f64>,
+    ) -> Result<Vec<Condition>> {
+        let mut candidate = self.candidates[index].clone();
+        let looked = candidate.sighted.iter_mut().chain(&mut candidate.between);
+        looked.map(|sighted| &mut sighted.study).chain(&mut candidate.near).for_each(|study| {
+            study.required = required;
+        });
+        let strict = Self { required, candidates: Vec::new(), ..self.clone() };
+        let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
+        let at = Study { state: worst.pair.state.clone(), required, ..sighted.study.clone() };
+        let image = at.camera.as_ref().map(|camera| strict.image(&candidate, camera)).unwrap_or_default();
+        let surface = &sighted.study.alternatives[worst.pair.alternative];
+        strict.conditions(&candidate, true, &image, &Limit { at: &at, surface, lower_bound })
+    }
+}
+
+/// Whether a camera excludes a category, without what it rests on.
+fn rows(
     categories: &[CategorySpec],
     envelope: &EnvelopeResult,
     cameras: &[CameraVerdict],
-    required: f64,
     constants: &[String],
 ) -> Vec<SafetyOfRule> {
     let classes = envelope.classes.iter();
@@ -53,7 +105,7 @@ pub(super) fn rows(
         let is_compared = |one: &&String| {
             is_in(&envelope.materials, one) || is_in(&envelope.alternatives, one) || class_names.contains(one)
         };
-        let lower = camera.lower_bound.map(|share| share * required);
+        let lower = camera.lower_bound;
         SafetyOfRule {
             category: spec.name.clone(),
             camera: camera.name.clone(),
@@ -63,6 +115,7 @@ pub(super) fn rows(
             statistical_distance_lower: lower,
             not_compared_with: side.unwrap_or_default(),
             constants: constants.to_vec(),
+            conditions: Vec::new(),
             not_compared: spec.materials.iter().filter(|one| !is_compared(one)).cloned().collect(),
         }
     };

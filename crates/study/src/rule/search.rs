@@ -45,7 +45,7 @@ const NEAR: f64 = 1.5;
 
 /// What a camera's image of the brightest scene is like.
 #[derive(Debug, Default)]
-struct Image {
+pub(super) struct Image {
     /// Motion during an exposure, pixels.
     blur: Option<f64>,
     /// Photons of the fullest reading.
@@ -56,11 +56,11 @@ struct Image {
 }
 
 /// The scene and the pair that decide.
-struct Limit<'a> {
-    at: &'a Study,
-    surface: &'a Surface,
+pub(super) struct Limit<'a> {
+    pub(super) at: &'a Study,
+    pub(super) surface: &'a Surface,
     /// What is proved of the statistical distance.
-    lower_bound: Option<f64>,
+    pub(super) lower_bound: Option<f64>,
 }
 
 /// What the reader of a verdict must know beside it.
@@ -240,7 +240,7 @@ impl TellApart {
     }
 
     /// What a 'yes' rests on; of a 'no' what was taken on the unfavourable side.
-    fn conditions(
+    pub(super) fn conditions(
         &self,
         candidate: &Candidate,
         met: bool,
@@ -266,9 +266,13 @@ impl TellApart {
         let mut own: Vec<Condition> =
             constants.map(|emissivities| Condition::Constants { emissivities }).into_iter().collect();
         if met {
-            // A rule that states errors is guarded against them.
-            let unstated = self.scenario.sensitivity.is_none();
-            let errors = unstated.then(|| at.emissivity_errors(camera, surface, usize::MAX)).transpose()?;
+            // A rule that states errors is guarded against them; the pixels of an object share them.
+            let (unstated, is_object) = (self.scenario.sensitivity.is_none(), at.scenario.is_of_object());
+            if unstated && is_object {
+                own.extend(at.usual_errors(surface)?);
+            }
+            let of_pixel = unstated && !is_object;
+            let errors = of_pixel.then(|| at.emissivity_errors(camera, surface, usize::MAX)).transpose()?;
             let errors = errors.map(|found| [found.error, found.share_met]);
             own.extend(at.of_pair(camera, *lower_bound, errors));
             own.extend(near.ranges_that_decide(false, &|range| self.meets_in(candidate, range))?);
@@ -346,7 +350,7 @@ impl TellApart {
     }
 
     /// The image that a camera makes of the brightest scene, from the least distance.
-    fn image(&self, candidate: &Candidate, camera: &Camera) -> Image {
+    pub(super) fn image(&self, candidate: &Candidate, camera: &Camera) -> Image {
         let mut image = Image::default();
         for near in &candidate.near {
             let Ok(ranges) = near.ranges(&self.envelope) else { continue };

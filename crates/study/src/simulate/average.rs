@@ -95,6 +95,7 @@ impl Study {
             self.photon_numbers(plan, &rivals)?
         };
         let mut warnings = self.warnings.clone();
+        warnings.extend(self.image_warnings_at(photons.iter().copied().fold(0.0, f64::max)));
         let (mut averages, mut error) = (Vec::new(), 0.0_f64);
         let last = photons.last().copied().unwrap_or(0.0);
         for photons in photons {

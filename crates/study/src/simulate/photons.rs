@@ -2,7 +2,7 @@
 
 use super::SimulationPlan;
 use crate::size::logarithmic;
-use crate::{Study, Surface};
+use crate::{Study, Surface, Warning};
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result, check};
 use hadar::fisher::Counting;
@@ -122,6 +122,18 @@ impl Study {
         let per_photon = least * least / (1.0 + gamma);
         let photons = logarithmic(normalised, experiments).into_iter().map(|n| n / per_photon);
         Ok(photons.map(|photons| photons.min(LARGEST_MEAN)).collect())
+    }
+
+    /// What spoils the image of the scenario's camera, were it exposed for so many photons.
+    pub(super) fn image_warnings_at(&self, photons: f64) -> Vec<Warning> {
+        let Some(own) = self.camera_result(self.photon_radiance()) else { return Vec::new() };
+        let exposed = |camera: &Camera| Camera {
+            exposure_s: camera.exposure_s * (photons / own.photons),
+            ..camera.clone()
+        };
+        let study = Self { camera: self.camera.as_ref().map(exposed), ..self.clone() };
+        let result = study.camera_result(self.photon_radiance());
+        result.map_or_else(Vec::new, |result| study.image_warnings(&result))
     }
 
     /// Counts and noise when the target sends so many photons: the exposure is made as long as that takes.

@@ -232,7 +232,12 @@ impl Study {
             rows.push(series.row(state, Run { index: index as u32, trials, seed })?);
         }
         progress(total, total);
-        let warnings = warnings(&rows);
+        let mut warnings = warnings(&rows);
+        // Of the hottest of them, which is the brightest.
+        let hottest = states.iter().max_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
+        let bright = Self { state: hottest.unwrap_or(&self.state).clone(), ..self.clone() };
+        let seen = bright.camera_result(bright.photon_radiance());
+        warnings.extend(seen.iter().flat_map(|seen| bright.image_warnings(seen)));
         let mut stats = self.looked_up.clone();
         // Every spectrum is drawn once, and read by the fits and by two imagers.
         let (drawn, read_by) = ((total * trials) as u64, readers as u64 + 2);

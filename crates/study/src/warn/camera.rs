@@ -26,10 +26,8 @@ impl Study {
         let camera = &result.camera;
         let found = [
             shortcut(pair),
-            self.motion(result),
             contradiction(camera).filter(|_| self.angle_matters()),
             self.proviso(camera).map(Warning::FramesInMotion),
-            full_well(result),
             self.small_target(camera),
             self.size_unknown(camera, self.scenario.target.distance_m),
             self.diffraction(camera),
@@ -38,7 +36,12 @@ impl Study {
             self.filter_light(camera),
             assumed(camera),
         ];
-        found.into_iter().flatten().collect()
+        self.image_warnings(result).into_iter().chain(found.into_iter().flatten()).collect()
+    }
+
+    /// What spoils the image, whatever is made of its counts.
+    pub(crate) fn image_warnings(&self, result: &CameraResult) -> Vec<Warning> {
+        [self.motion(result), full_well(result)].into_iter().flatten().collect()
     }
 
     fn proviso(&self, camera: &Camera) -> Option<Proviso> {
