@@ -408,7 +408,7 @@ mod tests {
             ("W m-2 sr-1 Hz-1", &["W m-2 sr-1 s", "W/(m2 sr Hz)", "1000000000000 W m-2 sr-1 THz-1"]),
         ] {
             let unit = RadianceUnit::spelt(reference).unwrap();
-            for spelling in *spellings {
+            for spelling in spellings {
                 let found =
                     RadianceUnit::spelt(spelling).unwrap_or_else(|error| panic!("{spelling}: {error}"));
                 assert!(found.is(unit), "{spelling}: {found:?} {unit:?}");
