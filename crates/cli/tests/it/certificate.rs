@@ -227,7 +227,7 @@ fn what_was_changed_is_named() {
         (own.replacen("2030-06-01", "2029-06-01", 1), "reasons"),
         (own.replace('{', "["), "this is not JSON"),
         // What nobody can accept by `--accept`.
-        (own.replacen("\"accepted\": []", "\"accepted\": [\"x\"]", 1), "there is no condition `x`"),
+        (own.replacen("\"accepted\": []", "\"accepted\": [\n    \"x\"\n  ]", 1), "there is no condition `x`"),
         (own.replacen("\"accepted\": []", "\"accepted\": \"x\"", 1), "what it accepts"),
     ] {
         assert_ne!(changed, own, "{named}");

@@ -191,19 +191,21 @@ fn a_rule_of_one_scene_rests_on_what_its_camera_does_in_it() {
         codes
     };
     let (mut yes, mut ranges, mut of_objects) = (0, 0, 0);
-    for which in 0..64 {
+    for which in (0..32).chain((32..64).step_by(3)) {
         for demand in [2.0, 20.0] {
             let camera = "[camera]\npreset = \"flir-boson-plus-640\"\nfocal_length = \"14 mm\"\nfield_of_view = \"32 deg\"";
             let scene = match which < 32 {
                 true => scene(which, demand, ""),
                 false => scene(which, demand, "")
-                    .replace("\n[[environment]]", "\nsize = \"0.5 m\"\n[background]\ntemperature = \"5 degC\"\n[[environment]]")
+                    .replace(
+                        "\n[[environment]]",
+                        "\nsize = \"0.5 m\"\n[background]\ntemperature = \"5 degC\"\n[[environment]]",
+                    )
                     .replace("[requirement]", "[requirement]\nof = \"object\""),
             };
             let folder = Folder::with(&scene.replace("[CAMERA]", camera));
             let size = folder.json(&["size", "a.toml"]);
-            let rule = scene
-                .replace("[CAMERA]", &camera.replace("[camera]", "[[camera]]\nname = \"b\""));
+            let rule = scene.replace("[CAMERA]", &camera.replace("[camera]", "[[camera]]\nname = \"b\""));
             folder.file("r.toml", &format!("{rule}[envelope]\ndistance = [\"8 m\", \"8 m\"]\n"));
             let rule = folder.run(&["rule", "r.toml", "--check", "--json"]);
             let rule: Value = serde_json::from_str(&rule.stdout).unwrap();
@@ -218,7 +220,7 @@ fn a_rule_of_one_scene_rests_on_what_its_camera_does_in_it() {
             assert_eq!(codes, sorted(&size["verdict"]["conditions"]), "{which} {demand}");
         }
     }
-    assert!(yes > 20 && ranges > 0 && of_objects > 20, "{yes} {ranges} {of_objects}");
+    assert!(yes > 20 && ranges > 0 && of_objects > 5, "{yes} {ranges} {of_objects}");
 }
 
 /// A temperature and pixels on the target rest on scene and lens as well, and a table of chosen columns keeps what its verdicts rest on.

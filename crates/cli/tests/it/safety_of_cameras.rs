@@ -30,7 +30,7 @@ impl Scene {
         let well = one_of(random, &["", "full_well = 1e6\n", "full_well = 1e12\n"]);
         let readout = one_of(random, &["", "readout = \"sequential\"\n", "readout = \"simultaneous\"\n"]);
         Self {
-            exposure: one_of(random, &["10 us", "100 us", "1 ms", "10 ms"]),
+            exposure: one_of(random, &["0.3 us", "1.5 us", "50 us", "1 ms", "10 ms"]),
             camera: format!("{well}{readout}"),
             speed: one_of(random, &["", "", "speed = \"1 km/h\"\n", "speed = \"100 km/h\"\n"]),
             range: one_of(random, &["", "temperature = [\"10 degC\", \"45 degC\"]\n"]),
@@ -43,7 +43,7 @@ impl Scene {
     fn text(&self, demand: f64, alone: bool, camera: &str) -> String {
         let near = if self.near && !alone { ", \"near.csv\"" } else { "" };
         format!(
-            "[target]\nmaterial = \"aluminium\"\ntemperature = \"20 degC\"\ndistance = \"10 m\"\nsize = \"1 m\"\n\
+            "[target]\nmaterial = \"robot.csv\"\ntemperature = \"20 degC\"\ndistance = \"10 m\"\nsize = \"1 m\"\n\
              [background]\ntemperature = \"5 degC\"\n[[environment]]\ntemperature = \"5 degC\"\nlighting = 0.5\n\
              [alternatives]\nmaterials = [\"skin\"{near}]\n{}\
              [bands]\nranges = [[\"8 um\", \"9 um\"], [\"9 um\", \"10 um\"], [\"10 um\", \"11 um\"], [\"11 um\", \"13 um\"]]\n\
@@ -56,7 +56,13 @@ impl Scene {
 
 fn folder(text: &str) -> Folder {
     let folder = Folder::with(text);
-    folder.file("near.csv", "wavenumber_cm1,emissivity\n700,0.05\n1300,0.0501\n");
+    let spectrum = |off: f64| {
+        let row = |(nu, e): (u32, f64)| format!("{nu},{}\n", e + off);
+        let rows = [(700, 0.3), (850, 0.55), (1000, 0.3), (1150, 0.6), (1300, 0.35)].map(row);
+        format!("wavenumber_cm1,emissivity\n{}", rows.concat())
+    };
+    folder.file("robot.csv", &spectrum(0.0));
+    folder.file("near.csv", &spectrum(1e-7));
     folder
 }
 
@@ -112,7 +118,7 @@ fn an_exclusion_is_a_yes_at_99_percent() {
         }
         assert_eq!(&folder.json(&["identify", "a.toml"])["safety"][0], found);
         let matrix = folder.json(&["identify", "a.toml", "--matrix"])["matrix"]["safety"].clone();
-        let of_target = matrix.as_array().unwrap().iter().find(|row| row["target"] == "aluminium");
+        let of_target = matrix.as_array().unwrap().iter().find(|row| row["target"] == "robot");
         assert_eq!(of_target.unwrap(), found);
         let few = ["--classifiers", "likelihood-ratio", "--spectra", "40"];
         let simulated = folder.json(&[&["simulate", "a.toml"], few.as_slice()].concat());
