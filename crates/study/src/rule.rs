@@ -13,6 +13,7 @@ mod course;
 mod depth;
 mod earlier;
 mod envelope;
+mod exclusion;
 mod expected;
 mod grid;
 mod guard;

@@ -5,6 +5,7 @@ use super::shortfall::clauses;
 use crate::text::numbers::{listed, significant};
 use hadar::words::share;
 use hadar_study::{Condition, SafetyMaterial, SafetyOfRule, SafetyOfTarget};
+use std::collections::HashSet;
 use std::fmt::Write as _;
 
 /// The article of a name at the beginning of a sentence.
@@ -105,13 +106,9 @@ pub(super) fn of_matrix(all: &[SafetyOfTarget]) -> String {
 
 /// The conditions of all rows that are excluded, each code once.
 fn of_any<'f>(excluded: &[&'f SafetyOfTarget]) -> Vec<&'f Condition> {
-    let mut all: Vec<&Condition> = Vec::new();
-    for one in excluded.iter().flat_map(|found| &found.conditions) {
-        if !all.iter().any(|known| known.code() == one.code()) {
-            all.push(one);
-        }
-    }
-    all
+    let mut codes = HashSet::new();
+    let all = excluded.iter().flat_map(|found| &found.conditions);
+    all.filter(|one| codes.insert(one.code())).collect()
 }
 
 /// Beside a simulation, whose draws have no part in it.
