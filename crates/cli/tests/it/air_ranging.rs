@@ -181,9 +181,16 @@ fn estimates_are_the_same_again_and_stand_beside_their_bound() {
     let there = WALL.replace("distance = \"100 m\"", &format!("distance = \"{near} m\""));
     let there = Folder::with(&there).json(&["range", "a.toml"]);
     assert!((number(&there["at"]["relative_sigma"]) / 0.2 - 1.0).abs() < 1e-9, "{near}");
-    let code = |scenario: &str| Folder::with(scenario).run(&["range", "a.toml", "--check", "-q"]).code;
-    assert_eq!(code(&WALL.replace("= 0.2\n", "= 9.0\n")), 0);
-    assert_eq!(code(&WALL.replace("= 0.2\n", "= 1e-6\n")), 3);
+    // A yes counts under the conditions that are accepted, a no under any.
+    let [easy, hard] = ["= 9.0\n", "= 1e-6\n"].map(|demand| Folder::with(&WALL.replace("= 0.2\n", demand)));
+    let conditions = easy.json(&["range", "a.toml"])["verdict"]["conditions"].clone();
+    let codes: Vec<&str> =
+        conditions.as_array().unwrap().iter().map(|one| one["code"].as_str().unwrap()).collect();
+    assert!(codes.contains(&"air-temperature-known") && codes.contains(&"full-well"), "{codes:?}");
+    let accepted = codes.join(",");
+    let check = ["range", "a.toml", "--check", "-q"];
+    let with_all = [&check[..], &["--accept", &accepted]].concat();
+    assert_eq!([easy.run(&check).code, easy.run(&with_all).code, hard.run(&with_all).code], [3, 0, 3]);
 }
 
 #[test]
