@@ -11,23 +11,7 @@ from numpy.typing import NDArray
 from hadar_limits import _hadar
 
 #: What dimensions are called, in lower case, as those of cubes in files.
-_BANDS = (
-    "band",
-    "bands",
-    "wavelength",
-    "wavelengths",
-    "wavenumber",
-    "wavenumbers",
-    "lambda",
-    "frequency",
-    "wl",
-    "nu",
-    "channel",
-    "channels",
-    "spectral",
-)
-_ROWS = ("row", "rows", "y", "line", "lines", "lat", "latitude")
-_COLUMNS = ("column", "columns", "x", "sample", "samples", "lon", "longitude")
+_BANDS, _ROWS, _COLUMNS = _hadar.dimension_names()
 #: How the names of coordinates begin that say where bands are even without a unit.
 _SPECTRAL = ("wavelength", "wavenumber", "frequency")
 

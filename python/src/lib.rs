@@ -35,7 +35,7 @@ mod _hadar {
     #[pymodule_export]
     use crate::library::{emissivity, materials};
     #[pymodule_export]
-    use crate::order::{order_of_bands, plain};
+    use crate::order::{dimension_names, order_of_bands, plain};
     #[pymodule_export]
     use crate::pairs::{Local, Nearest, local, matrix, nearest};
     #[pymodule_export]

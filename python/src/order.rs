@@ -14,6 +14,12 @@ use pyo3::prelude::*;
 const WANTED: [(In, &str); 4] =
     [(In::PerCentimetre, "cm^-1"), (In::One, "1"), (In::Counts, "counts"), (RADIANCE, "radiance")];
 
+/// Names of the dimensions of bands, rows and columns, as those of cubes in files.
+#[pyfunction]
+pub(crate) fn dimension_names() -> [&'static [&'static str]; 3] {
+    hadar_formats::cube::dimension_names()
+}
+
 /// Numbers without their unit, in the one that is wanted.
 #[pyfunction]
 pub(crate) fn plain<'py>(

@@ -68,11 +68,6 @@ fn is_of(names: &[&str], unit: &str) -> bool {
     names.iter().any(|name| *name == plain || long && name.to_lowercase() == plain.to_lowercase())
 }
 
-/// The spectral unit that a text spells; megametres are no millimetres.
-fn spectral(unit: &str) -> Option<SpectralUnit> {
-    SpectralUnit::spelt(unit).filter(|_| !matches!(unit.trim(), "Mm" | "M"))
-}
-
 /// Values without their unit, in the one that is wanted; as they are where they have none. `None` of what has no unit.
 pub(crate) fn converted<'py>(
     given: &Bound<'py, PyAny>,
@@ -130,12 +125,12 @@ impl In {
             }
             // A difference in degC is one in K, and nobody can tell whether it is one.
             Self::Kelvins => is_of(DIFFERENCES, unit).then_some(by(1.0)),
-            Self::PerCentimetre => spectral(unit).map(|unit| match unit.quantity() {
+            Self::PerCentimetre => SpectralUnit::spelt(unit).map(|unit| match unit.quantity() {
                 "wavelength" => How::Inverted { one: unit.wavenumber_cm1(1.0) },
                 _ => by(unit.wavenumber_cm1(1.0)),
             }),
             Self::PerCentimetres => {
-                let unit = spectral(unit).filter(|unit| unit.quantity() == "wavenumber");
+                let unit = SpectralUnit::spelt(unit).filter(|unit| unit.quantity() == "wavenumber");
                 unit.map(|unit| by(unit.wavenumber_cm1(1.0)))
             }
             Self::One if is_of(PERCENT, unit) => Some(by(0.01)),
@@ -240,7 +235,7 @@ pub(crate) fn as_written(Parts { unit, of, .. }: &Parts<'_>, value: f64) -> PyRe
         if let Some((_, name)) = named.into_iter().find(|((names, ..), _)| is_of(names, unit)) {
             return Ok((value, name.to_owned()));
         }
-        match spectral(unit) {
+        match SpectralUnit::spelt(unit) {
             None | Some(SpectralUnit::Metre | SpectralUnit::Hertz) => {}
             Some(unit) => return Ok((value, unit.name().to_owned())),
         }

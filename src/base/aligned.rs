@@ -59,7 +59,10 @@ impl Aligned {
 
     /// `len` doubles to be written to: what they are before is not said.
     pub fn unset(len: usize) -> Self {
-        let storage = taken(spaced(len) + LANES - 1);
+        #[cfg_attr(not(test), expect(unused_mut, reason = "tests write what nobody may read"))]
+        let mut storage = taken(spaced(len) + LANES - 1);
+        #[cfg(test)]
+        storage.fill(f64::NAN);
         let start = storage.as_ptr().align_offset(LANES * size_of::<f64>()).min(LANES - 1);
         Self { storage, start, len }
     }

@@ -36,7 +36,7 @@ mod values;
 #[cfg(feature = "zarr")]
 mod zarr;
 
-pub use axes::Axes;
+pub use axes::{Axes, dimension_names};
 pub use envi::{EnviBands, envi_files};
 pub use found::{Found, Opened};
 pub use mat::mat_file;

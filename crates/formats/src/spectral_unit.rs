@@ -127,8 +127,9 @@ impl SpectralUnit {
 /// A spelling without what only decorates it; none of a text too long for a unit.
 fn plain(text: &str) -> Option<String> {
     const LONGEST: usize = 40;
-    // Capitals say nothing, as in `UM`, but for the megametre.
-    if text.len() > LONGEST || text.contains("Mm") {
+    // Capitals say nothing, as in `UM`, but for the megametre and what is a prefix alone.
+    let bare = text.trim_matches(|char: char| !char.is_alphanumeric());
+    if text.len() > LONGEST || bare == "M" || bare.ends_with("Mm") {
         return None;
     }
     // What was written as UTF-8 and read as Latin-1: the micro sign, and the Greek letter.

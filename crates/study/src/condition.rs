@@ -161,6 +161,12 @@ conditions! {
     EmissivityKnown = "emissivity-known", Assumed, "sensitivity.emissivity_error";
     /// The temperature of the air on the path is exactly as entered.
     AirTemperatureKnown = "air-temperature-known", Assumed, "unknown.nuisances";
+    /// Nothing but the shot noise of its counts is in a cube.
+    ShotNoiseAlone = "shot-noise-alone", Assumed, "cube.noise_variance";
+    /// A unit of the samples of a cube is a photon.
+    SamplesArePhotons = "samples-are-photons", Assumed, "cube.photons_per_unit";
+    /// The counts of a cube are expectations, none of their texture noise.
+    ExpectedCounts = "expected-counts", Proviso, "cube.left";
     /// What is ranged looks as in the one scene that is rendered.
     OneScene = "one-scene", Assumed, "stereo";
     /// The pixels that are added up are the target's, and all see the same of it.
@@ -312,6 +318,12 @@ impl Condition {
         Self::open(conditions).filter(|one| !accepted.contains(&one.code()))
     }
 
+    /// Whether a program may rely on a verdict: it is met, under no condition but the accepted ones.
+    #[must_use]
+    pub fn hold(met: Option<bool>, conditions: &[Self], accepted: &[String]) -> bool {
+        met == Some(true) && Self::unaccepted(conditions, accepted).next().is_none()
+    }
+
     /// Whether a verdict rests on it: a 'no' on what was taken on the unfavourable side, and on a readout, which is slow where nobody says.
     pub(crate) fn counts(&self, met: bool) -> bool {
         let is_readout = matches!(self, Self::Assumed { figure, .. } if figure.figure == "readout");
@@ -419,6 +431,9 @@ impl Condition {
             | Self::NoAir
             | Self::EmissivityKnown
             | Self::AirTemperatureKnown
+            | Self::ShotNoiseAlone
+            | Self::SamplesArePhotons
+            | Self::ExpectedCounts
             | Self::OneScene
             | Self::PatternOfEachBand
             | Self::PatternOfEachPixel

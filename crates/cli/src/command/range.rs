@@ -9,6 +9,7 @@ use hadar_report::range::MapFiles;
 use hadar_report::{air_ranging, range};
 use hadar_scenario::range::Subject;
 use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario};
+use hadar_study::Condition;
 use hadar_study::air_ranging::{AirPlan, AirRangingStudy};
 use hadar_study::range::{MapSink, RangePlan, RangeStudy};
 use hadar_study::sweep::Question;
@@ -83,7 +84,8 @@ fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> R
     let text = air_ranging::text(&result);
     result.stats.add(&global.report(&text, || air_ranging::bundle(&result))?);
     global.answer(&result, &text, &result.stats)?;
-    let failed = args.check && !result.verdict.holds();
+    let verdict = &result.verdict;
+    let failed = args.check && !Condition::hold(verdict.met, &verdict.conditions, &verdict.accepted);
     Ok(if failed { 3 } else { 0 })
 }
 
@@ -115,6 +117,7 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
     };
     result.stats.add(&global.report(&text, || range::bundle(&result, maps.as_ref()))?);
     global.answer(&result, &text, &result.stats)?;
-    let failed = args.check && !result.verdict.holds();
+    let verdict = &result.verdict;
+    let failed = args.check && !Condition::hold(verdict.met, &verdict.conditions, &verdict.accepted);
     Ok(if failed { 3 } else { 0 })
 }

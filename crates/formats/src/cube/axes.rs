@@ -36,6 +36,12 @@ const NAMES: [(Axis, &[&str]); 3] = [
     (Axis::Columns, &["column", "columns", "x", "sample", "samples", "lon", "longitude"]),
 ];
 
+/// Names of the dimensions of bands, rows and columns, in lower case.
+#[must_use]
+pub fn dimension_names() -> [&'static [&'static str]; 3] {
+    NAMES.map(|(_, names)| names)
+}
+
 impl Axis {
     const ALL: [Self; 3] = [Self::Rows, Self::Columns, Self::Bands];
 

@@ -198,6 +198,9 @@ impl Say for Condition {
             }
             Self::EmissivityKnown => "the emissivity of the measured surface is exactly as entered".into(),
             Self::AirTemperatureKnown => "the temperature of the air on the path is exactly as entered".into(),
+            Self::ShotNoiseAlone => "the cube has no noise but the shot noise of its counts".into(),
+            Self::SamplesArePhotons => "one unit of its samples is one photon".into(),
+            Self::ExpectedCounts => "its counts are expectations, and none of their texture is noise".into(),
             Self::OneScene => "real objects have the texture of the one scene that is rendered".into(),
             Self::SurroundingsKnown => "the temperatures of the surroundings are known".into(),
             Self::Calibrated => "the gain of the camera is known".into(),
@@ -216,7 +219,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 37] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 40] = [
     [
         "range",
         "A range that the scenario sets for the alternatives excludes states that could not be distinguished.",
@@ -383,6 +386,21 @@ pub(crate) const EXPLAINED: [[&str; 3]; 37] = [
         "air-temperature-known",
         "The temperature of the air is not among the unknowns: it is taken as entered, and an error of it imitates a distance.",
         "Add \"air-temperature\" to unknown.nuisances.",
+    ],
+    [
+        "shot-noise-alone",
+        "The noise of the cube is not stated: only the shot noise of its counts is taken.",
+        "Write noise_variance, or a [camera] with [bands].",
+    ],
+    [
+        "samples-are-photons",
+        "Neither photons_per_unit nor a unit in the file says what one unit of the samples is: it is taken as one photon.",
+        "Write photons_per_unit.",
+    ],
+    [
+        "expected-counts",
+        "The noise of measured counts looks like texture, so that the bound on the depth comes out too small.",
+        "Give expected counts or the mean of many frames; the warning noise-in-counts says how much it may be.",
     ],
     [
         "one-scene",

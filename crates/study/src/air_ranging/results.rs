@@ -64,14 +64,6 @@ pub struct AirVerdict {
     pub accepted: Vec<String>,
 }
 
-impl AirVerdict {
-    /// Whether a program may rely on it: it is met, under no condition but the accepted ones.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.met == Some(true) && Condition::unaccepted(&self.conditions, &self.accepted).next().is_none()
-    }
-}
-
 /// What the answer says.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AirFinding {

@@ -133,14 +133,6 @@ pub struct DepthVerdict {
     pub accepted: Vec<String>,
 }
 
-impl DepthVerdict {
-    /// Whether a program may rely on it: it is met, under no condition but the accepted ones.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.met == Some(true) && Condition::unaccepted(&self.conditions, &self.accepted).next().is_none()
-    }
-}
-
 /// What there is to be said of depth.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DepthFinding {

@@ -13,6 +13,8 @@ use hadar::error::Result;
 use hadar::ranging::information::Cell;
 use hadar::ranging::information::decide::{Stats, decide};
 use hadar::ranging::noise::Joined;
+use hadar_formats::cube::SampleUnit;
+use hadar_scenario::range::Subject;
 use std::f64::consts::PI;
 
 /// A gain of the scattered signal over the heat cube by more than rounding.
@@ -170,13 +172,31 @@ impl RangeStudy {
         }
         let more = match &self.subject {
             Resolved::Scene(_) => vec![Condition::NoAir, Condition::OneScene],
-            Resolved::Cube(_) => Vec::new(),
+            Resolved::Cube(cube) => self.of_cube(cube),
         };
         let bands = self.bands.as_ref().map_or(1, hadar::spectrum::Bands::len);
         let camera = camera.map(|camera| (camera, bands, brightest));
         *conditions = of_stereo(camera, more, &self.scenario.source.settings, verdict.met == Some(true));
         verdict.conditions.clone_from(conditions);
         verdict
+    }
+
+    /// What nobody stated of a cube.
+    fn of_cube(&self, cube: &Measured) -> Vec<Condition> {
+        let Subject::Cube(spec) = &self.scenario.subject else { return Vec::new() };
+        let says_photons = cube.read.unit.as_deref().is_some_and(|unit| {
+            SampleUnit::spelt(unit) == SampleUnit::Counts && !SampleUnit::says_nothing(unit)
+        });
+        let is_silent = spec.noise.is_none() && self.camera.is_none();
+        let is_unit_open = spec.photons_per_unit.is_none() && !says_photons;
+        [
+            is_silent.then_some(Condition::ShotNoiseAlone),
+            is_unit_open.then_some(Condition::SamplesArePhotons),
+            Some(Condition::ExpectedCounts),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
     fn judged(
