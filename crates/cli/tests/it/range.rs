@@ -202,13 +202,38 @@ fn a_report_has_every_plot_with_its_table_and_its_maps() {
 fn a_check_says_yes_or_no_by_the_cheapest_proof_and_the_same() {
     for (scenario, code) in [(CUBE.to_owned(), 0), (CUBE.replace("0.05", "0.0001"), 3)] {
         let folder = with_cube(&scenario);
-        let quick = folder.run(&["range", "a.toml", "--check", "--stats"]);
-        let whole = folder.run(&["range", "a.toml", "--check", "--no-skip"]);
+        let accepted = ["range", "a.toml", "--check", "--accept", UNSTATED];
+        let quick = folder.run(&[&accepted[..], &["--stats"]].concat());
+        let whole = folder.run(&[&accepted[..], &["--no-skip"]].concat());
         assert_eq!((quick.code, whole.code), (code, code), "{} {}", quick.stderr, whole.stderr);
+        assert_eq!(folder.run(&["range", "a.toml", "--check"]).code, 3);
         // The proofs say nothing of the thermal image.
         let answer = |outcome: &Outcome| outcome.stdout.split(" required)").next().unwrap().to_owned();
         assert_eq!(answer(&quick), answer(&whole));
     }
+}
+
+/// What nobody stated of the cube.
+const UNSTATED: &str = "shot-noise-alone,samples-are-photons,expected-counts";
+
+/// A figure that is left out makes no better verdict without saying so.
+#[test]
+fn a_yes_on_a_cube_names_what_nobody_stated() {
+    let codes = |scenario: &str, arguments: &[&str]| -> Vec<String> {
+        let result = with_cube(scenario).json(&[&["range", "a.toml"], arguments].concat());
+        assert_eq!(result["verdict"]["met"], true);
+        let conditions = result["verdict"]["conditions"].as_array().unwrap();
+        let mut codes: Vec<String> =
+            conditions.iter().map(|one| one["code"].as_str().unwrap().to_owned()).collect();
+        codes.sort();
+        codes
+    };
+    let mut all: Vec<&str> = UNSTATED.split(',').collect();
+    all.sort_unstable();
+    assert_eq!(codes(CUBE, &[]), all);
+    assert_eq!(codes(CUBE, &["--set", "requirement.relative_depth_error=0.06"]).len(), 4);
+    let stated = CUBE.replace("depth = ", "noise_variance = 0.001\nphotons_per_unit = 1.0\ndepth = ");
+    assert_eq!(codes(&stated, &[]), ["expected-counts"]);
 }
 
 /// Windows without a photon, under electronic noise: no texture, no bound, and counted as such by the proofs and by the bounds.
