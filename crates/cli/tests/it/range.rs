@@ -236,6 +236,27 @@ fn a_yes_on_a_cube_names_what_nobody_stated() {
     assert_eq!(codes(&stated, &[]), ["expected-counts"]);
 }
 
+/// Counts beyond a stated well meet nothing, proved or not; a well that holds them changes nothing.
+#[test]
+fn no_yes_rests_on_counts_beyond_the_well() {
+    let brightest = samples().into_iter().fold(0.0, f64::max);
+    for (well, met) in [(0.99 * brightest, false), (1.01 * brightest, true)] {
+        let camera = format!(
+            "[camera]\nfocal_length = \"14 mm\"\npixel = \"12 um\"\nf_number = 1.0\nexposure = \"10 ms\"\nnoise_electrons = 1\nfull_well = {well}\n[stereo]"
+        );
+        let scenario = CUBE
+            .replace("focal_length = \"14 mm\"\n", "")
+            .replace("pixel = \"12 um\"\n", "")
+            .replace("depth = ", "noise_variance = 0.001\ndepth = ")
+            .replace("[stereo]", &camera);
+        let folder = with_cube(&scenario);
+        for arguments in [&["range", "a.toml", "--json"][..], &["range", "a.toml", "--check", "--json"]] {
+            let result: Value = serde_json::from_str(&folder.run(arguments).stdout).unwrap();
+            assert_eq!(result["verdict"]["met"], met, "{arguments:?}: {}", result["verdict"]["sentence"]);
+        }
+    }
+}
+
 /// Windows without a photon, under electronic noise: no texture, no bound, and counted as such by the proofs and by the bounds.
 #[test]
 fn windows_without_photons_count_as_not_reaching_it() {

@@ -38,6 +38,10 @@ impl RangeStudy {
     pub(super) fn verdict_alone(&self, shape: Shape) -> Result<Option<Ranging>> {
         let Resolved::Cube(cube) = &self.subject else { return Ok(None) };
         let (Some(Depth::Uniform(depth_m)), None) = (&cube.depth, &cube.right) else { return Ok(None) };
+        // Whether all readings fit into the well takes all samples.
+        if self.camera.as_ref().is_some_and(|camera| camera.full_well.is_some()) {
+            return Ok(None);
+        }
         let var_diffraction_px2 = self.var_diffraction_px2()?;
         if var_diffraction_px2 != 0.0 || self.scenario.stereo.joined == Joined::OneReading {
             return Ok(None);
@@ -161,7 +165,7 @@ impl RangeStudy {
 
     /// A verdict with what it rests on, the brightest reading holding so many photons: one that does not fit into the well meets nothing.
     pub(super) fn resting(&self, mut verdict: DepthVerdict, brightest: Option<f64>) -> DepthVerdict {
-        let camera = self.camera.as_ref();
+        let (camera, brightest) = (self.camera.as_ref(), brightest.or_else(|| self.brightest_of_cube()));
         let full = brightest.zip(camera).and_then(|(counts, camera)| Overfull::of(counts, camera));
         let DepthFinding::Judged { met, overfull, conditions, .. } = &mut verdict.sentence else {
             return verdict;
@@ -179,6 +183,14 @@ impl RangeStudy {
         *conditions = of_stereo(camera, more, &self.scenario.source.settings, verdict.met == Some(true));
         verdict.conditions.clone_from(conditions);
         verdict
+    }
+
+    /// Photons of the largest sample that was looked at in the views of a cube, of one of its camera's frames.
+    fn brightest_of_cube(&self) -> Option<f64> {
+        let Resolved::Cube(cube) = &self.subject else { return None };
+        let tallies = cube.watches.iter().map(|watch| watch.tally()).filter(|tally| tally.pixels > 0);
+        let most = tallies.map(|tally| tally.most).reduce(f64::max)?;
+        Some(most * cube.photons_per_unit / f64::from(self.camera.as_ref()?.frames))
     }
 
     /// What nobody stated of a cube.
