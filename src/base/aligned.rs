@@ -1,7 +1,7 @@
 //! Slices of doubles that start at a cache line, their memory used again.
 //!
 //! A loop over spectra is short: fetching and clearing memory for each of them can take as long as what is done with it. What is given
-//! back stays with its thread, up to [`KEPT`] of them, for the next one of the same size.
+//! back stays with its thread, up to 64 slices, for the next one of the same size.
 
 use crate::simd::LANES;
 use std::cell::RefCell;
