@@ -230,8 +230,7 @@ function sliderElement(field, range) {
     const value = written(ranges.get(field.path), numberAt(ranges.get(field.path), slider.valueAsNumber));
     at(idOf(field.path, "field")).value = value;
     slider.setAttribute("aria-valuetext", value);
-    change({ do: "set", key: field.path, value });
-    hold = holds;
+    changeBy(holds, { do: "set", key: field.path, value });
   });
   for (const taken of ["pointerdown", "focus"]) slider.addEventListener(taken, () => { holds += 1; });
   return slider;

@@ -27,8 +27,11 @@ let mistake = null;
 
 // Asking: one question at a time, the newest state next.
 
-function change(...edits) {
-  hold = 0;
+const change = (...edits) => changeBy(0, ...edits);
+
+// `taken`: the hold of a slider that makes the change; 0: none.
+function changeBy(taken, ...edits) {
+  hold = taken;
   for (const edit of edits) {
     const last = changes.at(-1);
     if (edit.do === "set" && last?.do === "set" && last.key === edit.key) changes.pop();
@@ -90,6 +93,8 @@ async function ask() {
   while (changes.length > 0 || typed || whole) {
     const question = { scenario: text, edits: changes, trade_off: tradeOff, full: whole };
     const asked = revision;
+    // Whoever takes hold of a slider meanwhile has not made this state.
+    const by = hold;
     const waiting = setTimeout(pass, changes.length > 0 || typed ? PATIENCE_MS : 10000);
     changes = [];
     typed = whole = false;
@@ -103,7 +108,7 @@ async function ask() {
       else {
         const answered = await reply.json();
         // A text that was typed meanwhile is newer than this answer.
-        if (asked === revision) show(answered, question);
+        if (asked === revision) show(answered, question, by);
       }
     } catch {
       trouble = controller.signal.aborted
@@ -188,14 +193,14 @@ function toError() {
 
 // Showing an answer.
 
-function show({ scenario, form, answer, error }, { scenario: before, edits, full }) {
+function show({ scenario, form, answer, error }, { scenario: before, edits, full }, by) {
   // A change that is refused leaves the text: what was typed for it is taken back.
   if (edits.length > 0 && error && scenario === before) signature = "";
   text = scenario;
   forgetFound();
   if (at("scenario").value !== text) at("scenario").value = text;
   if (form) showForm(form);
-  if (full || error) keep(text, form, answer);
+  if (full || error) keep(text, form, answer, by);
   if (error) return failed(error.message, error);
   unmark();
   at("answer").hidden = false;

@@ -46,8 +46,8 @@ async function open(otherwise) {
   else take(scenario ?? otherwise);
 }
 
-// Keeps a state once it has an answer or a mistake; one after another, since a link takes a moment.
-function keep(scenario, form, answer) {
+// Keeps a state once it has an answer or a mistake; one after another, since a link takes a moment. `by`: the hold of a slider that made it.
+function keep(scenario, form, answer, by) {
   keeping = keeping.then(async () => {
     const address = await linkTo(scenario);
     // A newer text is on its way.
@@ -55,12 +55,12 @@ function keep(scenario, form, answer) {
     const here = history.state;
     // What was a mistake is replaced, not kept to be gone back to; so is where a slider paused that is still held.
     const isSame = here?.text === scenario;
-    const replaces = here && (isSame || here.mistaken || (hold > 0 && here.hold === hold));
+    const replaces = here && (isSame || here.mistaken || (by > 0 && here.hold === by));
     if (current < 0 || !here) current = Math.max(current, 0);
     if (here && !replaces) current += 1;
     if (!isSame) past.length = current;
     past[current] = { scenario, form, answer };
-    const state = { n: current, text: scenario, mistaken: !answer, hold };
+    const state = { n: current, text: scenario, mistaken: !answer, hold: by };
     if (here && !replaces) history.pushState(state, "", address);
     else history.replaceState(state, "", address);
     showPast();
