@@ -1,6 +1,6 @@
 //! Units of spectral radiance, and what one is per photon or watt and cm⁻¹.
 //!
-//! A unit is a product of powers: a power (W, or photons s⁻¹), an area (m², cm²), a solid angle (sr), and what it is spread over: wavenumber
+//! A unit is a product of powers: a power (W, J s⁻¹, erg s⁻¹, or photons s⁻¹), an area (m², cm²), a solid angle (sr), and what it is spread over: wavenumber
 //! (cm⁻¹, m⁻¹), wavelength (µm, nm, m) or frequency (Hz, THz). What it is spread over follows from the length and time that are left:
 //!
 //! | left | spread over | per cm⁻¹ |
@@ -13,7 +13,7 @@
 //! (Δν̃/ν̃)².
 //!
 //! Spellings: `W m^-2 sr^-1 per cm^-1`, `W/(m2 sr um)`, `mW m-2 sr-1 (cm-1)-1`, `W·m⁻²·sr⁻¹·µm⁻¹`, `photons s-1 m-2 sr-1 um-1`, `uflick`; powers
-//! of what stands in brackets; what follows a `/` or `per` alone is divided by. Source: definitions of the SI; flick: 1 W cm⁻² sr⁻¹ µm⁻¹.
+//! of what stands in brackets; what follows a `/` or `per` alone is divided by. Source: definitions of the SI; flick: 1 W cm⁻² sr⁻¹ µm⁻¹; Jy: 10⁻²⁶ W m⁻² Hz⁻¹.
 
 use crate::error::{Error, Result};
 use crate::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S, with_plain_micro};
@@ -51,26 +51,32 @@ const METRE: usize = 2;
 const SECOND: usize = 3;
 const STERADIAN: usize = 4;
 
-/// Names of one power each; prefixes may stand before those that take them.
-const NAMES: &[(&str, usize, f64, i32, bool)] = &[
-    ("W", WATT, 1.0, 1, true),
-    ("watt", WATT, 1.0, 1, true),
-    ("watts", WATT, 1.0, 1, true),
-    ("photon", PHOTON, 1.0, 1, false),
-    ("photons", PHOTON, 1.0, 1, false),
-    ("ph", PHOTON, 1.0, 1, false),
-    ("m", METRE, 1.0, 1, true),
-    ("meter", METRE, 1.0, 1, true),
-    ("metre", METRE, 1.0, 1, true),
-    ("micron", METRE, 1e-6, 1, false),
-    ("s", SECOND, 1.0, 1, true),
-    ("sec", SECOND, 1.0, 1, false),
-    ("second", SECOND, 1.0, 1, false),
-    ("Hz", SECOND, 1.0, -1, true),
-    ("hertz", SECOND, 1.0, -1, true),
-    ("sr", STERADIAN, 1.0, 1, false),
-    ("ster", STERADIAN, 1.0, 1, false),
-    ("steradian", STERADIAN, 1.0, 1, false),
+/// Names with their factors and powers; prefixes may stand before those that take them.
+const NAMES: &[(&str, f64, [i32; 5], bool)] = &[
+    ("W", 1.0, [1, 0, 0, 0, 0], true),
+    ("watt", 1.0, [1, 0, 0, 0, 0], true),
+    ("watts", 1.0, [1, 0, 0, 0, 0], true),
+    ("J", 1.0, [1, 0, 0, 1, 0], true),
+    ("joule", 1.0, [1, 0, 0, 1, 0], true),
+    ("erg", 1e-7, [1, 0, 0, 1, 0], false),
+    ("ergs", 1e-7, [1, 0, 0, 1, 0], false),
+    ("Jy", 1e-26, [1, 0, -2, 1, 0], true),
+    ("jansky", 1e-26, [1, 0, -2, 1, 0], true),
+    ("photon", 1.0, [0, 1, 0, 0, 0], false),
+    ("photons", 1.0, [0, 1, 0, 0, 0], false),
+    ("ph", 1.0, [0, 1, 0, 0, 0], false),
+    ("m", 1.0, [0, 0, 1, 0, 0], true),
+    ("meter", 1.0, [0, 0, 1, 0, 0], true),
+    ("metre", 1.0, [0, 0, 1, 0, 0], true),
+    ("micron", 1e-6, [0, 0, 1, 0, 0], false),
+    ("s", 1.0, [0, 0, 0, 1, 0], true),
+    ("sec", 1.0, [0, 0, 0, 1, 0], false),
+    ("second", 1.0, [0, 0, 0, 1, 0], false),
+    ("Hz", 1.0, [0, 0, 0, -1, 0], true),
+    ("hertz", 1.0, [0, 0, 0, -1, 0], true),
+    ("sr", 1.0, [0, 0, 0, 0, 1], false),
+    ("ster", 1.0, [0, 0, 0, 0, 1], false),
+    ("steradian", 1.0, [0, 0, 0, 0, 1], false),
 ];
 const PREFIXES: &[(&str, f64)] = &[
     ("", 1.0),
@@ -79,6 +85,7 @@ const PREFIXES: &[(&str, f64)] = &[
     ("centi", 1e-2),
     ("nano", 1e-9),
     ("kilo", 1e3),
+    ("mega", 1e6),
     ("giga", 1e9),
     ("tera", 1e12),
     ("m", 1e-3),
@@ -86,6 +93,7 @@ const PREFIXES: &[(&str, f64)] = &[
     ("n", 1e-9),
     ("c", 1e-2),
     ("k", 1e3),
+    ("M", 1e6),
     ("G", 1e9),
     ("T", 1e12),
 ];
@@ -316,7 +324,7 @@ fn word<'a>(text: &'a str, word: &str) -> Option<&'a str> {
 
 /// What is said of a name that is none, with those that are like it.
 fn unknown(name: &str) -> String {
-    let prefixed = |(own, _, _, _, takes_prefix): &(&str, usize, f64, i32, bool)| -> Vec<String> {
+    let prefixed = |(own, _, _, takes_prefix): &(&str, f64, [i32; 5], bool)| -> Vec<String> {
         // `cm` and `centimetre`, not `centim`.
         let suits = |prefix: &str| *takes_prefix && (prefix.len() > 1) == (own.len() > 2);
         let prefixes = PREFIXES.iter().filter(|(prefix, _)| prefix.is_empty() || suits(prefix));
@@ -336,9 +344,7 @@ fn unknown(name: &str) -> String {
 fn named(name: &str) -> Option<Product> {
     let of = |wanted: &str| {
         let found = NAMES.iter().find(|(own, ..)| *own == wanted)?;
-        let (_, what, factor, power, takes_prefix) = *found;
-        let mut powers = [0; 5];
-        *powers.get_mut(what)? = power;
+        let (_, factor, powers, takes_prefix) = *found;
         Some((Product { factor, powers }, takes_prefix))
     };
     PREFIXES.iter().find_map(|(prefix, scale)| {
@@ -405,6 +411,11 @@ mod tests {
                 &["microflick", "uflick", "µflick", "0.01 W m-2 sr-1 um-1", "μW/(cm² sr μm)"],
             ),
             ("photons s-1 m-2 sr-1 um-1", &["ph/(s m2 sr um)", "photon s^-1 m^-2 sr^-1 um^-1"]),
+            ("1e-20 W m-2 sr-1 Hz-1", &["MJy/sr", "MJy sr-1", "megajansky per sr", "1e6 Jy/sr"]),
+            (
+                "1e-3 W m-2 sr-1 per cm^-1",
+                &["erg s-1 cm-2 sr-1 (cm-1)-1", "erg/(s cm2 sr cm-1)", "1e-3 J s-1 m-2 sr-1 (cm-1)-1"],
+            ),
             ("W m-2 sr-1 Hz-1", &["W m-2 sr-1 s", "W/(m2 sr Hz)", "1000000000000 W m-2 sr-1 THz-1"]),
         ] {
             let unit = RadianceUnit::spelt(reference).unwrap();

@@ -29,6 +29,7 @@ mod open;
 mod packed;
 mod raw;
 mod sample_unit;
+mod scaling;
 mod stored;
 mod telops;
 mod text_unit;

@@ -124,6 +124,11 @@ impl EnviHeader {
         self.entry(key).map(|entry| entry.text.trim())
     }
 
+    /// All keys, in lower case, with their texts.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.entries.iter().map(|(key, entry)| (key.as_str(), entry.text.trim()))
+    }
+
     /// The items of a list.
     #[must_use]
     pub fn list(&self, key: &str) -> Option<Vec<&str>> {

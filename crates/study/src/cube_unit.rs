@@ -51,10 +51,17 @@ pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceU
     match (said, radiance) {
         (CubeUnit::Radiance { unit, .. }, Some(own)) => Ok((!own.is(*unit)).then_some(own)),
         (CubeUnit::Radiance { written, .. }, None) => {
-            if SampleUnit::says_nothing(without_name(of_file)) {
-                return Ok(None);
+            match RadianceUnit::spelt(without_name(of_file)) {
+                _ if SampleUnit::says_nothing(without_name(of_file)) => Ok(None),
+                // What is not known is no other unit.
+                Err(Error::Malformed { found, .. }) if SampleUnit::spelt(of_file) == SampleUnit::Other => {
+                    Err(Error::malformed(
+                        format!("the unit of the samples by their file: {found}"),
+                        "write it into the file as in \"W m^-2 sr^-1 um^-1\", or leave it out of the file if the scenario's is right",
+                    ))
+                }
+                _ => Err(another(of_file, written)),
             }
-            Err(another(of_file, written))
         }
         (_, Some(_)) => Err(Error::malformed(
             format!("the samples are radiances by their file, in `{of_file}`, and counts by the scenario"),

@@ -399,3 +399,39 @@ with h5py.File("h5py_four.h5", "w") as f:
 images = [fits.PrimaryHDU(), fits.ImageHDU(IMAGES.astype(">f4"), name="RADIANCE"), fits.CompImageHDU(IMAGES.astype(">i2"), name="PACKED")]
 fits.HDUList(images).writeto("astropy_packed_beside.fits", overwrite=True)
 tifffile.imwrite("tifffile_white.tif", CUBE[:, :, 0].astype("u2"), photometric="miniswhite")
+
+# Factors and offsets that are none of the format's conventions: of the array, of its folder, in an array beside it.
+PACKED = CUBE.astype("<i2")
+for name, own, outer, beside in [
+    ("array", {"Slope": 0.01}, {}, {}),
+    ("hdf_eos", {"ScaleFactor": 0.01, "Offset": 300.0}, {}, {}),
+    ("folder", {}, {"scale_factor": 0.01}, {}),
+    ("beside", {}, {}, {"radiance_scales": np.full(BANDS, 0.01)}),
+    ("neutral", {"Slope": 1.0}, {"offset": 0.0}, {"scale": np.float64(1)}),
+]:
+    with h5py.File(f"packed_{name}.h5", "w") as f:
+        group = f.create_group("data")
+        group.create_dataset("radiance", data=PACKED).attrs.update(own)
+        group.attrs.update(outer)
+        for key, value in beside.items():
+            group.create_dataset(key, data=value)
+    if name == "beside":
+        continue
+    with netCDF4.Dataset(f"packed_{name}.nc", "w", format="NETCDF3_CLASSIC") as f:
+        for side, length in zip(["row", "column", "band"], PACKED.shape):
+            f.createDimension(side, length)
+        variable = f.createVariable("radiance", "i2", ("row", "column", "band"))
+        variable.set_auto_maskandscale(False)
+        variable.setncatts(own)
+        variable[:] = PACKED
+        f.setncatts(outer)
+    group = zarr.open_group(f"packed_{name}.zarr", mode="w", zarr_format=3 if name == "folder" else 2)
+    array = group.create_array("radiance", shape=PACKED.shape, chunks=PACKED.shape, dtype="<i2", compressors=None)
+    array[:] = PACKED
+    array.attrs.update(own)
+    group.attrs.update(outer)
+for name, beside in [("beside", np.full(BANDS, 0.01)), ("neutral", np.float64(1)), ("scalar", np.float64(0.01))]:
+    np.savez(f"packed_{name}.npz", radiance=PACKED, scale=beside)
+    scipy.io.savemat(f"packed_{name}.mat", {"radiance": PACKED, "radiance_slope": beside})
+for name, key, factor in [("array", "radiance scale factor", 100), ("neutral", "scale factor", 1)]:
+    envi.save_image(f"packed_{name}.hdr", PACKED, interleave="bil", metadata={key: factor}, force=True)

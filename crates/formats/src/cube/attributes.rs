@@ -2,6 +2,7 @@
 //!
 //! Source: NetCDF Users Guide, Attribute Conventions.
 
+use super::scaling;
 use super::stored::Stored;
 use super::values::{ALL_VALID, Values};
 use hadar::error::{Error, Result};
@@ -10,6 +11,8 @@ use hadar::error::{Error, Result};
 const NETCDF_FILL: f64 = 9.969_209_968_386_869e36;
 /// By how much the end of a range of whole numbers may be off.
 const ROUNDING: f64 = 1e-6;
+/// By which stored numbers become samples: factor and offset.
+const APPLIED: [&str; 2] = ["scale_factor", "add_offset"];
 /// What the unit of an array is called, and what says without one what it is.
 const UNITS: [&str; 3] = ["units", "unit", "data_units"];
 const QUANTITIES: [&str; 2] = ["standard_name", "quantity"];
@@ -42,6 +45,28 @@ impl Attributes {
     /// All of them with their names.
     pub(super) fn all(&self) -> impl Iterator<Item = (&str, &Attribute)> {
         self.0.iter().map(|(name, value)| (name.as_str(), value))
+    }
+
+    /// Refuses factors and offsets of samples that are not applied: of their array `name` under other names, or under any of the folders that it
+    /// is in where it has none itself.
+    ///
+    /// # Errors
+    /// One that would change samples.
+    pub(super) fn check_scaling(&self, name: &str, folders: impl IntoIterator<Item = Self>) -> Result<()> {
+        let is_applied = |key: &str| APPLIED.iter().any(|applied| key.eq_ignore_ascii_case(applied));
+        let check = |(key, value): (&str, &Attribute)| match value {
+            Attribute::Floating(numbers) | Attribute::Whole(numbers) => scaling::check(key, name, numbers),
+            Attribute::Text(text) => {
+                text.trim().parse().map_or(Ok(()), |one| scaling::check(key, name, &[one]))
+            }
+            #[cfg(any(feature = "hdf5", feature = "zarr"))]
+            Attribute::Other => Ok(()),
+        };
+        self.all().filter(|(key, _)| !is_applied(key)).try_for_each(check)?;
+        if APPLIED.iter().any(|key| self.says(key)) {
+            return Ok(());
+        }
+        folders.into_iter().try_for_each(|folder| folder.all().try_for_each(check))
     }
 
     /// The unit that is stated as such.
@@ -123,7 +148,7 @@ impl Attributes {
         }
         missing.retain(|value| !value.is_nan());
         missing.dedup();
-        let (gain, offset) = (one("scale_factor")?, one("add_offset")?);
+        let (gain, offset) = (one(APPLIED[0])?, one(APPLIED[1])?);
         if gain == Some(0.0) {
             return Err(wrong(
                 "scale_factor",

@@ -14,6 +14,7 @@ use super::axes::Axes;
 use super::band_list;
 use super::found::{Found, Opened};
 use super::raw::Raw;
+use super::scaling;
 use super::stored::Stored;
 use super::text_unit;
 use super::values::{ALL_VALID, Values};
@@ -98,6 +99,10 @@ const fn stored(data_type: DataType) -> Stored {
 
 /// What the numbers stand for.
 fn values(header: &EnviHeader, bands: usize) -> Result<Option<Values>> {
+    for (key, text) in header.all().filter(|(key, _)| ![SCALE, GAINS, OFFSETS].contains(key)) {
+        let numbers: Option<Vec<f64>> = text.split(',').map(|item| item.trim().parse().ok()).collect();
+        scaling::check(key, "", &numbers.unwrap_or_default()).map_err(|error| header.wrong(key, error))?;
+    }
     let for_bands = |key: &str| header.numbers_for(key, bands, "bands");
     let (gains, offsets) = (for_bands(GAINS)?, for_bands(OFFSETS)?);
     let gain = match (header.number(SCALE)?, gains) {

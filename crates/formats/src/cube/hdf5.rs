@@ -12,7 +12,7 @@ mod links;
 mod sound;
 mod source;
 
-use self::array::{Array, listed};
+use self::array::{Array, listed, said};
 use self::band_axis::BandAxis;
 use self::sound::{damaged, sound};
 use self::source::{Bounded, check_chunks};
@@ -21,6 +21,7 @@ use super::choice::{Listed, choose};
 use super::found::{Found, Opened};
 use super::packed;
 use super::raw::{MAX_INFLATION, Raw};
+use super::scaling;
 use super::text_unit;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
@@ -40,6 +41,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
         }
         said => said,
     };
+    sound(|| check_scaling(&source, &name, &array, len))?;
     let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
     let bands = opened.found.shape.bands();
     let axis = sound(|| Ok(BandAxis::of(&source, &name, bands, len)))?;
@@ -55,6 +57,28 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
         ..opened.found
     };
     Ok(Opened { found, ..opened })
+}
+
+/// Refuses a factor or an offset that is not applied: of the array, of a folder that it is in, or in an array beside it.
+fn check_scaling(source: &hdf5_pure::File, name: &str, array: &Array, len: u64) -> Result<()> {
+    let (folder, own) = name.rsplit_once('/').unwrap_or(("", name));
+    let outer = name.match_indices('/').filter(|(place, _)| *place > 0).map(|(place, _)| &name[..place]);
+    let groups = outer.filter_map(|outer| source.group(outer).ok()).chain([source.root()]);
+    let of_groups = groups.map(|group| said(&group.attrs().unwrap_or_default()));
+    array.attributes.check_scaling(own, of_groups).map_err(|error| error.for_key(name))?;
+    let bands = array.sides.clone();
+    for (other, dataset) in listed(source) {
+        let (beside, last) = other.rsplit_once('/').unwrap_or(("", &other));
+        if beside != folder || !scaling::is_named(last, own) {
+            continue;
+        }
+        let count = |list: &Array| list.sides.iter().product::<usize>();
+        let list = Array::of(dataset).ok().filter(|list| count(list) == 1 || bands.contains(&count(list)));
+        if let Some(numbers) = list.and_then(|list| list.numbers(count(&list), len)) {
+            scaling::check(last, own, &numbers)?;
+        }
+    }
+    Ok(())
 }
 
 /// The array of this name, or the only one that can be meant.

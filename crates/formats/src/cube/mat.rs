@@ -17,6 +17,7 @@ use super::arrange;
 use super::axes::Axes;
 use super::band_list;
 use super::found::{Found, Opened};
+use super::scaling;
 use super::text_unit;
 use hadar::cube::{Cube, MemoryCube, Sample, Shape};
 use hadar::error::{Error, Result};
@@ -67,8 +68,14 @@ pub(super) fn open(
     }
     .map_err(of_variable)?;
     let bytes = shape.len() as u64 * if class.is_double() { 8 } else { 4 };
-    let (centres_cm1, axis_without_unit) =
-        band_list::centres(&lists(&file, &variables, shape.bands(), little_endian))?;
+    let lists = |is_meant: &dyn Fn(&str) -> bool, lengths: &[usize]| {
+        lists(&file, &variables, is_meant, lengths, little_endian)
+    };
+    for (name, numbers) in lists(&|name| scaling::is_named(name, &head.name), &[1, shape.bands()]) {
+        scaling::check(&name, &head.name, &numbers)?;
+    }
+    let is_axis = |name: &str| band_list::unit(name, None).is_some();
+    let (centres_cm1, axis_without_unit) = band_list::centres(&lists(&is_axis, &[shape.bands()]))?;
     let found = Found {
         variable: Some(head.name.clone()),
         memory_bytes: Some(bytes),
@@ -88,18 +95,24 @@ fn samples<S: Sample>(element: &mut Element<impl Read>, shape: Shape, order: Axe
     MemoryCube::new(shape, samples)
 }
 
-/// Lists of wavelengths or wavenumbers of so many bands.
-fn lists(file: &File, variables: &[Variable], bands: usize, little_endian: bool) -> Vec<(String, Vec<f64>)> {
+/// Lists of so many numbers, by their names.
+fn lists(
+    file: &File,
+    variables: &[Variable],
+    is_meant: &dyn Fn(&str) -> bool,
+    lengths: &[usize],
+    little_endian: bool,
+) -> Vec<(String, Vec<f64>)> {
     let list = |variable: &Variable| {
         let head = &variable.head;
-        band_list::unit(&head.name, None)?;
         let sides: Vec<usize> = head.dimensions.iter().map(|side| *side as usize).collect();
-        numeric(head).ok().filter(|_| band_list::is_list(&sides, bands))?;
+        numeric(head).ok().filter(|_| is_meant(&head.name))?;
+        let count = *lengths.iter().find(|length| band_list::is_list(&sides, **length))?;
         let content = content(file, variable).ok()?;
         let mut element = Element::of(content, variable.compressed, variable.len, little_endian).ok()?;
         element.head().ok()?;
-        let stored = element.numbers(bands as u64).ok()?;
-        let mut numbers = vec![0.0_f64; bands];
+        let stored = element.numbers(count as u64).ok()?;
+        let mut numbers = vec![0.0_f64; count];
         element.fill(stored, &mut numbers).ok()?;
         Some((head.name.clone(), numbers))
     };

@@ -48,6 +48,8 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let axes = axes.or_else(by_name);
     let order = axes.unwrap_or_default();
     let shape = order.shape(&sides).map_err(of_variable)?;
+    let of_file = [header.attributes.clone()];
+    variable.attributes.check_scaling(&variable.name, of_file).map_err(of_variable)?;
     let values = variable.attributes.values_with(stored, variable.filled()).map_err(of_variable)?;
     let found = Found::array("NetCDF-3", shape, stored.name(), &sides);
     let mut found =

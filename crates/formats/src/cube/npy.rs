@@ -74,7 +74,7 @@ pub(super) fn list(file: &mut impl Read, len: u64, count: usize) -> Option<Vec<f
     let (stored, little_endian) = sample_type(&header.descr).ok()?;
     let sides = header.sides;
     let bytes = (count as u64).checked_mul(stored.size() as u64)?;
-    let is_list = sides.contains(&count) && sides.iter().filter(|side| **side != 1).count() <= 1;
+    let is_list = sides.iter().filter(|side| **side != 1).count() <= 1;
     if !is_list || len.checked_sub(start) != Some(bytes) {
         return None;
     }

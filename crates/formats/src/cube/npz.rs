@@ -10,6 +10,7 @@ use super::band_list;
 use super::found::{Found, Opened};
 use super::npy::{self, Array};
 use super::raw::MAX_INFLATION;
+use super::scaling;
 use super::stored::decode_next;
 use super::text_unit;
 use super::{READ_CUBE, arrange};
@@ -58,23 +59,30 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
         let found = Found::array(FORMAT, array.shape, array.stored.name(), &array.sides);
         Opened { cube, found: Found { axes, memory_bytes: Some(memory), ..found } }
     };
+    let bands = opened.found.shape.bands();
     let (centres_cm1, axis_without_unit) =
-        band_list::centres(&lists(&mut archive, opened.found.shape.bands()))?;
+        band_list::centres(&read(&mut archive, |name| band_list::unit(name, None).is_some(), &[bands]))?;
+    for (name, numbers) in read(&mut archive, |name| scaling::is_named(name, &variable), &[1, bands]) {
+        scaling::check(&name, &variable, &numbers)?;
+    }
     let unit = unit(&mut archive, &variable);
     let found = Found { variable: Some(variable), centres_cm1, axis_without_unit, unit, ..opened.found };
     Ok(Opened { found, ..opened })
 }
 
-/// Lists of wavelengths or wavenumbers of so many bands.
-fn lists(archive: &mut ZipArchive<BufReader<File>>, bands: usize) -> Vec<(String, Vec<f64>)> {
+/// Lists of so many numbers, by their names.
+fn read(
+    archive: &mut ZipArchive<BufReader<File>>,
+    is_meant: impl Fn(&str) -> bool,
+    lengths: &[usize],
+) -> Vec<(String, Vec<f64>)> {
     let count = archive.len().min(MOST);
-    let list = |place: usize| {
+    let mut list = |place: usize, length: usize| {
         let mut entry = archive.by_index(place).ok()?;
         let (len, name) = (entry.size(), array_name(entry.name()));
-        band_list::unit(&name, None)?;
-        Some((name, npy::list(&mut entry, len, bands)?))
+        Some((name, npy::list(&mut entry, len, length).filter(|_| is_meant(&array_name(entry.name())))?))
     };
-    (0..count).filter_map(list).collect()
+    (0..count).filter_map(|place| lengths.iter().find_map(|length| list(place, *length))).collect()
 }
 
 /// The unit of the samples, in a text beside them.

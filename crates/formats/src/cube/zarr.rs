@@ -73,6 +73,10 @@ pub(super) fn open(path: &Path, name: Option<&str>, axes: Option<Axes>) -> Resul
     let axes = axes.or_else(by_name);
     let order = axes.unwrap_or_default();
     let shape = order.shape(&meta.sides).map_err(of_array)?;
+    let outer = folder.ancestors().skip(1).take_while(|outer| outer.starts_with(path));
+    let groups = outer.map(meta::of_group).collect::<Result<Vec<_>>>()?;
+    let own = name.rsplit('/').next().unwrap_or_default();
+    meta.attributes.check_scaling(own, groups).map_err(of_array)?;
     let values = meta.values().map_err(of_array)?;
     let found = Found::array(meta.version, shape, meta.stored.name(), &meta.sides);
     let variable = (!name.is_empty()).then(|| name.clone());

@@ -438,3 +438,35 @@ fn a_list_beside_the_cube_says_its_bands() {
         assert!(found.axis_without_unit && found.centres_cm1.is_none(), "{name}");
     }
 }
+
+/// A factor or an offset under a name that no convention has is neither applied nor passed over, wherever it stands.
+#[cfg(all(feature = "hdf5", feature = "zarr"))]
+#[test]
+fn samples_that_are_packed_otherwise_are_refused() {
+    for (name, key) in [
+        ("packed_array.h5", "Slope"),
+        ("packed_array.nc", "Slope"),
+        ("packed_array.zarr", "Slope"),
+        ("packed_array.hdr", "radiance scale factor"),
+        ("packed_hdf_eos.h5", "ScaleFactor"),
+        ("packed_hdf_eos.nc", "ScaleFactor"),
+        ("packed_hdf_eos.zarr", "ScaleFactor"),
+        ("packed_folder.h5", "scale_factor"),
+        ("packed_folder.nc", "scale_factor"),
+        ("packed_folder.zarr", "scale_factor"),
+        ("packed_beside.h5", "radiance_scales"),
+        ("packed_beside.npz", "scale"),
+        ("packed_beside.mat", "radiance_slope"),
+        ("packed_scalar.npz", "scale"),
+        ("packed_scalar.mat", "radiance_slope"),
+    ] {
+        let said = refusal(name, None, None);
+        assert!(said.contains(key) || said.contains("Offset"), "{name}: {said}");
+        assert!(said.contains("packed") && said.contains("unpacked"), "{name}: {said}");
+    }
+    for end in ["h5", "nc", "zarr", "npz", "mat", "hdr"] {
+        let name = format!("packed_neutral.{end}");
+        let opened = open(&name, None, None).unwrap_or_else(|error| panic!("{error}"));
+        assert!(same(&samples(&opened.cube), &cube_of(plain)), "{name}");
+    }
+}

@@ -1,6 +1,7 @@
 //! What GDAL says beside a picture of its samples.
 
 use crate::cube::band_list;
+use crate::cube::scaling;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use std::fs::File;
@@ -50,6 +51,11 @@ impl Said {
         if let Some(item) = items.iter().find(wrong) {
             let found = format!("the {} of a band is `{}`", item.role, item.value.escape_debug());
             return Err(Error::malformed(found, "write it as a number, with a decimal point and its sample"));
+        }
+        for item in items.iter().filter(|item| !["scale", "offset"].contains(&item.role)) {
+            if let Ok(number) = item.value.trim().parse() {
+                scaling::check(item.name, "", &[number])?;
+            }
         }
         let numbers = |is: &dyn Fn(&Item<'_>) -> bool, silent: Option<f64>| -> Vec<f64> {
             let of = |band: usize| {

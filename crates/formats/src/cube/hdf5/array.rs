@@ -129,8 +129,8 @@ fn number(datatype: &Datatype) -> Result<(Stored, bool)> {
     Ok((stored.ok_or_else(other)?, little_endian))
 }
 
-/// The attributes of an array.
-fn said(attributes: &HashMap<String, AttrValue>) -> Attributes {
+/// The attributes of an array or a group.
+pub(super) fn said(attributes: &HashMap<String, AttrValue>) -> Attributes {
     let of = |value: &AttrValue| {
         let signed = || value.to_i64s().map(|all| all.iter().map(|one| *one as f64).collect());
         let unsigned = || value.to_u64s().map(|all| all.iter().map(|one| *one as f64).collect());

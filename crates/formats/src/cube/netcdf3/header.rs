@@ -21,6 +21,8 @@ const CHAR: u32 = 2;
 /// What a file says of its numbers.
 #[derive(Debug)]
 pub(super) struct Header {
+    /// Of the file as a whole.
+    pub(super) attributes: Attributes,
     /// Names and lengths; the unlimited one has the number of records.
     dimensions: Vec<(String, usize)>,
     /// Which of them is unlimited.
@@ -92,13 +94,13 @@ impl Header {
             Ok((reader.name()?, usize::try_from(reader.count()?).unwrap_or(usize::MAX)))
         })?;
         let unlimited = dimensions.iter().position(|(_, length)| *length == 0);
-        reader.attributes()?;
+        let attributes = reader.attributes()?;
         let variables = reader.list(VARIABLES, Reader::variable)?;
         if variables.iter().flat_map(|variable| &variable.dimensions).any(|place| *place >= dimensions.len())
         {
             return Err(damaged("a variable has a dimension that is not there"));
         }
-        let mut header = Self { dimensions: Vec::new(), unlimited, variables, record_bytes: 0 };
+        let mut header = Self { attributes, dimensions: Vec::new(), unlimited, variables, record_bytes: 0 };
         let of_records: Vec<&Variable> =
             header.variables.iter().filter(|variable| header.is_record(variable)).collect();
         let slice = |variable: &Variable| {

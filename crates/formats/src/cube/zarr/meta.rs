@@ -39,19 +39,11 @@ pub(super) struct Meta {
 impl Meta {
     /// The array of a folder; none of a group.
     pub(super) fn of_folder(folder: &Path) -> Result<Option<Self>> {
-        let json = |name: &str| -> Result<Option<Value>> {
-            let path = folder.join(name);
-            if !path.is_file() {
-                return Ok(None);
-            }
-            let text = bytes(&path, "read the array", LONGEST)?;
-            serde_json::from_slice(&text).map(Some).map_err(|error| damaged(format!("{name}: {error}")))
-        };
-        if let Some(array) = json(".zarray")? {
-            let attributes = json(".zattrs")?.unwrap_or_default();
+        if let Some(array) = json(folder, ".zarray")? {
+            let attributes = json(folder, ".zattrs")?.unwrap_or_default();
             return Self::of_version_2(&array, &attributes).map(Some);
         }
-        match json("zarr.json")? {
+        match json(folder, "zarr.json")? {
             Some(array) if array["node_type"] == "array" => Self::of_version_3(&array).map(Some),
             _ => Ok(None),
         }
@@ -239,6 +231,22 @@ fn double_in_base64(text: &str) -> Option<f64> {
     }
     // Of the last digit two bits are none of the number's.
     Some(f64::from_bits(((bits >> 2) as u64).swap_bytes()))
+}
+
+/// What a file of a folder says; nothing where there is none.
+fn json(folder: &Path, name: &str) -> Result<Option<Value>> {
+    let path = folder.join(name);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let text = bytes(&path, "read the array", LONGEST)?;
+    serde_json::from_slice(&text).map(Some).map_err(|error| damaged(format!("{name}: {error}")))
+}
+
+/// The attributes of a group.
+pub(super) fn of_group(folder: &Path) -> Result<Attributes> {
+    let group = json(folder, "zarr.json")?.map(|group| group["attributes"].clone());
+    Ok(said(&group.or(json(folder, ".zattrs")?).unwrap_or_default()))
 }
 
 /// Attributes as those of NetCDF.
