@@ -17,11 +17,13 @@
 
 mod exponential;
 mod pairs;
+mod tabulated;
 
 pub use pairs::photon_radiance_difference_into;
 pub(crate) use pairs::{
     Beside, NearPair, beside_into, is_near_pair, near_pair_into, photon_radiance_apart_into,
 };
+pub use tabulated::Tabulated;
 
 use self::exponential::{Double, exp_and_complement, inverse_thermal, product};
 use crate::simd::dispatched;

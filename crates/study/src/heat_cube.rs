@@ -83,7 +83,7 @@ impl Said<'_> {
             let called = read.unit.as_ref().filter(|_| of_file.is_some()).unwrap_or(written);
             let unit = of_file.unwrap_or(*unit);
             brightness::check(&cube, unit, called).map_err(at("cube.unit"))?;
-            cube = brightness::in_radiance(cube, unit, bands.clone());
+            cube = brightness::in_radiance(cube, unit, bands.clone())?;
         }
         let lit = self.environment.iter().enumerate().map(|(k, source)| {
             sent(source, bands.nodes_cm1(), library).map_err(at(&format!("environment[{k}]")))

@@ -9,8 +9,8 @@
 
 use super::pixel::{Pixel, flag};
 use super::setting::Setting;
-use hadar::planck;
-use hadar::root::crossing;
+use hadar::error::Result;
+use hadar::planck::{self, Tabulated};
 use hadar::spectrum::Bands;
 
 /// Temperatures that are looked at, K.
@@ -24,21 +24,33 @@ pub(super) struct GreyBody<'a> {
     bands: &'a Bands,
     /// Bands that count, with κ and the electronic noise of each, counts².
     used: Vec<(usize, f64, f64)>,
+    /// What all of them together have of a blackbody.
+    together: Tabulated,
     /// Where the temperature of a target may be, K.
     range_k: [f64; 2],
 }
 
 impl<'a> GreyBody<'a> {
-    pub(super) fn new(setting: &Setting<'a>, used: &[usize]) -> Self {
+    pub(super) fn new(setting: &Setting<'a>, used: &[usize]) -> Result<Self> {
         let var = |band: usize| setting.var_added.get(band).copied().unwrap_or(0.0);
-        let used = used.iter().map(|&band| (band, setting.counts_per_radiance[band], var(band)));
-        Self { bands: setting.bands, used: used.collect(), range_k: setting.temperature_k }
+        let nodes = setting.bands.nodes_cm1();
+        let (mut radiance, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+        let together = Tabulated::new(RANGE_K, |t| {
+            planck::photon_radiance_and_slope_into(nodes, t, &mut radiance, &mut slope);
+            let sum = |at_nodes: &[f64]| {
+                let signal = setting.bands.weigh(at_nodes);
+                hadar::sum::sum(&used.iter().map(|band| signal[*band]).collect::<Vec<_>>())
+            };
+            vec![[sum(&radiance), sum(&slope)]]
+        })?;
+        let used = used.iter().map(|&band| (band, setting.counts_per_radiance[band], var(band))).collect();
+        Ok(Self { bands: setting.bands, used, together, range_k: setting.temperature_k })
     }
 
     /// The temperature of a pixel alone; none where less is sent than by any body.
     pub(super) fn pixel(&self, counts: &[f64]) -> Pixel {
         let total = self.used.iter().zip(counts).map(|((_, kappa, _), n)| n / kappa);
-        let temperature_k = self.temperature_k(hadar::sum::sum(&total.collect::<Vec<_>>()));
+        let temperature_k = self.together.temperature_k(0, hadar::sum::sum(&total.collect::<Vec<_>>()));
         let temperature_k = temperature_k.filter(|t| self.is_a_body(counts, *t));
         let [low, high] = self.range_k;
         Pixel {
@@ -64,18 +76,6 @@ impl<'a> GreyBody<'a> {
             let least = LEAST_SHARE * kappa * blackbody[*band];
             *n > 0.0 || (-n <= SEEN * var.sqrt() && least <= SEEN * (least + var).sqrt())
         })
-    }
-
-    fn temperature_k(&self, total: f64) -> Option<f64> {
-        let wanted = (total > 0.0).then(|| libm::log(total))?;
-        // ln ΣB is nearly a straight line over −1/T: a few steps suffice.
-        let all = |t: f64| {
-            let signal = self.blackbody(t);
-            hadar::sum::sum(&self.used.iter().map(|(band, ..)| signal[*band]).collect::<Vec<_>>())
-        };
-        let off = |inverse: f64| Ok(libm::log(all(-1.0 / inverse)) - wanted);
-        let [low, high] = RANGE_K;
-        crossing(-1.0 / low, -1.0 / high, off).ok().map(|inverse| -1.0 / inverse)
     }
 
     /// Band signals of a blackbody.
@@ -115,7 +115,7 @@ mod tests {
             };
             let counts: Vec<f64> =
                 sent.iter().zip(kappa).zip(factor).map(|((s, k), factor)| s * k * factor).collect();
-            GreyBody::new(&setting, &[0, 1, 2, 3, 4, 5]).pixel(&counts)
+            GreyBody::new(&setting, &[0, 1, 2, 3, 4, 5]).unwrap().pixel(&counts)
         };
         let watts: Vec<f64> = bands.bands().iter().map(|band| 2e-23 * band.center_cm1).collect();
         let one = [1.0; 6];

@@ -162,7 +162,7 @@ fn compared<S: Sample>(
     };
     match method {
         Method::GreyBody => {
-            let grey = GreyBody::new(setting, &used);
+            let grey = GreyBody::new(setting, &used)?;
             all(&|counts| grey.pixel(counts))
         }
         _ => {

@@ -6,7 +6,7 @@
 
 use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::error::{Error, Result};
-use hadar::planck::{photon_radiance, photon_radiance_slope};
+use hadar::planck::{Tabulated, photon_radiance_and_slope_into, photon_radiance_slope};
 use hadar::spectrum::Bands;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar::words::significant;
@@ -76,14 +76,31 @@ struct InRadiance<S> {
     cube: Box<dyn Rows<S>>,
     unit: TemperatureUnit,
     bands: Bands,
+    seen: Tabulated,
 }
 
 /// The radiances of a cube of temperatures in a unit; what is not above 0 K is missing.
-pub(super) fn in_radiance(cube: Cube, unit: TemperatureUnit, bands: Bands) -> Cube {
-    match cube {
-        Cube::F32(cube) => Cube::F32(Box::new(InRadiance { cube, unit, bands })),
-        Cube::F64(cube) => Cube::F64(Box::new(InRadiance { cube, unit, bands })),
-    }
+///
+/// # Errors
+/// None, as the table's range is one.
+pub(super) fn in_radiance(cube: Cube, unit: TemperatureUnit, bands: Bands) -> Result<Cube> {
+    let seen = Tabulated::new(SEEN_K, |t| radiances(&bands, t))?;
+    Ok(match cube {
+        Cube::F32(cube) => Cube::F32(Box::new(InRadiance { cube, unit, bands, seen })),
+        Cube::F64(cube) => Cube::F64(Box::new(InRadiance { cube, unit, bands, seen })),
+    })
+}
+
+/// What a blackbody is in each band, and how it changes with its temperature, W m⁻² sr⁻¹ per cm⁻¹, and per K.
+fn radiances(bands: &Bands, temperature_k: f64) -> Vec<[f64; 2]> {
+    let nodes = bands.nodes_cm1();
+    let (mut values, mut slopes) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
+    photon_radiance_and_slope_into(nodes, temperature_k, &mut values, &mut slopes);
+    energies(bands, &values)
+        .into_iter()
+        .zip(energies(bands, &slopes))
+        .map(|(value, slope)| [value, slope])
+        .collect()
 }
 
 impl<S: Sample> Rows<S> for InRadiance<S> {
@@ -95,16 +112,14 @@ impl<S: Sample> Rows<S> for InRadiance<S> {
         let mut own = Vec::new();
         let samples = self.cube.read(rows, &mut own)?;
         buffer.clear();
-        let mut at_nodes = vec![0.0; self.bands.nodes_cm1().len()];
         for pixel in samples.chunks(self.bands.len()) {
-            let kelvin: Vec<f64> = pixel.iter().map(|sample| self.unit.kelvin((*sample).into())).collect();
-            for ((out, nu), temperature_k) in
-                at_nodes.iter_mut().zip(self.bands.nodes_cm1()).zip(self.bands.spread(&kelvin))
-            {
+            buffer.extend(pixel.iter().enumerate().map(|(band, sample)| {
+                let temperature_k = self.unit.kelvin((*sample).into());
                 let is_one = temperature_k > 0.0 && temperature_k.is_finite();
-                *out = if is_one { photon_radiance(*nu, temperature_k) } else { f64::NAN };
-            }
-            buffer.extend(energies(&self.bands, &at_nodes).into_iter().map(S::of));
+                let unseen = || radiances(&self.bands, temperature_k)[band][0];
+                let radiance = is_one.then(|| self.seen.signal(band, temperature_k).unwrap_or_else(unseen));
+                S::of(radiance.unwrap_or(f64::NAN))
+            }));
         }
         Ok(buffer)
     }
