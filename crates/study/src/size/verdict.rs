@@ -153,13 +153,13 @@ impl Study {
         // Where it is no proof that ends the check, what is not told may be undecided.
         let by_proof = self.scenario.requirement.by == DistanceKind::Nearest
             && !self.proof_leaves_priors_out()
-            && !self.is_unknown(Nuisance::EnvironmentTemperature);
+            && check.failed.is_some();
         if spoiled.is_empty() && (check.identifiable || !by_proof) {
             return Ok(None);
         }
         let mut is_apart = false;
         if let (true, Some(index), Some(counting)) = (spoiled.is_empty(), check.failed, self.counting()) {
-            // Not to be proved is not to be impossible.
+            // Not to be proved is not to be impossible: a state that was found has to show it.
             let own = self.against(index);
             let kind = self.scenario.requirement.by;
             let decision = own.decided(kind, &own.alternatives[index], &counting)?;

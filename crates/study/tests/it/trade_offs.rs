@@ -323,6 +323,23 @@ fn assumptions_that_fail_are_warned_of() {
     assert!(hot.warnings.iter().any(included), "{:?}", hot.warnings);
 }
 
+/// A state that was found shows a 'no' without any proof, whatever is unknown; the whole answer is the same.
+#[test]
+fn a_no_alone_is_that_of_the_whole_answer() {
+    for unknown in
+        ["\"temperature\"", "\"temperature\", \"environment-temperature\"", "\"lighting\", \"gain\""]
+    {
+        for (distance, met) in [("0.001", true), ("30.0", false)] {
+            let text = SCENE.replace("distance = 1.0", &format!("distance = {distance}"));
+            let text = format!("{text}\n[unknown]\nnuisances = [{unknown}]\n");
+            let whole = study(&text).size().unwrap().verdict.met;
+            assert_eq!(whole, Some(met), "{unknown} {distance}");
+            let alone = study(&text).no_alone().unwrap().map(|result| result.verdict.met);
+            assert_eq!(alone, (!met).then_some(Some(false)), "{unknown} {distance}");
+        }
+    }
+}
+
 /// At 60 Hz four frames of 12 ms take 12 ms + 3/60 s, in which 30 mph (13.4112 m/s) go 0.83 m; motion that is not known is not met.
 #[test]
 fn a_yes_says_what_it_hangs_on_at_a_speed() {
