@@ -10,7 +10,7 @@
 use super::assumed::{Assumed, PAPER_RANGE_CM1};
 use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, every_figure};
 use super::noise::NetdConditions;
-use super::pattern::Pattern;
+use super::pattern::{Pattern, PatternFigures};
 use super::presets::{Missing, Preset};
 use super::{Camera, CameraSpec, Efficiency, EfficiencyCurve, NoiseSpec, Readout};
 
@@ -104,7 +104,8 @@ impl Preset {
             assumed.push(Assumed::favourable("spectral_range", format!("{low} to {high} cm^-1")));
             PAPER_RANGE_CM1
         });
-        let is_noisy = noise.is_some();
+        let own = [figures.read_noise_counts, figures.dark_rate_per_s].map(Option::unwrap_or_default);
+        let is_noisy = is_noisy(&noise, own, &figures.pattern);
         if figures.flicker_fraction.is_none() && is_noisy {
             assumed.push(Assumed::favourable("flicker_fraction", "0"));
         }
@@ -308,6 +309,11 @@ struct Required {
     optics_efficiency: f64,
 }
 
+/// Whether a camera has any noise but that of photons: of an ideal one no figure of it is missed.
+fn is_noisy(noise: &NoiseSpec, [read_counts, dark_per_s]: [f64; 2], pattern: &PatternFigures) -> bool {
+    noise.is_some() || read_counts > 0.0 || dark_per_s > 0.0 || !pattern.is_silent()
+}
+
 /// The noise that is stated; conditions that an NETD does not state are these.
 fn noise_of(
     stated: Option<StatedNoise>,
@@ -412,6 +418,12 @@ impl NoiseFigures {
 }
 
 impl Camera {
+    /// Whether it has no noise but that of photons.
+    #[must_use]
+    pub fn is_ideal(&self) -> bool {
+        !is_noisy(&self.noise, [self.read_noise_counts, self.dark_rate_per_s], &self.pattern.stated)
+    }
+
     /// Keys of the figures in which it is not another camera, but for the rounding of a conversion of units. Whatever of the
     /// electronic noise differs goes by the key that states that noise.
     #[must_use]

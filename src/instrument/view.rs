@@ -80,6 +80,12 @@ impl Extent {
         if side.is_nan() { Self::ONE } else { Self { rows: side, columns: side } }
     }
 
+    /// What of them is on an array of so many rows and columns.
+    #[must_use]
+    pub fn within(self, [rows, columns]: [f64; 2]) -> Self {
+        Self { rows: self.rows.min(rows.max(1.0)), columns: self.columns.min(columns.max(1.0)) }
+    }
+
     /// Rows and columns.
     #[must_use]
     pub const fn sides(self) -> [f64; 2] {

@@ -101,6 +101,9 @@ fn rows(text: &str) -> Result<(Bands, Vec<f64>)> {
     Ok((bands, centers))
 }
 
+/// What a header holds that says of its numbers that they are something else.
+const NO_TRANSMITTANCE: [&str; 7] =
+    ["%", "percent", "pct", "absorbance", "absorptance", "reflectance", "optical density"];
 /// A column of this ending is the reflectance of the filter before it.
 const REFLECTANCE: &str = ":reflectance";
 
@@ -121,6 +124,13 @@ fn curves(text: &str) -> Result<Vec<FilterCurve>> {
     for (column, header) in grid.header.iter().enumerate().skip(1) {
         let at_column = |error: Error| error.for_key(header.clone()).on_line(grid.header_line);
         let Some(of) = header.strip_suffix(REFLECTANCE) else {
+            let lower = header.to_lowercase();
+            if let Some(word) = NO_TRANSMITTANCE.iter().find(|word| lower.contains(**word)) {
+                let found = format!("the numbers of `{header}` are no transmittances by its name (`{word}`)");
+                let instead =
+                    "write shares from 0 to 1 that are transmitted, under the name of the filter alone";
+                return Err(at_column(Error::malformed(found, instead)));
+            }
             if !names.insert(header) {
                 let found = format!("another filter is called `{header}` too");
                 return Err(at_column(Error::malformed(found, "give each a name of its own")));
@@ -167,6 +177,10 @@ mod tests {
             (
                 "wavelength_um,a,a\n8,0,1\n9,1,0\n",
                 "line 1: a: another filter is called `a` too; give each a name of its own",
+            ),
+            (
+                "wavelength_um,a (%)\n8,0\n9,0.9\n",
+                "line 1: a (%): the numbers of `a (%)` are no transmittances by its name (`%`); write shares from 0 to 1 that are transmitted, under the name of the filter alone",
             ),
             (
                 "nm,a\n8,0\n",

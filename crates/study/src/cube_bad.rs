@@ -160,6 +160,13 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
         keeps: false,
         gain: true,
     };
+    // One number for all bands is no surface: the cube is dead, or full.
+    let mut finite = values().filter(|value| value.is_finite());
+    let first = finite.next();
+    if bands > 1 && looked.samples().len() / bands >= SAYING && finite.all(|value| Some(value) == first) {
+        let dead = (0..bands).filter(|band| !bad_bands.contains(band));
+        return dead.map(|band| BadBand { band, why: "stuck" }).collect();
+    }
     let mut found = readings.bands(looked);
     let is_known = |band: &usize| bad_bands.contains(band);
     let used: Vec<usize> = (0..bands)
@@ -178,6 +185,22 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
         found.extend(cut.into_iter().map(|band| BadBand { band, why: "saturated" }));
     }
     found
+}
+
+/// The value at which samples of these bands are cut off, and the share of them that are, if they are.
+pub(super) fn cut_off_share(cube: &Cube, used: &[usize]) -> Result<Option<[f64; 2]>> {
+    fn of<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<[f64; 2]> {
+        let most = cut_off(looked, used)?;
+        let bands = looked.shape().bands();
+        let all =
+            looked.samples().chunks(bands).flat_map(|pixel| used.iter().map(|band| pixel[*band].into()));
+        let finite: Vec<f64> = all.filter(|value: &f64| value.is_finite()).collect();
+        Some([most, finite.iter().filter(|value| **value >= most).count() as f64 / finite.len() as f64])
+    }
+    match cube {
+        Cube::F32(rows) => Ok(of(&some(rows.as_ref(), LOOKED)?, used)),
+        Cube::F64(rows) => Ok(of(&some(rows.as_ref(), LOOKED)?, used)),
+    }
 }
 
 impl Readings<'_> {
@@ -379,6 +402,22 @@ mod tests {
         assert_eq!(found.bands, [BadBand { band: 2, why: "stuck" }, BadBand { band: 4, why: "missing" }]);
         assert_eq!(found.map[..3], [2, 3, 5]);
         assert_eq!((found.map[70], found.map.iter().filter(|code| **code > 0).count()), (6, 4));
+    }
+
+    /// A blackbody that is full, or dead, in all bands at once is none; samples that are cut off are counted.
+    #[test]
+    fn a_cube_of_one_number_has_no_good_band_and_cut_off_samples_are_counted() {
+        for value in [65535.0, 0.0, 100.5] {
+            let found = bands_of_blackbody(&cube(vec![value; 72 * BANDS]), &[3], 2.0).unwrap();
+            let bands: Vec<usize> = found.iter().map(|bad| bad.band).collect();
+            assert_eq!(bands, [0, 1, 2, 4, 5, 6, 7], "{value}");
+        }
+        let all: Vec<usize> = (0..BANDS).collect();
+        assert_eq!(cut_off_share(&cube(good()), &all).unwrap(), None);
+        let clipped: Vec<f64> = good().iter().map(|n| n.min(5400.0)).collect();
+        let share = clipped.iter().filter(|n| **n == 5400.0).count() as f64 / clipped.len() as f64;
+        assert_eq!(cut_off_share(&cube(clipped), &all).unwrap(), Some([5400.0, share]));
+        assert!(share > 0.3);
     }
 
     #[test]

@@ -132,11 +132,12 @@ impl Spectra<'_> {
             through.iter_mut().zip(nodes).for_each(|(share, nu)| *share *= curve.at(*nu));
         }
         let mut found = Vec::new();
-        // A distance of which the table says nothing is refused elsewhere.
-        if let Some((air, distance_m)) = self.air.zip(scenario.target.distance_m)
-            && let Ok(tau) = air.table.transmittance(nodes, distance_m)
-            && let Ok(path) = air.table.path_radiance(nodes, distance_m, air.temperature_k)
-        {
+        if let Some((air, distance_m)) = self.air.zip(scenario.target.distance_m) {
+            // What the table says nothing of is refused elsewhere.
+            let nothing = || vec![0.0; nodes.len()];
+            let tau = air.table.transmittance(nodes, distance_m).unwrap_or_else(|_| nothing());
+            let path = air.table.path_radiance(nodes, distance_m, air.temperature_k);
+            let path = path.unwrap_or_else(|_| nothing());
             found.push(path.iter().zip(&through).map(|(path, share)| path * share).collect());
             through.iter_mut().zip(tau).for_each(|(share, tau)| *share *= tau);
         }

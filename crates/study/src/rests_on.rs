@@ -251,7 +251,7 @@ impl Study {
         if let (Some(length_cm1), false) = (length, scenario.source.states("sensitivity.correlation")) {
             found.push(Condition::ErrorsCorrelated { length_cm1 });
         }
-        if is_object && !figures.is_empty() && camera.noise.is_some() {
+        if is_object && !figures.is_empty() && !camera.is_ideal() {
             found.push(Condition::FrameNoise { figures });
         }
         if scenario.target.size_m.is_none() && !scenario.is_of_object() {

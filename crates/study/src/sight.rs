@@ -251,9 +251,11 @@ impl Study {
             let ring_m = DARK_RING * longest_wavelength_m(&self.open_bands) * camera.f_number;
             Extent::inside(size_m, camera.footprint_m(distance_m), ring_m / camera.pixel_m)
         };
+        // There are no more than the camera has. Its rows are not known: fewer than half of its columns they seldom are.
+        let across = camera.pixels.map_or(f64::INFINITY, f64::from);
         match target.pixels {
-            Some(filled) => filled.extent(),
-            None => target.size_m.zip(distance_m).map_or(Extent::ONE, of_size),
+            Some(filled) => filled.extent().within([across; 2]),
+            None => target.size_m.zip(distance_m).map_or(Extent::ONE, of_size).within([0.5 * across, across]),
         }
     }
 

@@ -62,6 +62,11 @@ impl PatternFigures {
         silent.filter(|(term, _)| term.is_fixed == is_fixed).map(|(term, _)| term.key).collect()
     }
 
+    /// Whether nothing is stated.
+    pub(in crate::instrument) fn is_silent(&self) -> bool {
+        self.sigmas_k().iter().all(Option::is_none)
+    }
+
     pub(super) const fn of_sigmas(
         [pixel_k, row_k, column_k, offset_k, temporal_row_k, temporal_column_k, frame_k]: [Option<f64>; 7],
         drift_s: Option<f64>,
@@ -75,7 +80,7 @@ impl PatternFigures {
 pub struct Pattern {
     /// What is stated of it.
     #[serde(flatten)]
-    pub(super) stated: PatternFigures,
+    pub(in crate::instrument) stated: PatternFigures,
     /// Conditions for which the figures of the pattern are stated.
     pub(super) at: NetdConditions,
 }

@@ -1,7 +1,7 @@
 //! Rows of a spectrum and linear interpolation between them.
 //!
 //! Between rows i and i+1 every column is linear in wavenumber ν (cm⁻¹),
-//! y(ν) = yᵢ + (yᵢ₊₁ − yᵢ)(ν − νᵢ)/(νᵢ₊₁ − νᵢ). Two wavenumbers within [`SAME`] of each other
+//! y(ν) = yᵢ + (yᵢ₊₁ − yᵢ)(ν − νᵢ)/(νᵢ₊₁ − νᵢ); not over a gap, where rows at even steps were left out. Two wavenumbers within [`SAME`] of each other
 //! (relative) are the same one, because 10⁴/λ seldom hits a round wavenumber exactly; at a row the
 //! row's own value is returned. A table does not know what lies outside its rows.
 
@@ -10,6 +10,10 @@ use crate::order;
 
 /// Relative difference below which two wavenumbers are one and the same.
 pub(super) const SAME: f64 = 1e-12;
+
+/// A step that is so many times as wide as all of so many on either side is a gap.
+const GAP: f64 = 10.0;
+const BESIDE: usize = 4;
 
 /// Rows in ascending wavenumber, each with `N` values.
 #[derive(Debug, Clone, PartialEq)]
@@ -121,6 +125,17 @@ impl<const N: usize> Table<N> {
         Some(value)
     }
 
+    /// The gap that a wavenumber lies in, if it does: two rows more than [`GAP`] times as far apart as any of [`BESIDE`] on either side. What was
+    /// measured at even steps was not measured there; a table of a few rows by hand has no steps.
+    pub(super) fn gap(&self, wavenumber_cm1: f64) -> Option<[f64; 2]> {
+        let Bracket { low, high, .. } = self.bracket(wavenumber_cm1)?;
+        let rows = &self.wavenumbers_cm1;
+        let (before, after) = (rows.get(low.checked_sub(BESIDE)?..=low)?, rows.get(high..=high + BESIDE)?);
+        let widest = |rows: &[f64]| rows.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        let (a, b) = (*rows.get(low)?, *rows.get(high)?);
+        (b - a > GAP * widest(before).max(widest(after))).then_some([a, b])
+    }
+
     fn bracket(&self, wavenumber_cm1: f64) -> Option<Bracket> {
         let rows = &self.wavenumbers_cm1;
         let next = rows.partition_point(|&row| row < wavenumber_cm1);
@@ -147,6 +162,7 @@ mod tests {
         assert_eq!(table.at(1e4 / 7.0 * (1.0 + 5e-13)), Some([0.9]));
         let middle = table.at(900.0).unwrap()[0];
         assert!((middle - 0.2).abs() < 1e-15, "half-way between 0.3 and 0.1: {middle}");
+        assert_eq!(table.gap(900.0), None);
         assert_eq!(table.at(799.0), None);
         assert_eq!(table.at(1429.0), None);
     }
@@ -157,5 +173,27 @@ mod tests {
         let twice = Table::new(&[(800.0, [0.3]), (900.0, [0.2]), (800.0, [0.3])]).unwrap_err();
         assert!(twice.to_string().contains("800 cm^-1 is there twice"), "{twice}");
         assert!(Table::new(&[(f64::NAN, [0.3]), (900.0, [0.2])]).is_err());
+    }
+
+    #[test]
+    fn rows_that_were_left_out_of_even_ones_are_a_gap_and_steps_by_hand_are_none() {
+        let table = |rows: &mut dyn Iterator<Item = f64>| {
+            Table::new(&rows.map(|nu| (nu, [0.5])).collect::<Vec<_>>()).unwrap()
+        };
+        // Even in wavelength, so that steps in wavenumber grow fourfold.
+        let nu = |i: u32| 1e4 / (7.0 + 0.05 * f64::from(i));
+        let even = table(&mut (0..140).map(nu));
+        let cut = table(&mut (0..140).filter(|i| !(40..60).contains(i)).map(nu));
+        for i in 0..1390 {
+            let at = 1e4 / (7.0 + 0.005 * f64::from(i));
+            let is_gap = at < nu(39) * (1.0 - 1e-9) && at > nu(60) * (1.0 + 1e-9);
+            assert_eq!((even.gap(at), cut.gap(at).is_some()), (None, is_gap), "{at}");
+        }
+        assert_eq!(cut.gap(nu(50)), Some([nu(60), nu(39)]));
+        // Boxes, and a few rows.
+        let boxes = table(&mut (0..20).map(|i| 700.0 + 50.0 * f64::from(i / 2) + f64::from(i % 2)));
+        let few = table(&mut [700.0, 701.0, 702.0, 1300.0, 1301.0].into_iter());
+        assert!((0..600).all(|i| boxes.gap(701.0 + 0.5 * f64::from(i)).is_none()));
+        assert_eq!(few.gap(1000.0), None);
     }
 }

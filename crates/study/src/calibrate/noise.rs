@@ -2,10 +2,12 @@
 
 use super::opened::Measured;
 use crate::Warning;
+use crate::cube_bad::cut_off_share;
 use crate::cube_unit::check_light;
 use hadar::cube::{Cube, Ordered, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
+use hadar::words::significant;
 use hadar_estimate::calibrate::{Asked, Component, Line, Transfer, photon_transfer, three_dimensional};
 use hadar_formats::cube::Found;
 use hadar_scenario::calibrate::{NoiseScenario, NoiseSpec};
@@ -15,6 +17,8 @@ use serde::Serialize;
 const TEXTURE: f64 = 0.2;
 /// Key of the sample without light.
 const DARK_LEVEL: &str = "noise.dark_level";
+/// Share of samples at the largest value from which on the line is another one.
+const CUT_OFF: f64 = 0.01;
 /// Share of outliers from which on they are said.
 const OUTLIERS: f64 = 1e-3;
 
@@ -86,6 +90,9 @@ impl NoiseStudy {
         let spec = self.scenario.noise;
         let asked = Asked { dark_level: spec.dark_level, gain_spread: spec.gain_spread };
         let (cubes, good) = (&self.frames.cubes, &self.frames.good);
+        for (cube, path) in cubes.iter().zip(&self.scenario.cube.data) {
+            check_cut_off(cube, good).map_err(|error| error.in_file(path))?;
+        }
         let singles = cubes.iter().filter_map(of_32).map(|cube| Ordered::new(cube, good.clone()));
         let singles = singles.collect::<Result<Vec<_>>>()?;
         let doubles = cubes.iter().filter_map(of_64).map(|cube| Ordered::new(cube, good.clone()));
@@ -131,6 +138,24 @@ impl NoiseStudy {
             },
             warnings,
         })
+    }
+}
+
+/// Refuses samples that are cut off, which have no noise.
+///
+/// # Errors
+/// More than a share of [`CUT_OFF`] of them.
+fn check_cut_off(cube: &Cube, good: &[usize]) -> Result<()> {
+    match cut_off_share(cube, good)? {
+        Some([most, share]) if share > CUT_OFF => Err(Error::malformed(
+            format!(
+                "{} % of the samples are cut off at {}, where they have no noise",
+                significant(100.0 * share, 2),
+                significant(most, 6)
+            ),
+            "give frames of a shorter exposure, or NaN for the pixels that are full in any frame",
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -76,6 +76,12 @@ impl TellApart {
             return Err(error.at(scenario.place("requirement.by")));
         }
         let envelope = clause.envelope();
+        if scenario.target.pixels.is_some() && envelope.distance_m.is_some_and(|[near, far]| near < far) {
+            let found = "so many pixels at every distance of the envelope, where the farther it is the fewer they are";
+            let error =
+                Error::malformed(found, "write size = \"0.5 m\" in the place of pixels, or one distance");
+            return Err(error.at(scenario.place("target.pixels")));
+        }
         let materials = envelope.materials.clone().unwrap_or_default();
         for (index, material) in materials.iter().enumerate() {
             if let MaterialRef::Name(name) = material

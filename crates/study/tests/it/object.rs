@@ -70,7 +70,7 @@ fn an_object_of_one_pixel_is_a_pixel() {
 #[test]
 fn without_anything_in_common_it_is_the_root_of_the_readings() {
     let one = size(&scene("pixels = 1", WHITE, "", ""));
-    for (pixels, frames) in [(5, 1), (400, 1), (400, 60), (100_000_000, 7)] {
+    for (pixels, frames) in [(5, 1), (400, 1), (400, 60), (400_000, 7)] {
         let all = size(&scene(&format!("pixels = {pixels}"), &format!("frames = {frames}\n{WHITE}"), "", ""));
         let n = f64::from(pixels) * f64::from(frames);
         for (one, all) in one.pairs.iter().zip(&all.pairs) {

@@ -340,6 +340,54 @@ fn a_no_alone_is_that_of_the_whole_answer() {
     }
 }
 
+/// An object has no more pixels than the camera: of the 32 x 16 at least that 32 across have, or of those that are stated.
+#[test]
+fn an_object_has_no_more_pixels_than_the_camera() {
+    let scene = SCENE.replace("speed = \"30 mph\"\n", "of = \"object\"\n");
+    let scene = scene.replace("field_of_view = \"12.2 deg\"\n", "pixels = 32\n");
+    let seen = |text: &str| -> f64 {
+        let found = study(text).size().unwrap().verdict.sentence.pixels;
+        found.unwrap_or(1.0)
+    };
+    let mut before = 0.0;
+    for (size_m, most) in [("0.5 m", 512.0), ("5 m", 512.0), ("200 m", 512.0)] {
+        let pixels = seen(&scene.replace("0.3 m", size_m));
+        assert!(pixels <= most && pixels >= before, "{size_m}: {pixels}");
+        before = pixels;
+    }
+    assert_eq!(before, 512.0);
+    let behind = "size = \"0.3 m\"\n[background]\ntemperature = \"15 degC\"\n";
+    for (stated, pixels) in [("1000000", 1024.0), ("[8, 40]", 256.0), ("[30, 10]", 300.0)] {
+        assert_eq!(seen(&scene.replace(behind, &format!("pixels = {stated}\n"))), pixels, "{stated}");
+    }
+}
+
+/// Read noise is a noise: its pattern is missed as that of any other, and a figure that is deleted is a condition.
+#[test]
+fn a_camera_of_read_noise_alone_misses_its_pattern() {
+    let camera = "flicker_fraction = 0.1\n";
+    let own = "exposure = \"1 ms\"\npixel = \"25 um\"\nf_number = 1.0\nfocal_length = \"50 mm\"\noptics_efficiency = 0.9\n\
+               noise_electrons = 0\nread_noise = 360\nfixed_pattern = \"1 mK\"\nrow_noise = \"1 mK\"\ncolumn_noise = \"1 mK\"\noffset_drift = \"1 mK\"\n\
+               flicker_fraction = 0.1\n";
+    let text = SCENE.replace(camera, "").replace("preset = \"flir-a325sc\"\n", own);
+    let text = text.replace("field_of_view = \"12.2 deg\"\n", "").replace("netd = \"10 mK\"\n", "");
+    let text = text.replace("distance = 1.0", "distance = 0.01").replace("speed = \"30 mph\"\n", "");
+    let holds = |text: &str, code: &str| -> bool {
+        let verdict = study(text).size().unwrap().verdict;
+        assert_eq!(verdict.met, Some(true));
+        verdict.conditions.iter().any(|one| one.code() == code)
+    };
+    assert!(!holds(&text, "fixed-pattern"));
+    for line in [
+        "fixed_pattern = \"1 mK\"\n",
+        "row_noise = \"1 mK\"\n",
+        "column_noise = \"1 mK\"\n",
+        "offset_drift = \"1 mK\"\n",
+    ] {
+        assert!(holds(&text.replace(line, ""), "fixed-pattern"), "{line}");
+    }
+}
+
 /// At 60 Hz four frames of 12 ms take 12 ms + 3/60 s, in which 30 mph (13.4112 m/s) go 0.83 m; motion that is not known is not met.
 #[test]
 fn a_yes_says_what_it_hangs_on_at_a_speed() {
