@@ -184,7 +184,7 @@ fn pixels_that_differ_are_calibrated_each_for_itself() {
     // 12 600 intervals; their common part, of temperatures that are exact here, makes them a little too wide.
     let share = held as f64 / radiance.len() as f64;
     assert!((0.94..0.985).contains(&share), "{share}");
-    write(&folder, "mild.npy", [8, 8, BANDS], &vec![1.0; 64 * BANDS]);
+    write(&folder, "mild.npy", [8, 8, BANDS], &(0..64 * BANDS).map(|i| i as f64).collect::<Vec<_>>());
     let line = folder.refusal(&["calibrate", "blackbody", "a.toml"]);
     assert!(line.contains("blackbody[1].data") && line.contains("the scene is 20 x 30 x 21"), "{line}");
 }
@@ -213,7 +213,7 @@ fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
         &SPECTROMETER.replace("20 cm^-1", "10 cm^-1"),
         &["blackbody[0].data", "8 x 8 x 21", "[bands] are 41"],
     );
-    let mut samples = vec![1.0; 64 * BANDS];
+    let mut samples: Vec<f64> = (0..64 * BANDS).map(|i| i as f64).collect();
     samples[3 * BANDS + 5] = f64::NAN;
     write(&folder, "nan.npy", [8, 8, BANDS], &samples);
     let words = ["nan.npy", "row 0, column 3, band 5 (counted from 0)", "sample is NaN"];

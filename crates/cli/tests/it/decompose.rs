@@ -362,7 +362,7 @@ fn a_radiance_is_the_same_in_every_unit() {
     folder.file("e.toml", &scenario("u.img", "ph s-1 cm-2 sr-1 um-1", 1e10));
     assert!(folder.json(&["decompose", "e.toml"])["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-3);
     for (unit, what) in [
-        ("DN", "in `DN` by their file"),
+        ("DN", "`DN` is no unit of spectral radiance"),
         ("K", "no factor makes photons"),
         ("counts", "in `counts` by their file"),
     ] {
