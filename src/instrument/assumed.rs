@@ -35,9 +35,12 @@ impl Assumed {
         "dark_rate",
         "read_noise",
         "quantisation_bits",
+        "pixels",
     ];
 
-    pub(super) fn favourable(figure: &'static str, taken: impl Into<String>) -> Self {
+    /// A camera that nobody stated to be like that may be worse.
+    #[must_use]
+    pub fn favourable(figure: &'static str, taken: impl Into<String>) -> Self {
         Self { figure, taken: taken.into(), favourable: true }
     }
 

@@ -240,6 +240,11 @@ conditions! {
         /// Sine of the rim of the cone of light.
         sine: f64,
     } = "filter-angle", Assumed, "bands.place";
+    /// Filters transmit nothing beyond the rows of their table.
+    FilterCut {
+        /// What they transmit at its ends, at most.
+        share: f64,
+    } = "filter-cut", Assumed, "bands.filters";
     /// Wide bands are taken at their centres.
     Sampled {
         /// Width of the widest, cm⁻¹.
@@ -402,7 +407,7 @@ impl Condition {
             Self::Range(range) => Taken::Pair(range.stated),
             Self::RegisteredFrames(proviso) => Taken::Number(f64::from(proviso.frames)),
             Self::StillScene { time_s } | Self::Waits { time_s } => Taken::Number(*time_s),
-            Self::DarkRest { share } => Taken::Number(*share),
+            Self::DarkRest { share } | Self::FilterCut { share } => Taken::Number(*share),
             Self::Constants { emissivities } => Taken::Pair(*emissivities),
             Self::Emissivities { error, .. } | Self::SharedErrors { error, .. } => Taken::Number(*error),
             Self::Assumed { counts: Some(counts), .. } => Taken::Number(*counts),

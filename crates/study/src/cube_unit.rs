@@ -47,34 +47,31 @@ pub(super) fn of_file(found: &Found, said: &CubeUnit) -> Result<Option<RadianceU
         let is_other = temperature(found).is_none() && !SampleUnit::says_nothing(of_file);
         return if is_other { Err(another(of_file, written)) } else { Ok(None) };
     }
-    let radiance = RadianceUnit::spelt(without_name(of_file)).ok();
+    let says_nothing = SampleUnit::says_nothing(without_name(of_file));
+    let (other, radiance) = (SampleUnit::spelt(of_file), RadianceUnit::spelt(without_name(of_file)));
     match (said, radiance) {
-        (CubeUnit::Radiance { unit, .. }, Some(own)) => Ok((!own.is(*unit)).then_some(own)),
-        (CubeUnit::Radiance { written, .. }, None) => {
-            match RadianceUnit::spelt(without_name(of_file)) {
-                _ if SampleUnit::says_nothing(without_name(of_file)) => Ok(None),
-                // What is not known is no other unit.
-                Err(Error::Malformed { found, .. }) if SampleUnit::spelt(of_file) == SampleUnit::Other => {
-                    Err(Error::malformed(
-                        format!("the unit of the samples by their file: {found}"),
-                        "write it into the file as in \"W m^-2 sr^-1 um^-1\", or leave it out of the file if the scenario's is right",
-                    ))
-                }
-                _ => Err(another(of_file, written)),
-            }
+        (CubeUnit::Radiance { unit, .. }, Ok(own)) => Ok((!own.is(*unit)).then_some(own)),
+        (CubeUnit::Radiance { .. }, Err(_)) if says_nothing => Ok(None),
+        // What is not known is no other unit.
+        (CubeUnit::Radiance { .. }, Err(Error::Malformed { found, .. })) if other == SampleUnit::Other => {
+            Err(Error::malformed(
+                format!("the unit of the samples by their file: {found}"),
+                "write it into the file as in \"W m^-2 sr^-1 um^-1\", or leave it out of the file if the scenario's is right",
+            ))
         }
-        (_, Some(_)) => Err(Error::malformed(
+        (CubeUnit::Radiance { written, .. }, Err(_)) => Err(another(of_file, written)),
+        (_, Ok(_)) => Err(Error::malformed(
             format!("the samples are radiances by their file, in `{of_file}`, and counts by the scenario"),
             format!("write unit = \"{of_file}\" and noise, the deviation of a sample in that unit"),
         )),
         // Digital numbers have another noise than the photons they stand for.
-        (CubeUnit::Camera, None) if SampleUnit::spelt(of_file) == SampleUnit::Other => Err(Error::malformed(
+        (CubeUnit::Camera, Err(_)) if other == SampleUnit::Other => Err(Error::malformed(
             format!(
                 "the samples are in `{of_file}` by their file, and photons that the camera counts by the scenario"
             ),
             "give photoelectrons, or radiances with unit and noise; or write counts_per_photon_radiance if the samples are counts whose variance is their number",
         )),
-        (_, None) => Ok(None),
+        (_, Err(_)) => Ok(None),
     }
 }
 

@@ -217,6 +217,8 @@ impl Study {
         if filters && camera.sensor_temperature_k.is_none() {
             found.push(Condition::NoFilterLight);
         }
+        let cut = self.open_bands.cut_filters(camera.spectral_range_cm1);
+        found.extend(cut.map(|share| Condition::FilterCut { share }));
         if let BandSource::Filters(Filters { place, .. }) = &self.scenario.bands.source
             && !matches!(place, Some(FilterPlace::Sensor { .. }))
         {
@@ -238,6 +240,10 @@ impl Study {
         let pixels = self.extent(camera, asked.distance_m).pixels();
         if scenario.is_of_object() {
             found.push(Condition::AlikePixels { pixels });
+            if camera.pixels.is_none() && pixels > 1.0 {
+                let figure = Assumed::favourable("pixels", "as many as the object fills");
+                found.push(Condition::Assumed { figure, counts: None });
+            }
         }
         let figures = camera.pattern.unstated(false);
         let is_object = scenario.is_of_object();

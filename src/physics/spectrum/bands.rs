@@ -145,6 +145,16 @@ impl Bands {
         Some(self.shapes.iter().map(of_shape).collect())
     }
 
+    /// The largest transmittance at which the rows of a filter end within a range, cm⁻¹ ([`FilterCurve::cut_within`]).
+    #[must_use]
+    pub fn cut_filters(&self, range_cm1: [f64; 2]) -> Option<f64> {
+        let cut = self.shapes.iter().filter_map(|shape| match shape {
+            Shape::TopHat => None,
+            Shape::Filter(filter) => filter.cut_within(range_cm1),
+        });
+        cut.reduce(f64::max)
+    }
+
     /// Weight of each node, cm⁻¹.
     pub fn weights_cm1(&self) -> &[f64] {
         &self.weights_cm1

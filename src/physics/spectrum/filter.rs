@@ -7,6 +7,9 @@ use crate::order;
 /// By so much transmittance and reflectance may exceed 1: rounding of a table.
 const ROUNDING: f64 = 1e-3;
 
+/// Share of its peak above which a filter that ends with its rows is cut.
+const CUT: f64 = 0.05;
+
 /// Rings that a cone of light is cut into.
 const RINGS: usize = 32;
 
@@ -95,6 +98,20 @@ impl FilterCurve {
         interpolated(&self.wavenumbers_cm1, &self.reflectances, wavenumber_cm1)
     }
 
+    /// The largest transmittance at an end of its rows that lies within a range, cm⁻¹, where that is more than a twentieth of its peak: beyond, where
+    /// nothing is known, none is taken.
+    #[must_use]
+    pub fn cut_within(&self, [low_cm1, high_cm1]: [f64; 2]) -> Option<f64> {
+        let peak = self.transmittances.iter().copied().fold(0.0, f64::max);
+        let (from_cm1, to_cm1) = self.range_cm1();
+        let ends = [
+            (from_cm1 > low_cm1).then(|| self.transmittances.first()),
+            (to_cm1 < high_cm1).then(|| self.transmittances.last()),
+        ];
+        let most = ends.into_iter().flatten().flatten().copied().fold(0.0, f64::max);
+        (most > CUT * peak).then_some(most)
+    }
+
     /// The filter in a beam that fills a cone of half angle θ, sin θ = `sine`: an interference filter of effective index n passes at the angle a
     /// what it passes at right angles at wavenumbers lower by √(1 − sin²a/n²), and every ring of the cone counts by its solid angle times
     /// cos a (H. A. Macleod, *Thin-Film Optical Filters*, 'Effect of tilting'). Its reflectance is then what it does not transmit.
@@ -177,6 +194,23 @@ impl FilterCurve {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// However many rows are left out at the ends of a table, what is cut is said; within the range of the detector alone.
+    #[test]
+    fn a_filter_without_its_last_rows_is_cut() {
+        let rows: Vec<(f64, f64)> = (0..=40)
+            .map(|i| (800.0 + 10.0 * f64::from(i), 0.9 * (1.0 - (f64::from(i) / 20.0 - 1.0).powi(2))))
+            .collect();
+        let of = |from: usize, to: usize| FilterCurve::new("f", rows[from..to].to_vec()).unwrap();
+        assert_eq!(of(0, 41).cut_within([700.0, 1300.0]), None);
+        for from in 1..20 {
+            let cut = of(from, 41).cut_within([700.0, 1300.0]);
+            // 1 − (1 − i/20)² is above a twentieth from i = 1 on.
+            assert_eq!(cut, Some(rows[from].1), "{from}");
+            assert_eq!(of(0, 41 - from).cut_within([700.0, 1300.0]), Some(rows[40 - from].1), "{from}");
+            assert_eq!(of(from, 41).cut_within([rows[from].0, 1300.0]), None, "the detector sees no more");
+        }
+    }
 
     #[test]
     fn half_of_the_most_is_where_the_lines_cross_it() {

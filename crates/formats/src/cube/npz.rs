@@ -80,7 +80,8 @@ fn read(
     let mut list = |place: usize, length: usize| {
         let mut entry = archive.by_index(place).ok()?;
         let (len, name) = (entry.size(), array_name(entry.name()));
-        Some((name, npy::list(&mut entry, len, length).filter(|_| is_meant(&array_name(entry.name())))?))
+        let list = if is_meant(&name) { npy::list(&mut entry, len, length) } else { None };
+        list.map(|list| (name, list))
     };
     (0..count).filter_map(|place| lengths.iter().find_map(|length| list(place, *length))).collect()
 }

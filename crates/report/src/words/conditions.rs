@@ -96,6 +96,7 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "dark_rate" => "it counts nothing in the dark".into(),
         "read_noise" => "reading it adds no noise".into(),
         "quantisation_bits" => "its converter adds no noise".into(),
+        "pixels" => format!("it has {taken}"),
         other => format!("{other} is {taken}"),
     };
     format!("{said} ({} is not stated)", figure.figure)
@@ -187,6 +188,10 @@ impl Say for Condition {
                 "the filters transmit the same at up to {:.0} degrees as at normal incidence (place is not stated)",
                 sine.asin().to_degrees()
             ),
+            Self::FilterCut { share: cut } => format!(
+                "the filters transmit nothing beyond the rows of their tables, at whose ends they transmit up to {}",
+                share(*cut)
+            ),
             Self::NoAir => "the air on the path absorbs nothing".into(),
             Self::NoSurroundings => "no surroundings illuminate the target".into(),
             Self::DarkRest { share: rest } => format!(
@@ -219,7 +224,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 40] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 41] = [
     [
         "range",
         "A range that the scenario sets for the alternatives excludes states that could not be distinguished.",
@@ -350,6 +355,11 @@ pub(crate) const EXPLAINED: [[&str; 3]; 40] = [
         "filter-angle",
         "An interference filter passes shorter wavelengths at an angle; its transmission at normal incidence is used for the whole beam.",
         "Write place = \"sensor\" and index in [bands] (or find.filters): the transmission is then averaged over the cone of the lens; before the lens keep the target near the axis.",
+    ],
+    [
+        "filter-cut",
+        "The table of a filter ends where the filter still transmits; beyond it nothing is taken to be transmitted.",
+        "Add rows down to where it transmits nothing, or write a camera.spectral_range that ends with the table.",
     ],
     ["no-air", "There is no air on the path.", "Write [atmosphere] with model = \"us-standard\"."],
     [

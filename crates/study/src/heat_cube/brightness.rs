@@ -82,7 +82,7 @@ struct InRadiance<S> {
 /// The radiances of a cube of temperatures in a unit; what is not above 0 K is missing.
 ///
 /// # Errors
-/// None, as the table's range is one.
+/// As [`Tabulated::new`].
 pub(super) fn in_radiance(cube: Cube, unit: TemperatureUnit, bands: Bands) -> Result<Cube> {
     let seen = Tabulated::new(SEEN_K, |t| radiances(&bands, t))?;
     Ok(match cube {

@@ -362,9 +362,9 @@ fn an_object_has_no_more_pixels_than_the_camera() {
     }
 }
 
-/// Read noise is a noise: its pattern is missed as that of any other, and a figure that is deleted is a condition.
+/// A figure that is deleted is a condition: patterns of a camera of read noise alone, pixels of an array before an object, rows of a filter.
 #[test]
-fn a_camera_of_read_noise_alone_misses_its_pattern() {
+fn what_is_deleted_of_a_camera_of_ones_own_is_a_condition() {
     let camera = "flicker_fraction = 0.1\n";
     let own = "exposure = \"1 ms\"\npixel = \"25 um\"\nf_number = 1.0\nfocal_length = \"50 mm\"\noptics_efficiency = 0.9\n\
                noise_electrons = 0\nread_noise = 360\nfixed_pattern = \"1 mK\"\nrow_noise = \"1 mK\"\ncolumn_noise = \"1 mK\"\noffset_drift = \"1 mK\"\n\
@@ -386,6 +386,18 @@ fn a_camera_of_read_noise_alone_misses_its_pattern() {
     ] {
         assert!(holds(&text.replace(line, ""), "fixed-pattern"), "{line}");
     }
+    let object = format!("{text}of = \"object\"\n");
+    assert!(holds(&object, "pixels") && !holds(&text, "pixels"));
+    assert!(!holds(&object.replace("read_noise", "pixels = 640\nread_noise"), "pixels"));
+    let folder = tempfile::tempdir().unwrap();
+    let filters = |rows: &str| {
+        let path = folder.path().join("f.csv");
+        std::fs::write(&path, format!("wavelength_um,a,b\n{rows}")).unwrap();
+        text.replace("step = \"5 cm^-1\"", &format!("filters = \"{}\"", path.display()))
+    };
+    assert!(!holds(&filters("8,0,0\n8.2,0.9,0\n9,0.9,0.9\n13,0,0.9\n13.2,0,0\n"), "filter-cut"));
+    assert!(holds(&filters("8.2,0.9,0\n9,0.9,0.9\n13,0,0.9\n13.2,0,0\n"), "filter-cut"));
+    assert!(holds(&filters("8,0,0\n8.2,0.9,0\n9,0.9,0.9\n13,0,0.9\n"), "filter-cut"));
 }
 
 /// At 60 Hz four frames of 12 ms take 12 ms + 3/60 s, in which 30 mph (13.4112 m/s) go 0.83 m; motion that is not known is not met.
