@@ -164,11 +164,16 @@ impl Preset {
         })
     }
 
-    /// Figures that change nothing where nobody states them. What the document of a camera states is of the whole of it: the noise that was
-    /// measured in front of the optics holds all that it loses and adds. Of a camera of one's own nobody says so.
+    /// Whether a document states the noise: of the whole camera then, so that what was measured in front of the optics holds all that it
+    /// loses and adds. Of a noise of one's own nobody says so, whichever camera is named beside it.
+    fn is_noise_documented(&self) -> bool {
+        !self.description.is_empty() && !self.is_noise_own
+    }
+
+    /// Figures that change nothing where nobody states them.
     fn open_figures(&self, [exposure_s, pixel_m]: [f64; 2], is_noisy: bool, assumed: &mut Vec<Assumed>) {
         let figures = &self.figures;
-        let is_own = self.description.is_empty();
+        let is_own = !self.is_noise_documented();
         let of_scene =
             matches!(figures.noise.stated(), Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }));
         let of_document = of_scene && !is_own;
@@ -190,7 +195,7 @@ impl Preset {
                 assumed.push(Assumed::favourable("netd_optics_efficiency", "that of its lens"));
             }
         }
-        if is_own
+        if self.description.is_empty()
             && figures.spectral_bands.is_none()
             && figures.readout.is_some_and(|one| one != Readout::Sequential)
         {
@@ -287,8 +292,7 @@ impl Preset {
         if optics_efficiency.is_none() {
             assumed.push(match stated {
                 Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. })
-                    if self.figures.noise.netd_optics_efficiency.is_none()
-                        && !self.description.is_empty() =>
+                    if self.figures.noise.netd_optics_efficiency.is_none() && self.is_noise_documented() =>
                 {
                     Assumed::worst("optics_efficiency", "1 (the noise is stated through the same optics)")
                 }

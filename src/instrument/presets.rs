@@ -76,6 +76,9 @@ pub struct Preset {
     /// The file that it is of; none of one of the program's own.
     #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// Whether its noise is of who names the camera, not of its document.
+    #[serde(skip)]
+    pub is_noise_own: bool,
     /// The camera that its noise is stated of, where figures were moved since: conditions that the noise does not state are those of
     /// this one; none where it is the camera itself.
     #[serde(skip)]

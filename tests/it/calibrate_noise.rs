@@ -2,7 +2,7 @@
 
 use hadar::cube::{MemoryCube, Rows, Shape};
 use hadar::statistics::Statistics;
-use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_estimate::calibrate::{Asked, Correlation, Line, Transfer, noise_correlations, photon_transfer};
 use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 
@@ -242,4 +242,112 @@ fn what_keeps_a_line_from_being_fitted_is_named() {
     let [one, other] = missing;
     let few = refused(vec![one, other], shape, 0.0);
     assert!(few.contains("0 differences of samples of band 1, too few"), "{few}");
+}
+
+/// What a camera does to its frames before they are written.
+#[derive(Debug, Clone, Copy)]
+enum Filter {
+    /// y_k = a x_k + (1 − a) y_{k−1}.
+    Recursive(f64),
+    /// The mean of a frame and the one before.
+    TwoFrames,
+    /// Of neighbours along columns, rows, or both, this weight each.
+    Smoothed(f64, [bool; 2]),
+    /// What whole frames, rows, columns, or the columns of one output have in common, in deviations of the photons.
+    Shared(f64, usize),
+    /// All grows by so many deviations a frame.
+    Drift(f64),
+}
+
+const ROWS: usize = 96;
+const COLUMNS: usize = 96;
+
+fn filtered(frames: Vec<Vec<f64>>, how: Filter) -> Vec<Vec<f64>> {
+    let at = |frame: &[f64], row: usize, column: usize| {
+        frame[row.min(ROWS - 1) * COLUMNS + column.min(COLUMNS - 1)]
+    };
+    let mut random = generator(5, 5);
+    let mut deviation = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+    let mut last = frames[0].clone();
+    let mut out = Vec::new();
+    for (k, frame) in frames.iter().enumerate() {
+        let mut kept = frame.clone();
+        let shared: Vec<f64> = (0..ROWS + COLUMNS).map(|_| deviation()).collect();
+        for (i, value) in kept.iter_mut().enumerate() {
+            let (row, column) = (i / COLUMNS, i % COLUMNS);
+            match how {
+                Filter::Recursive(a) => *value = a * *value + (1.0 - a) * last[i],
+                Filter::TwoFrames => *value = 0.5 * (*value + frames[k.saturating_sub(1)][i]),
+                Filter::Smoothed(w, along) => {
+                    for (is, [r, c]) in along.into_iter().zip([[0, 1], [1, 0]]) {
+                        if is {
+                            let [before, after] = [
+                                at(frame, row.saturating_sub(r), column.saturating_sub(c)),
+                                at(frame, row + r, column + c),
+                            ];
+                            *value += w * (before + after - 2.0 * frame[i]);
+                        }
+                    }
+                }
+                Filter::Shared(by, of) => {
+                    let place = match of {
+                        0 => 0,
+                        1 => row,
+                        2 => ROWS + column,
+                        outputs => column % outputs,
+                    };
+                    *value += by * 20.0 * shared[place];
+                }
+                Filter::Drift(by) => *value += by * 20.0 * k as f64,
+            }
+        }
+        last.clone_from(&kept);
+        out.push(kept);
+    }
+    out
+}
+
+/// Filters by which photons would be too many by half or more are seen in whatever strength they are drawn; noise that rows, columns, outputs
+/// or frames share is none, nor is a drift.
+#[test]
+fn frames_that_a_camera_filtered_are_told() {
+    let shape = Shape::new(ROWS, COLUMNS, 1).unwrap();
+    let draws = draws_of((0..16).map(|level| vec![200.0 * f64::from(level + 1)]), 0.0);
+    let (mut random, mut told) = (generator(3, 1), [0; 3]);
+    for trial in 0..90 {
+        let (strength, count) = (random.random::<f64>(), 2 + trial as usize % 4);
+        let how = match trial % 9 {
+            0 => Filter::Recursive(0.2 + 0.8 * strength),
+            1 => Filter::TwoFrames,
+            2 => Filter::Smoothed(0.25 * strength, [true, false]),
+            3 => Filter::Smoothed(0.25 * strength, [false, true]),
+            4 => Filter::Smoothed(0.12 * strength, [true; 2]),
+            5 => Filter::Smoothed(-0.2 * strength, [true; 2]),
+            6 => Filter::Shared(strength, [0, 1, 2, 4, 8][random.random_range(0..5)]),
+            7 => Filter::Drift(3.0 * strength),
+            _ => Filter::Shared(0.0, 0),
+        };
+        // A recursive filter has to have run in.
+        let frames =
+            (0..count + 20).map(|k| drawn(&draws, ROWS * COLUMNS, 100 + trial, k as u64, 1.0, 0.0)).collect();
+        let frames: Vec<Vec<f64>> = filtered(frames, how).split_off(20);
+        let cubes: Vec<_> =
+            frames.into_iter().map(|samples| MemoryCube::new(shape, samples).unwrap()).collect();
+        let frames: Vec<&dyn Rows<f64>> = cubes.iter().map(|cube| cube as &dyn Rows<f64>).collect();
+        let found = noise_correlations(&frames, 0.0).unwrap();
+        assert_eq!(found.len(), if count > 2 { 3 } else { 2 });
+        let is_told = found.iter().any(Correlation::is_large);
+        let photons = 1.0 / photon_transfer(&frames, &ASKED).unwrap().common.per_photon;
+        match how {
+            Filter::Shared(..) | Filter::Drift(_) => assert!(!is_told, "{how:?} of {count}: {found:?}"),
+            // Of two frames nothing tells what each has of the one before.
+            Filter::Recursive(_) | Filter::TwoFrames if count == 2 => {}
+            _ if !(0.67..1.5).contains(&photons) => {
+                assert!(is_told, "{how:?} of {count}, {photons}: {found:?}")
+            }
+            _ => told[2] += 1,
+        }
+        told[usize::from(is_told)] += 1;
+    }
+    assert!(told[1] > 25 && told[2] > 5, "{told:?}");
 }

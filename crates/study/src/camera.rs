@@ -214,7 +214,7 @@ fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Resul
     let beneath = file.unwrap_or(&preset);
     let own_noise = beneath.figures.noise.clone();
     let own_exposure_s = beneath.figures.noise_exposure_s;
-    let own_at = Box::new(beneath.noise_camera());
+    let (own_at, is_noise_own) = (Box::new(beneath.noise_camera()), beneath.is_noise_own);
     let mut stated = preset;
     let figures = &mut stated.figures;
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
@@ -226,11 +226,12 @@ fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Resul
         }
     }
     let is_of_kind = spec.noise.is_of_kind(&own_noise);
+    (figures.noise, figures.noise_exposure_s) = (own_noise.clone(), own_exposure_s);
+    (stated.noise_at, stated.is_noise_own) = (Some(own_at), is_noise_own);
     if !spec.states_noise() {
-        (figures.noise, figures.noise_exposure_s) = (own_noise, own_exposure_s);
-        stated.noise_at = Some(own_at);
         return Ok(stated);
     }
+    let own_in_full = stated.noise_in_full();
     let noise = spec.noise.clone();
     if let Some(path) = &noise.table {
         let rows = column(path, "sigma_counts", "read the noise")?;
@@ -238,15 +239,17 @@ fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Resul
     } else {
         stated.noise_table = None;
     }
+    let figures = &mut stated.figures;
     if is_of_kind {
         let own_bandwidth = own_noise.bandwidth_hz.filter(|_| spec.noise_exposure_s.is_none());
         figures.noise = noise.under(&NoiseFigures { bandwidth_hz: own_bandwidth, ..own_noise });
         figures.noise_exposure_s = spec.noise_exposure_s.or(own_exposure_s);
-        stated.noise_at = Some(own_at);
-        return Ok(stated);
+    } else {
+        (figures.noise, figures.noise_exposure_s) = (noise, spec.noise_exposure_s);
+        stated.noise_at = file.map(|file| Box::new(file.figures.clone()));
     }
-    stated.noise_at = file.map(|file| Box::new(file.figures.clone()));
-    (figures.noise, figures.noise_exposure_s) = (noise, spec.noise_exposure_s);
+    // Written out with all of its conditions it is still the document's.
+    stated.is_noise_own |= !is_of_kind || stated.noise_in_full() != own_in_full;
     Ok(stated)
 }
 
@@ -360,6 +363,63 @@ mod tests {
                     ..camera.clone()
                 };
                 assert_eq!(noise_of(&trial), noise_of(&camera), "solver {} {spec:?}", row.key);
+            }
+        }
+    }
+
+    /// The name of a camera answers for what its document states, not for a noise that lies over it; the same noise written out is its own.
+    #[test]
+    fn a_name_takes_no_condition_from_a_noise_of_ones_own() {
+        let silent = |camera: &Camera| -> Vec<_> {
+            camera.assumed.iter().filter(|of| of.favourable).map(|of| of.figure).collect()
+        };
+        let noises: [&dyn Fn(&mut CameraSpec); 4] = [
+            &|spec| spec.noise.netd_k = Some(0.033),
+            &|spec| {
+                let noise = &mut spec.noise;
+                (noise.netd_k, noise.netd_temperature_k, noise.netd_f_number) =
+                    (Some(0.033), Some(300.0), Some(1.0));
+            },
+            &|spec| spec.noise.nesr_microflick = Some(2.0),
+            &|spec| spec.noise.electrons = Some(5e4),
+        ];
+        for preset in presets::all().unwrap() {
+            let mut named = CameraSpec {
+                exposure_s: Some(5e-3),
+                focal_length_m: Some(20e-3),
+                f_number: Some(1.3),
+                pixel_m: Some(15e-6),
+                full_well: Some(1e7),
+                optics_efficiency: Some(Efficiency::Number(0.9)),
+                preset: Some(preset.name.clone()),
+                ..CameraSpec::default()
+            };
+            if preset.figures.noise == NoiseFigures::default() {
+                named.noise.electrons = Some(5e4);
+            }
+            let documented = resolved(&named, &Source::default()).unwrap();
+            let (noise, noise_exposure_s) = stated_at(&named, &|_| Place::default()).unwrap().noise_in_full();
+            let in_full = CameraSpec { noise, noise_exposure_s, ..named.clone() };
+            let is_noisy = in_full.states_noise();
+            let kept = resolved(if is_noisy { &in_full } else { &named }, &Source::default()).unwrap();
+            let is_added = |figure: &&str| !silent(&documented).contains(figure);
+            assert_eq!(silent(&kept).iter().filter(|one| is_added(one)).count(), 0, "{}", preset.name);
+            for noise in noises {
+                let mut own =
+                    CameraSpec { noise: NoiseFigures::default(), noise_exposure_s: None, ..named.clone() };
+                noise(&mut own);
+                let found = silent(&resolved(&own, &Source::default()).unwrap());
+                let alone = CameraSpec { preset: None, ..own.clone() };
+                let alone = silent(&resolved(&alone, &Source::default()).unwrap());
+                // Whether there are pauses or bands at once is of the camera, whichever noise it has.
+                let of_noise = |figure: &&&str| {
+                    !["frame_rate", "readout", "spectral_range", "spectral_bands"].contains(figure)
+                };
+                for figure in alone.iter().filter(of_noise).filter(|figure| !found.contains(figure)) {
+                    let stated = stated_at(&own, &|_| Place::default()).unwrap().figures;
+                    let is_stated = figures::row(figure).is_some_and(|row| row.is_given(&stated));
+                    assert!(is_stated, "{} {figure}: {found:?}", preset.name);
+                }
             }
         }
     }

@@ -23,13 +23,15 @@
 //! Fisher's law of 1 and GROUPS − 1 degrees of freedom; K of them, less the terms of the line, are taken as a χ² of the same mean and
 //! variance.
 //!
-//! Assumes noise that is independent between pixels and bands, and photon counts that are Poissonian. Source: J. R. Janesick, Photon
+//! Assumes noise that is independent between frames, pixels ([`noise_correlations`]) and bands, and photon counts that are Poissonian. Source: J. R. Janesick, Photon
 //! Transfer (SPIE, 2007); paper, supplement S10–S16.
 
 mod cells;
+mod correlation;
 mod fit;
 mod start;
 
+pub use correlation::{Correlation, noise_correlations};
 pub use fit::Line;
 
 use self::cells::{Cell, Cells, GROUPS, gathered};

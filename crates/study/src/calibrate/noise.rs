@@ -8,7 +8,9 @@ use hadar::cube::{Cube, Ordered, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::words::significant;
-use hadar_estimate::calibrate::{Asked, Component, Line, Transfer, photon_transfer, three_dimensional};
+use hadar_estimate::calibrate::{
+    Asked, Component, Correlation, Line, Transfer, noise_correlations, photon_transfer, three_dimensional,
+};
 use hadar_formats::cube::Found;
 use hadar_scenario::calibrate::{NoiseScenario, NoiseSpec};
 use serde::Serialize;
@@ -46,6 +48,8 @@ pub struct NoiseFound {
     /// Variances of the noise in three dimensions, unit² of the cube; `None` of one frame, or where samples are missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub three_dimensional: Option<[Component; 7]>,
+    /// How the noise goes together along the dimensions of the frames, as far as that can be told; of one frame nothing.
+    pub correlations: Vec<Correlation>,
     /// What was done and what was spared.
     pub stats: Work,
     /// What the reader must know.
@@ -66,6 +70,14 @@ pub struct PhotonNoise {
     /// What was fitted.
     #[serde(flatten)]
     pub transfer: Transfer,
+}
+
+impl NoiseFound {
+    /// Whether figures of a camera follow from this noise: not where samples that are taken as independent go together.
+    #[must_use]
+    pub fn is_independent(&self) -> bool {
+        !self.correlations.iter().any(Correlation::is_large)
+    }
 }
 
 impl NoiseStudy {
@@ -107,7 +119,7 @@ impl NoiseStudy {
             (_, None, Some(path)) => error.in_file(path),
             _ => error,
         };
-        let (transfer, three_dimensional) = match (singles.is_empty(), doubles.is_empty()) {
+        let (transfer, three_dimensional, correlations) = match (singles.is_empty(), doubles.is_empty()) {
             (false, true) => found(&rows(&singles), &asked),
             (true, false) => found(&rows(&doubles), &asked),
             _ => Err(Error::malformed(
@@ -117,9 +129,20 @@ impl NoiseStudy {
         }
         .map_err(place)?;
         let mut warnings = self.frames.warnings();
+        let together: Vec<Correlation> = correlations.iter().filter(|of| of.is_large()).copied().collect();
+        warnings.extend(
+            together.iter().map(|&Correlation { of, value, limit, .. }| Warning::CorrelatedNoise {
+                of,
+                value,
+                limit,
+            }),
+        );
         let shape = self.frames.cubes.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
         let photons = match transfer {
-            Ok(transfer) => Some(PhotonNoise::of(transfer, spec, &mut warnings).among(good, shape.bands())),
+            Ok(transfer) => {
+                let found = PhotonNoise::of(transfer, spec, &mut warnings).among(good, shape.bands());
+                Some(PhotonNoise { usable: found.usable && together.is_empty(), ..found })
+            }
             // One brightness tells nothing of photons, but what pixels share.
             Err(_) if spec.uniform && three_dimensional.is_some_and(|terms| terms[0].variance > 0.0) => None,
             Err(error) => return Err(place(error)),
@@ -131,6 +154,7 @@ impl NoiseStudy {
             frames: self.frames.cubes.len(),
             photons,
             three_dimensional,
+            correlations,
             stats: {
                 let mut work = Work::default();
                 work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
@@ -211,15 +235,16 @@ impl PhotonNoise {
     }
 }
 
-/// A photon transfer, or why there is none, and the noise in three dimensions.
-type Told = (Result<Transfer>, Option<[Component; 7]>);
+/// A photon transfer, or why there is none, the noise in three dimensions, and how it goes together.
+type Told = (Result<Transfer>, Option<[Component; 7]>, Vec<Correlation>);
 
 /// # Errors
 /// Frames of different shapes, or that cannot be read.
 fn found<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Result<Told> {
     let transfer = photon_transfer(frames, asked);
-    match three_dimensional(frames) {
-        Ok(terms) => Ok((transfer, terms)),
+    let also = || Ok((three_dimensional(frames)?, noise_correlations(frames, asked.dark_level)?));
+    match also() {
+        Ok((terms, correlations)) => Ok((transfer, terms, correlations)),
         // What is wrong with the frames is said once.
         Err(error) => Err(transfer.err().unwrap_or(error)),
     }

@@ -161,6 +161,8 @@ warnings! {
     NoiseOutliers { share: f64 } = "noise-outliers";
     /// Largest texture that was taken out of the noise of a band, over that noise.
     TextureInNoise { share: f64 } = "texture-in-noise";
+    /// Dimension along which the noise of frames goes together, the correlation of neighbours, and what independent noise stays within.
+    CorrelatedNoise { of: &'static str, value: f64, limit: f64 } = "correlated-noise";
     /// χ²/ν of the noise of bands about one line, and what it stays below by chance.
     BandsDifferInNoise { chi_square: f64, limit: f64 } = "bands-differ-in-noise";
     /// Variance that a sample without light would have, its error, and the level that was taken as no light.

@@ -83,16 +83,38 @@ fn assumed(found: &PhotonNoise, result: &NoiseFound) -> String {
     format!(
         "{how}\n  {} % of the differences are left out as beyond 6 deviations; a band's sigma (sigma.csv) is that at the mean of all its samples.\n  \
          Poissonian photons; a sample without light is {}.\n  \
-         Noise that is independent between pixels and bands, which is not checked: noise of whole rows or of all bands alike is in these\n  \
-         figures, but what follows from several samples by them errs by more than it says.\n\n",
+         {}\n  \
+         Noise of whole rows or of all bands alike is in these figures, but what follows from several samples by them errs by more than it\n  \
+         says.\n\n",
         significant(100.0 * found.transfer.outliers, 2),
-        significant(result.scenario.noise.dark_level, 4)
+        significant(result.scenario.noise.dark_level, 4),
+        independent(result)
     )
+}
+
+/// Which noise is independent by its correlations, and what nobody looked at.
+fn independent(result: &NoiseFound) -> String {
+    let of: Vec<String> = result
+        .correlations
+        .iter()
+        .map(|of| format!("{} of {} (+- {})", significant(of.value, 2), of.of, significant(of.limit, 1)))
+        .collect();
+    let unseen: Vec<&str> = ["frames", "rows", "columns"]
+        .into_iter()
+        .filter(|dimension| result.correlations.iter().all(|of| of.of != *dimension))
+        .chain(["bands"])
+        .collect();
+    let seen = match of.is_empty() {
+        true => String::new(),
+        false => format!("Noise that is independent, by its correlation {}.\n  ", of.join(", ")),
+    };
+    format!("{seen}That a camera does not filter along {} is not checked.", unseen.join(", "))
 }
 
 fn sentence(result: &NoiseFound) -> String {
     let usable = result.photons.as_ref().filter(|photons| photons.usable);
-    if let (None, true, Some(terms)) = (usable, result.scenario.noise.uniform, &result.three_dimensional) {
+    let is_even = result.scenario.noise.uniform && result.is_independent();
+    if let (None, true, Some(terms)) = (usable, is_even, &result.three_dimensional) {
         let of = |place: usize| significant(terms[place].sigma()[0], 3);
         return format!(
             "In addition to {} of each pixel from frame to frame, {} remain from pixel to pixel, {} from row to row and {} from column to column (unit of \
@@ -132,7 +154,8 @@ fn sentence(result: &NoiseFound) -> String {
 pub(crate) fn camera(result: &NoiseFound) -> Option<String> {
     let Some(photons) = result.photons.as_ref().filter(|photons| photons.usable) else {
         // Frames of one brightness tell what pixels share, if not photons.
-        let rows = if result.scenario.noise.uniform { shared(result) } else { String::new() };
+        let is_even = result.scenario.noise.uniform && result.is_independent();
+        let rows = if is_even { shared(result) } else { String::new() };
         return (!rows.is_empty()).then(|| format!("[camera]\n{rows}"));
     };
     let ([photons, ..], [noise, least, most]) = (photons.photons_per_unit, photons.noise_electrons);

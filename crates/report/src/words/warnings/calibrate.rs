@@ -230,6 +230,17 @@ words! {
             significant(*share, 2)
         ),
     }
+    CorrelatedNoise {
+        meaning: "The noise of frames goes together from frame to frame or from pixel to pixel: the camera filters in time or \
+            in space, or the scene moves. Filtered noise has less variance than its photons, which would come out as too many.",
+        remedy: "Give frames as the detector made them, with noise reduction and sharpening switched off, of a scene that stays.",
+        CorrelatedNoise { of, value, limit } => format!(
+            "the noise goes together along {of}: neighbours have a correlation of {}, independent ones stay within {}. The camera filters \
+             its frames, or the scene moves: photons would be miscounted",
+            significant(*value, 2),
+            significant(*limit, 2)
+        ),
+    }
     BandsDifferInNoise {
         meaning: "Bands of a cube scatter by different noise models.",
         remedy: "Use the variance of each band (sigma.csv); give counts as the camera made them, before \
