@@ -23,11 +23,12 @@ mod embedded;
 mod growth;
 mod read;
 
-use self::growth::{Position, same};
+use self::growth::Position;
 use self::read::Table;
 use crate::error::{Error, Result, check};
 use crate::inputs;
 use crate::planck;
+use crate::spectrum::same;
 use std::path::Path;
 
 /// How far ln z may be off by its rounding and by columns that are hit.
@@ -197,7 +198,7 @@ impl Atmosphere {
     /// Optical depth D = −ln τ at each wavenumber (cm⁻¹, in any order) of a path of `distance_m`.
     ///
     /// # Errors
-    /// A distance that is negative, not finite or beyond the longest column; a wavenumber outside the table.
+    /// A distance that is negative, not finite or beyond the longest column; a wavenumber outside the table or in a gap of its rows.
     pub fn optical_depth(&self, nodes_cm1: &[f64], distance_m: f64) -> Result<Vec<f64>> {
         let position = self.position(distance_m)?;
         let depths: Vec<f64> = self.table.rows.iter().map(|row| row.depth(position)).collect();
@@ -265,6 +266,7 @@ impl Atmosphere {
         let row = |index: usize| Some((*rows.get(index)?, *values.get(index)?));
         let (before, after) = (next.checked_sub(1).and_then(row), row(next));
         let at = [before, after].into_iter().flatten().find(|(row, _)| same(*row, node_cm1));
+        self.table.gaps.check(node_cm1)?;
         match (at, before, after) {
             (Some((_, value)), ..) => Ok(value),
             (None, Some((low, from)), Some((high, to))) => {

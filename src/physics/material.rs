@@ -38,10 +38,10 @@ pub use table::{Fault, Table, ascending};
 pub use write::{Summary, WARNING};
 
 use crate::error::{Error, Result, check};
+use crate::spectrum::same;
 use dielectric::Dielectric;
 use model::{Model, inside};
 use std::sync::Arc;
-use table::same;
 
 /// By how much rounding may take a computed emissivity out of [0, 1].
 const ROUNDING: f64 = 1e-9;

@@ -19,4 +19,5 @@ pub(crate) use bands::OPAQUE;
 pub use bands::{Band, Bands};
 pub use filter::FilterCurve;
 pub use integrate::{INTEGRATION_TOLERANCE, Integrated};
-pub use rows::interpolated;
+pub(crate) use rows::same;
+pub use rows::{Gaps, interpolated};

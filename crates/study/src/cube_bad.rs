@@ -173,7 +173,9 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
         .filter(|band| !is_known(band) && !found.iter().any(|bad| bad.band == *band && bad.why == "missing"))
         .collect();
     let pixels = looked.samples().len() / bands;
-    let Some(most) = cut_off(looked, &used).filter(|_| moves && pixels >= SAYING) else { return found };
+    let Some(most) = cut_off(finite(looked, &used)).filter(|_| moves && pixels >= SAYING) else {
+        return found;
+    };
     let is_cut = |band: &usize| {
         let own = looked.samples().chunks(bands).filter_map(|pixel| pixel.get(*band));
         OTHERS * own.filter(|sample| -> bool { Into::<f64>::into(**sample) >= most }).count() > pixels
@@ -187,15 +189,19 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
     found
 }
 
-/// The value at which samples of these bands are cut off, and the share of them that are, if they are.
+/// The value at which samples of these bands are cut off, above or below, and the share of them that are, if they are.
 pub(super) fn cut_off_share(cube: &Cube, used: &[usize]) -> Result<Option<[f64; 2]>> {
     fn of<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<[f64; 2]> {
-        let most = cut_off(looked, used)?;
-        let bands = looked.shape().bands();
-        let all =
-            looked.samples().chunks(bands).flat_map(|pixel| used.iter().map(|band| pixel[*band].into()));
-        let finite: Vec<f64> = all.filter(|value: &f64| value.is_finite()).collect();
-        Some([most, finite.iter().filter(|value| **value >= most).count() as f64 / finite.len() as f64])
+        let all = finite(looked, used);
+        let share = |is_cut: &dyn Fn(f64) -> bool| {
+            all.iter().filter(|value| is_cut(**value)).count() as f64 / all.len() as f64
+        };
+        let above = cut_off(all.clone()).map(|most| [most, share(&|value| value >= most)]);
+        let below = || {
+            cut_off(all.iter().map(|value| -value).collect())
+                .map(|least| [-least, share(&|value| value <= -least)])
+        };
+        above.or_else(below)
     }
     match cube {
         Cube::F32(rows) => Ok(of(&some(rows.as_ref(), LOOKED)?, used)),
@@ -219,7 +225,7 @@ impl Readings<'_> {
         let is_used =
             |band: &usize| !self.bad_bands.contains(band) && bands.iter().all(|bad| bad.band != *band);
         let used: Vec<usize> = (0..shape.bands()).filter(is_used).collect();
-        let cut_off = cut_off(&looked, &used);
+        let cut_off = cut_off(finite(&looked, &used));
         let of_row = |buffer: &mut Vec<S>, row: usize| -> Result<Vec<u8>> {
             let samples = cube.read(row..row + 1, buffer)?;
             let pixels = samples.chunks(shape.bands()).enumerate();
@@ -314,19 +320,25 @@ impl Readings<'_> {
     }
 }
 
-/// The value at which readings are cut off, if they are.
-fn cut_off<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<f64> {
+/// Readings of these bands that are numbers.
+fn finite<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Vec<f64> {
     let bands = looked.shape().bands();
     let all = looked.samples().chunks(bands).flat_map(|pixel| used.iter().map(|band| pixel[*band].into()));
-    let mut values: Vec<f64> = all.filter(|value: &f64| value.is_finite()).collect();
+    all.filter(|value: &f64| value.is_finite()).collect()
+}
+
+/// The largest value at which readings are cut off, if they are.
+fn cut_off(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(|a, b| b.total_cmp(a));
     // From the largest down, how many have each: a few beyond the limit are pixels that are bad in another way.
     let mut beyond = 0;
     let mut same = values.chunk_by(|a, b| a == b);
     while let Some(one) = same.next() {
         if one.len() >= PILED {
-            let next = same.next()?;
-            return (one.len() >= PILED_OVER_NEXT * next.len()).then(|| one[0]);
+            let (next, after) = (same.next()?.len(), same.next().map_or(0, <[f64]>::len));
+            // Few photons pile up as well, at 0, 1 and so on.
+            let is_pile = one.len() >= PILED_OVER_NEXT * next && next < PILED_OVER_NEXT * after.max(1);
+            return is_pile.then(|| one[0]);
         }
         beyond += one.len();
         if beyond >= PILED {
@@ -418,6 +430,12 @@ mod tests {
         let share = clipped.iter().filter(|n| **n == 5400.0).count() as f64 / clipped.len() as f64;
         assert_eq!(cut_off_share(&cube(clipped), &all).unwrap(), Some([5400.0, share]));
         assert!(share > 0.3);
+        let clipped: Vec<f64> = good().iter().map(|n| n.max(5400.0)).collect();
+        assert_eq!(cut_off_share(&cube(clipped), &all).unwrap(), Some([5400.0, 1.0 - share]));
+        // Counts of 0.05 photons: 0 in 95 of 100, 1 in 5, 2 in a tenth.
+        let few = (0..72 * BANDS)
+            .map(|i| if i % 20 == 0 { 1.0 } else { 0.0 } + if i % 400 == 0 { 1.0 } else { 0.0 });
+        assert_eq!(cut_off_share(&cube(few.collect()), &all).unwrap(), None);
     }
 
     #[test]

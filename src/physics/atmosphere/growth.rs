@@ -14,16 +14,10 @@
 //!
 //! Source: Fritsch and Carlson, SIAM J. Numer. Anal. 17, 238 (1980), doi:10.1137/0717021.
 
+use crate::spectrum::same;
+
 /// Half the last digit of a table: the largest τ that is written 0, and 1 − τ of the smallest that is written 1.
 const LEAST: f64 = 5e-6;
-
-/// Relative difference below which two wavenumbers, or lengths, are one: 10⁴/λ seldom hits a round one exactly.
-const SAME: f64 = 1e-12;
-
-/// Whether two wavenumbers or lengths are one and the same.
-pub(super) fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * a.abs().max(b.abs())
-}
 
 /// The lengths of the columns.
 #[derive(Debug, Clone, PartialEq)]

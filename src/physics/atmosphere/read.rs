@@ -1,10 +1,11 @@
 //! Reads a table of transmittances: `wavenumber_cm1`, then a column for each length of the path, `tau_<length>km` or
 //! `tau_<length>m`.
 
-use super::growth::{Growth, Lengths, same};
+use super::growth::{Growth, Lengths};
 use crate::error::{Error, Result, check};
 use crate::grid::Grid;
 use crate::order;
+use crate::spectrum::{Gaps, same};
 
 const COLUMNS: &str =
     "name the columns wavenumber_cm1,tau_0.1km,tau_1km or wavenumber_cm1,tau_100m,tau_1000m";
@@ -16,6 +17,8 @@ pub(super) struct Table {
     /// Ascending, at least two.
     pub(super) wavenumbers_cm1: Vec<f64>,
     pub(super) rows: Vec<Growth>,
+    /// Where rows are missing.
+    pub(super) gaps: Gaps,
 }
 
 /// The table in `text`.
@@ -55,7 +58,8 @@ pub(super) fn table(text: &str) -> Result<Table> {
         return Err(Error::malformed(found, "keep one row for each wavenumber"));
     }
     let (wavenumbers_cm1, rows) = rows.into_iter().unzip();
-    Ok(Table { lengths, wavenumbers_cm1, rows })
+    let wavenumbers_cm1: Vec<f64> = wavenumbers_cm1;
+    Ok(Table { lengths, gaps: Gaps::of(&wavenumbers_cm1), wavenumbers_cm1, rows })
 }
 
 /// The length in `tau_0.1km` or `tau_100m`, m.

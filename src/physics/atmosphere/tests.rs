@@ -326,3 +326,19 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn rows_that_are_missing_are_not_bridged() {
+    let rows = |kept: &dyn Fn(u32) -> bool| {
+        let all = (0..90).filter(|i| kept(*i));
+        all.map(|i| (800.0 + 4.0 * f64::from(i), vec![0.9, 0.3])).collect::<Vec<_>>()
+    };
+    let whole = table(&[10.0, 1e3], &rows(&|_| true)).unwrap();
+    let cut = table(&[10.0, 1e3], &rows(&|i| !(30..60).contains(&i))).unwrap();
+    for nu in (800..1156).map(f64::from) {
+        assert!(whole.transmittance(&[nu], 100.0).is_ok());
+        assert_eq!(cut.transmittance(&[nu], 100.0).is_ok(), !(917.0..1040.0).contains(&nu), "{nu}");
+    }
+    let refusal = cut.optical_depth_and_growth(&[950.0], 100.0).unwrap_err().to_string();
+    assert!(refusal.starts_with("no rows between 916.00 and 1040.00 cm^-1"), "{refusal}");
+}

@@ -45,10 +45,11 @@ impl Dielectric {
     /// Complex refractive index at a wavenumber in cm⁻¹.
     ///
     /// # Errors
-    /// Outside the table's rows; a model that would amplify.
+    /// Outside the table's rows or in a gap of them; a model that would amplify.
     pub(super) fn index(&self, wavenumber_cm1: f64) -> Result<Complex<f64>> {
         let permittivity = match self {
             Self::Constants(OpticalConstants(table)) => {
+                table.check_gap(wavenumber_cm1)?;
                 let [n, k] = table.at(wavenumber_cm1).ok_or_else(|| {
                     let (low, high) = table.range_cm1().unwrap_or((f64::NAN, f64::NAN));
                     Error::out_of_range(
@@ -116,5 +117,11 @@ mod tests {
         );
         assert_eq!(medium.index(850.0).unwrap(), Complex::new(1.5, 3.0));
         assert!(medium.index(950.0).is_err());
+        let rows: Vec<_> = (0..30).chain(60..90).map(|i| (800.0 + 4.0 * f64::from(i), [1.5, 0.1])).collect();
+        let medium = Dielectric::Constants(OpticalConstants::new(&rows).unwrap());
+        for (at, is_known) in [(916.0, true), (917.0, false), (1039.0, false), (1040.0, true), (1041.0, true)]
+        {
+            assert_eq!(medium.index(at).is_ok(), is_known, "{at}");
+        }
     }
 }

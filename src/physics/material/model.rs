@@ -12,8 +12,9 @@
 
 use super::dielectric::Dielectric;
 use super::fresnel;
-use super::table::{Table, same};
+use super::table::Table;
 use crate::error::{Error, Result, check};
+use crate::spectrum::same;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -216,12 +217,7 @@ impl Model {
 }
 
 fn tabulated(table: &Table<1>, wavenumber_cm1: f64) -> Result<f64> {
-    if let Some([a, b]) = table.gap(wavenumber_cm1) {
-        return Err(Error::malformed(
-            format!("no rows between {a:.2} and {b:.2} cm^-1, over ten times as far apart as those beside"),
-            "add what was measured there, or narrow the bands to what was",
-        ));
-    }
+    table.check_gap(wavenumber_cm1)?;
     let outside = || Error::out_of_range("wavenumber", wavenumber_cm1, "cm^-1", "within the rows");
     for (row_cm1, [emissivity]) in table.used_rows(wavenumber_cm1).ok_or_else(outside)? {
         in_unit_interval(emissivity, || format!("emissivity of the row at {row_cm1} cm^-1"))

@@ -1,25 +1,20 @@
 //! Rows of a spectrum and linear interpolation between them.
 //!
 //! Between rows i and i+1 every column is linear in wavenumber ν (cm⁻¹),
-//! y(ν) = yᵢ + (yᵢ₊₁ − yᵢ)(ν − νᵢ)/(νᵢ₊₁ − νᵢ); not over a gap, where rows at even steps were left out. Two wavenumbers within [`SAME`] of each other
+//! y(ν) = yᵢ + (yᵢ₊₁ − yᵢ)(ν − νᵢ)/(νᵢ₊₁ − νᵢ); not over a gap, where rows at even steps were left out. Two wavenumbers within 1e-12 of each other
 //! (relative) are the same one, because 10⁴/λ seldom hits a round wavenumber exactly; at a row the
 //! row's own value is returned. A table does not know what lies outside its rows.
 
 use crate::error::{Error, Result, check};
 use crate::order;
-
-/// Relative difference below which two wavenumbers are one and the same.
-pub(super) const SAME: f64 = 1e-12;
-
-/// A step that is so many times as wide as all of so many on either side is a gap.
-const GAP: f64 = 10.0;
-const BESIDE: usize = 4;
+use crate::spectrum::{Gaps, same};
 
 /// Rows in ascending wavenumber, each with `N` values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table<const N: usize> {
     wavenumbers_cm1: Vec<f64>,
     values: Vec<[f64; N]>,
+    gaps: Gaps,
 }
 
 /// What is wrong with a list of wavenumbers; rows are counted from 0 in the order given.
@@ -52,11 +47,6 @@ pub fn ascending(wavenumbers_cm1: &[f64]) -> std::result::Result<Vec<usize>, Fau
     Ok(order)
 }
 
-/// Whether two wavenumbers are one and the same.
-pub(super) fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * a.abs().max(b.abs())
-}
-
 /// The two rows that a wavenumber lies between, and how far it is from the first to the second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bracket {
@@ -87,8 +77,9 @@ impl<const N: usize> Table<N> {
                 "keep one row for each wavenumber",
             ),
         })?;
-        let (wavenumbers_cm1, values) = order.into_iter().filter_map(|row| rows.get(row)).copied().unzip();
-        Ok(Self { wavenumbers_cm1, values })
+        let (wavenumbers_cm1, values): (Vec<f64>, _) =
+            order.into_iter().filter_map(|row| rows.get(row)).copied().unzip();
+        Ok(Self { gaps: Gaps::of(&wavenumbers_cm1), wavenumbers_cm1, values })
     }
 
     /// Wavenumbers of the rows, ascending, cm⁻¹.
@@ -125,15 +116,12 @@ impl<const N: usize> Table<N> {
         Some(value)
     }
 
-    /// The gap that a wavenumber lies in, if it does: two rows more than [`GAP`] times as far apart as any of [`BESIDE`] on either side. What was
-    /// measured at even steps was not measured there; a table of a few rows by hand has no steps.
-    pub(super) fn gap(&self, wavenumber_cm1: f64) -> Option<[f64; 2]> {
-        let Bracket { low, high, .. } = self.bracket(wavenumber_cm1)?;
-        let rows = &self.wavenumbers_cm1;
-        let (before, after) = (rows.get(low.checked_sub(BESIDE)?..=low)?, rows.get(high..=high + BESIDE)?);
-        let widest = |rows: &[f64]| rows.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        let (a, b) = (*rows.get(low)?, *rows.get(high)?);
-        (b - a > GAP * widest(before).max(widest(after))).then_some([a, b])
+    /// Refuses a wavenumber in a gap of the rows.
+    ///
+    /// # Errors
+    /// As [`Gaps::check`].
+    pub(super) fn check_gap(&self, wavenumber_cm1: f64) -> Result<()> {
+        self.gaps.check(wavenumber_cm1)
     }
 
     fn bracket(&self, wavenumber_cm1: f64) -> Option<Bracket> {
@@ -162,7 +150,7 @@ mod tests {
         assert_eq!(table.at(1e4 / 7.0 * (1.0 + 5e-13)), Some([0.9]));
         let middle = table.at(900.0).unwrap()[0];
         assert!((middle - 0.2).abs() < 1e-15, "half-way between 0.3 and 0.1: {middle}");
-        assert_eq!(table.gap(900.0), None);
+        assert!(table.check_gap(900.0).is_ok());
         assert_eq!(table.at(799.0), None);
         assert_eq!(table.at(1429.0), None);
     }
@@ -187,13 +175,14 @@ mod tests {
         for i in 0..1390 {
             let at = 1e4 / (7.0 + 0.005 * f64::from(i));
             let is_gap = at < nu(39) * (1.0 - 1e-9) && at > nu(60) * (1.0 + 1e-9);
-            assert_eq!((even.gap(at), cut.gap(at).is_some()), (None, is_gap), "{at}");
+            assert_eq!((even.check_gap(at).is_ok(), cut.check_gap(at).is_err()), (true, is_gap), "{at}");
         }
-        assert_eq!(cut.gap(nu(50)), Some([nu(60), nu(39)]));
+        let refusal = cut.check_gap(nu(50)).unwrap_err().to_string();
+        assert!(refusal.starts_with("no rows between 1000.00 and 1117.32 cm^-1"), "{refusal}");
         // Boxes, and a few rows.
         let boxes = table(&mut (0..20).map(|i| 700.0 + 50.0 * f64::from(i / 2) + f64::from(i % 2)));
         let few = table(&mut [700.0, 701.0, 702.0, 1300.0, 1301.0].into_iter());
-        assert!((0..600).all(|i| boxes.gap(701.0 + 0.5 * f64::from(i)).is_none()));
-        assert_eq!(few.gap(1000.0), None);
+        assert!((0..600).all(|i| boxes.check_gap(701.0 + 0.5 * f64::from(i)).is_ok()));
+        assert!(few.check_gap(1000.0).is_ok());
     }
 }

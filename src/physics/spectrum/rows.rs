@@ -2,6 +2,14 @@
 
 use crate::error::{Error, Result};
 
+/// Relative difference below which two wavenumbers, or lengths, are one: 10⁴/λ seldom hits a round one exactly.
+const SAME: f64 = 1e-12;
+
+/// Whether two wavenumbers or lengths are one and the same.
+pub(crate) fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
 /// Refuses a wavenumber that comes twice in `what`.
 pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Result<()> {
     let mut last = f64::NAN;
@@ -15,6 +23,50 @@ pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Resu
         last = value;
     }
     Ok(())
+}
+
+/// A step that is so many times as wide as all of so many on either side is a gap.
+const WIDE: f64 = 10.0;
+const BESIDE: usize = 4;
+
+/// Gaps of a spectrum: rows more than 10 times as far apart as any of four on either side. What was measured at even steps was not measured
+/// between them; a table of a few rows by hand has no steps.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Gaps(Vec<[f64; 2]>);
+
+impl Gaps {
+    /// Those of rows at ascending wavenumbers, cm⁻¹.
+    ///
+    /// ```
+    /// use hadar::spectrum::Gaps;
+    /// let rows: Vec<f64> = (0..50).chain(150..200).map(|i| 700.0 + f64::from(i)).collect();
+    /// let gaps = Gaps::of(&rows);
+    /// assert!(gaps.check(749.0).is_ok() && gaps.check(800.0).is_err());
+    /// ```
+    #[must_use]
+    pub fn of(rows_cm1: &[f64]) -> Self {
+        let widest = |rows: &[f64]| rows.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        let gap = |rows: &[f64]| {
+            let (before, after) = rows.split_at(BESIDE + 1);
+            let (a, b) = (before[BESIDE], after[0]);
+            (b - a > WIDE * widest(before).max(widest(after))).then_some([a, b])
+        };
+        Self(rows_cm1.windows(2 * (BESIDE + 1)).filter_map(gap).collect())
+    }
+
+    /// Refuses a wavenumber that lies in one.
+    ///
+    /// # Errors
+    /// The rows around it.
+    pub fn check(&self, wavenumber_cm1: f64) -> Result<()> {
+        let inside =
+            |[a, b]: &&[f64; 2]| a * (1.0 + SAME) < wavenumber_cm1 && wavenumber_cm1 < b * (1.0 - SAME);
+        let Some([a, b]) = self.0.iter().find(inside) else { return Ok(()) };
+        Err(Error::malformed(
+            format!("no rows between {a:.2} and {b:.2} cm^-1, over ten times as far apart as those beside"),
+            "add what was measured there, or narrow the bands to what was",
+        ))
+    }
 }
 
 /// The value at x on straight lines between rows of ascending x; beyond them that of the last one.

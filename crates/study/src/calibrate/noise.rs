@@ -177,7 +177,7 @@ fn check_cut_off(cube: &Cube, good: &[usize]) -> Result<()> {
                 significant(100.0 * share, 2),
                 significant(most, 6)
             ),
-            "give frames of a shorter exposure, or NaN for the pixels that are full in any frame",
+            "give frames of which nothing is cut off (a shorter exposure, the dark level left in), or NaN for the pixels that are in any frame",
         )),
         _ => Ok(()),
     }

@@ -14,7 +14,7 @@ use hadar::grid::Grid;
 use hadar::material::Library;
 use hadar::order;
 use hadar::planck;
-use hadar::spectrum::{Bands, interpolated};
+use hadar::spectrum::{Bands, Gaps, interpolated};
 use hadar_estimate::decompose::Light;
 use hadar_formats::file::{READ_SPECTRUM, text_of_file};
 use hadar_formats::spectra::{measured, radiance};
@@ -139,7 +139,9 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
         return Err(Error::malformed("the table has no rows", "write one for every wavenumber"));
     };
     let (xs, ys): (Vec<f64>, Vec<f64>) = rows.iter().copied().unzip();
+    let gaps = Gaps::of(&xs);
     let at = |nu: &f64| {
+        gaps.check(*nu)?;
         // Bands in another unit end beside the row that is meant.
         let end = nu.max(*low).min(*high);
         if (end - nu).abs() > ROUNDED * nu {
@@ -165,6 +167,10 @@ mod tests {
         let rows = [(800.0, 1.0), (1200.0, 3.0)];
         assert_eq!(on_nodes(&rows, &[800.0 - 1e-13, 1_200.000_000_000_000_2]), Ok(vec![1.0, 3.0]));
         assert!(on_nodes(&rows, &[1200.001]).is_err());
+        let rows: Vec<_> = (0..30).chain(60..90).map(|i| (800.0 + 4.0 * f64::from(i), 1.0)).collect();
+        assert!(on_nodes(&rows, &[916.0, 1040.0]).is_ok());
+        let refusal = on_nodes(&rows, &[900.0, 950.0]).unwrap_err().to_string();
+        assert!(refusal.starts_with("no rows between 916.00 and 1040.00 cm^-1"), "{refusal}");
     }
 
     #[test]
