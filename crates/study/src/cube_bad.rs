@@ -173,7 +173,7 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
         .filter(|band| !is_known(band) && !found.iter().any(|bad| bad.band == *band && bad.why == "missing"))
         .collect();
     let pixels = looked.samples().len() / bands;
-    let Some(most) = cut_off(finite(looked, &used)).filter(|_| moves && pixels >= SAYING) else {
+    let Some(most) = cut_off(numbers(looked, &used)).filter(|_| moves && pixels >= SAYING) else {
         return found;
     };
     let is_cut = |band: &usize| {
@@ -192,7 +192,7 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
 /// The value at which samples of these bands are cut off, above or below, and the share of them that are, if they are.
 pub(super) fn cut_off_share(cube: &Cube, used: &[usize]) -> Result<Option<[f64; 2]>> {
     fn of<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<[f64; 2]> {
-        let all = finite(looked, used);
+        let all = numbers(looked, used);
         let share = |is_cut: &dyn Fn(f64) -> bool| {
             all.iter().filter(|value| is_cut(**value)).count() as f64 / all.len() as f64
         };
@@ -225,7 +225,7 @@ impl Readings<'_> {
         let is_used =
             |band: &usize| !self.bad_bands.contains(band) && bands.iter().all(|bad| bad.band != *band);
         let used: Vec<usize> = (0..shape.bands()).filter(is_used).collect();
-        let cut_off = cut_off(finite(&looked, &used));
+        let cut_off = cut_off(numbers(&looked, &used));
         let of_row = |buffer: &mut Vec<S>, row: usize| -> Result<Vec<u8>> {
             let samples = cube.read(row..row + 1, buffer)?;
             let pixels = samples.chunks(shape.bands()).enumerate();
@@ -321,7 +321,7 @@ impl Readings<'_> {
 }
 
 /// Readings of these bands that are numbers.
-fn finite<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Vec<f64> {
+fn numbers<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Vec<f64> {
     let bands = looked.shape().bands();
     let all = looked.samples().chunks(bands).flat_map(|pixel| used.iter().map(|band| pixel[*band].into()));
     all.filter(|value: &f64| value.is_finite()).collect()
