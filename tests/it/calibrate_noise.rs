@@ -351,3 +351,25 @@ fn frames_that_a_camera_filtered_are_told() {
     }
     assert!(told[1] > 25 && told[2] > 5, "{told:?}");
 }
+
+/// A detector that is not linear bends variance over mean: its figures hold for no brightness. A linear one is not accused, whatever its noise.
+#[test]
+fn a_detector_that_is_not_linear_is_told() {
+    let shape = Shape::new(100, 96, 3).unwrap();
+    for trial in 0..60_u64 {
+        let electrons = [0.0, 30.0, 300.0][trial as usize % 3];
+        let draws =
+            draws_of((1..25).map(|i| [1.0, 0.8, 0.6].map(|x| x * 400.0 * f64::from(i)).to_vec()), electrons);
+        let frames = |bend: f64| -> Vec<Vec<f64>> {
+            let frame = |k| drawn(&draws, shape.rows() * shape.columns(), 900 + trial, k, 1.0, 0.0);
+            (0..2 + trial % 3).map(|k| frame(k).iter().map(|n| n + bend * n * n).collect()).collect()
+        };
+        assert!(!transfer(frames(0.0), shape, &ASKED).is_bent(), "{trial}");
+        // By a tenth at the brightest; noise of 300 electrons hides a slope of 1.
+        if electrons < 300.0 {
+            let found = transfer(frames(1e-5), shape, &ASKED);
+            let photons = 1.0 / found.common.per_photon;
+            assert!(found.is_bent() || (photons - 1.0).abs() < 0.2, "{trial}: {photons} {:?}", found.bend);
+        }
+    }
+}

@@ -13,6 +13,8 @@
 //! | `[[environment]]` | nothing lights the target: [`Condition::NoSurroundings`], or no more than is there: [`Condition::DarkRest`] |
 //! | `[alternatives]` ranges | all that physics allows, the worst; where a range that was set decides, [`Condition::Range`] |
 //! | `gain`, `environment-temperature` among `unknown.nuisances` | they are known: [`Condition::Calibrated`], [`Condition::SurroundingsKnown`] |
+//! | `temperature`, `lighting` among them | they are known: [`Condition::TemperatureKnown`], [`Condition::LightingKnown`] |
+//! | `material` of an `[[environment]]` | it is black, which [`Condition::SurroundingsKnown`] says |
 //! | `requirement.speed` | nothing moves while frames and bands are read: [`Condition::StillScene`] |
 //! | `stop.crossing_speed` | nothing but the vehicle moves: [`Condition::NobodyCrosses`]; of who crosses [`Condition::InView`] where the view is not stated |
 //! | `requirement.time` | the decision may wait: [`Condition::StillScene`], at a speed [`Condition::Waits`] |
@@ -173,6 +175,8 @@ conditions! {
     AlikePixels {
         /// How many.
         pixels: f64,
+        /// Whether a square stands for rows and columns that nobody states.
+        square: bool,
     } = "alike-pixels", Scope, "requirement.of";
     /// Errors of the emissivities are correlated over a length that nobody states.
     ErrorsCorrelated {
@@ -265,7 +269,14 @@ conditions! {
         time_s: f64,
     } = "acquisition-time", Proviso, "requirement.time";
     /// The temperatures of what is around the target are known.
-    SurroundingsKnown = "surroundings-known", Assumed, "unknown.nuisances";
+    SurroundingsKnown {
+        /// How many surroundings are black, as no material is stated.
+        black: usize,
+    } = "surroundings-known", Assumed, "unknown.nuisances";
+    /// The temperature of the target is known.
+    TemperatureKnown = "temperature-known", Assumed, "unknown.nuisances";
+    /// How much each of the surroundings lights the target is known.
+    LightingKnown = "lighting-known", Assumed, "unknown.nuisances";
     /// The gain of the camera is known.
     Calibrated = "calibrated", Assumed, "unknown.nuisances";
 }
@@ -407,6 +418,7 @@ impl Condition {
             Self::Range(range) => Taken::Pair(range.stated),
             Self::RegisteredFrames(proviso) => Taken::Number(f64::from(proviso.frames)),
             Self::StillScene { time_s } | Self::Waits { time_s } => Taken::Number(*time_s),
+            Self::SurroundingsKnown { black } => Taken::Number(*black as f64),
             Self::DarkRest { share } | Self::FilterCut { share } => Taken::Number(*share),
             Self::Constants { emissivities } => Taken::Pair(*emissivities),
             Self::Emissivities { error, .. } | Self::SharedErrors { error, .. } => Taken::Number(*error),
@@ -422,7 +434,7 @@ impl Condition {
             Self::FilterAngle { sine, .. } => Taken::Number(*sine),
             Self::Diffraction { blur_m } => Taken::Number(*blur_m),
             Self::FillsPixel { footprint_m: Some(footprint_m) } => Taken::Number(*footprint_m),
-            Self::AlikePixels { pixels } => Taken::Number(*pixels),
+            Self::AlikePixels { pixels, .. } => Taken::Number(*pixels),
             Self::FrameNoise { figures } => Taken::Texts(figures.clone()),
             Self::LeftOut { materials } | Self::Extrapolated { materials } => {
                 Taken::Texts(materials.iter().map(String::as_str).collect())
@@ -443,7 +455,8 @@ impl Condition {
             | Self::PatternOfEachBand
             | Self::PatternOfEachPixel
             | Self::PixelsByLens
-            | Self::SurroundingsKnown
+            | Self::TemperatureKnown
+            | Self::LightingKnown
             | Self::Calibrated
             | Self::NoSurroundings => Taken::Nothing,
         }

@@ -37,6 +37,8 @@ const LEAST_EMISSIVITY: f64 = 0.02;
 /// Samples at one value that are no chance, and how many more than at the next value.
 const PILED: usize = 20;
 const PILED_OVER_NEXT: usize = 10;
+/// The same at the least value: whole numbers that are cut off in the noise of the dark have many at the next one too.
+const PILED_BELOW_OVER_NEXT: usize = 3;
 /// Of so many pixels one may have another value in a band that is stuck: a single pixel does not say what a band is.
 const OTHERS: usize = 16;
 
@@ -173,7 +175,8 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
         .filter(|band| !is_known(band) && !found.iter().any(|bad| bad.band == *band && bad.why == "missing"))
         .collect();
     let pixels = looked.samples().len() / bands;
-    let Some(most) = cut_off(numbers(looked, &used)).filter(|_| moves && pixels >= SAYING) else {
+    let Some(most) = cut_off(numbers(looked, &used), PILED_OVER_NEXT).filter(|_| moves && pixels >= SAYING)
+    else {
         return found;
     };
     let is_cut = |band: &usize| {
@@ -196,10 +199,10 @@ pub(super) fn cut_off_share(cube: &Cube, used: &[usize]) -> Result<Option<[f64; 
         let share = |is_cut: &dyn Fn(f64) -> bool| {
             all.iter().filter(|value| is_cut(**value)).count() as f64 / all.len() as f64
         };
-        let above = cut_off(all.clone()).map(|most| [most, share(&|value| value >= most)]);
+        let above = cut_off(all.clone(), PILED_OVER_NEXT).map(|most| [most, share(&|value| value >= most)]);
         let below = || {
-            cut_off(all.iter().map(|value| -value).collect())
-                .map(|least| [-least, share(&|value| value <= -least)])
+            let least = -cut_off(all.iter().map(|value| -value).collect(), PILED_BELOW_OVER_NEXT)?;
+            Some([least, share(&|value| value <= least)])
         };
         above.or_else(below)
     }
@@ -225,7 +228,7 @@ impl Readings<'_> {
         let is_used =
             |band: &usize| !self.bad_bands.contains(band) && bands.iter().all(|bad| bad.band != *band);
         let used: Vec<usize> = (0..shape.bands()).filter(is_used).collect();
-        let cut_off = cut_off(numbers(&looked, &used));
+        let cut_off = cut_off(numbers(&looked, &used), PILED_OVER_NEXT);
         let of_row = |buffer: &mut Vec<S>, row: usize| -> Result<Vec<u8>> {
             let samples = cube.read(row..row + 1, buffer)?;
             let pixels = samples.chunks(shape.bands()).enumerate();
@@ -328,7 +331,7 @@ fn numbers<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Vec<f64> {
 }
 
 /// The largest value at which readings are cut off, if they are.
-fn cut_off(mut values: Vec<f64>) -> Option<f64> {
+fn cut_off(mut values: Vec<f64>, over_next: usize) -> Option<f64> {
     values.sort_by(|a, b| b.total_cmp(a));
     // From the largest down, how many have each: a few beyond the limit are pixels that are bad in another way.
     let mut beyond = 0;
@@ -337,7 +340,7 @@ fn cut_off(mut values: Vec<f64>) -> Option<f64> {
         if one.len() >= PILED {
             let (next, after) = (same.next()?.len(), same.next().map_or(0, <[f64]>::len));
             // Few photons pile up as well, at 0, 1 and so on.
-            let is_pile = one.len() >= PILED_OVER_NEXT * next && next < PILED_OVER_NEXT * after.max(1);
+            let is_pile = one.len() >= over_next * next && next < over_next * after.max(1);
             return is_pile.then(|| one[0]);
         }
         beyond += one.len();

@@ -207,20 +207,23 @@ impl InOrder {
     /// Refuses bands that are not those of the cube.
     ///
     /// # Errors
-    /// Another number of bands, or one that the file has elsewhere by more than half its width.
+    /// Another number of bands, or one that the file has elsewhere by more than a quarter of its width.
     pub(super) fn check(&self, bands: &Bands) -> Result<()> {
         check_count(&self.found, bands)?;
         let Some(centres) = &self.found.centres_cm1 else { return Ok(()) };
         let halves = half_widths(bands);
         for (i, ((band, own), half)) in bands.bands().iter().zip(self.rising(centres)).zip(halves).enumerate()
         {
-            if (band.center_cm1 - own).abs() > half {
+            if (band.center_cm1 - own).abs() > SAME_BAND * half {
                 return Err(self.elsewhere(i, own, bands, i));
             }
         }
         Ok(())
     }
 }
+
+/// Share of half a band's width by which its centre may be elsewhere in the file: a wide one has another in wavelength than in wavenumber.
+const SAME_BAND: f64 = 0.5;
 
 /// Half the width of each band: one node stands for its band; a filter reaches over its rows.
 fn half_widths(bands: &Bands) -> impl Iterator<Item = f64> {

@@ -58,6 +58,9 @@ pub(super) fn of_bands(
     }
 }
 
+/// How names of a spectral axis begin.
+const AXES: [&str; 6] = ["wave", "wn", "wl", "nu", "freq", "lambda"];
+
 /// Rows that say where they are, beside the bands that they are taken for.
 fn check_wavenumbers(grid: &Grid, places: &[usize], centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<()> {
     let named = |(place, name): (usize, &String)| match name.as_str() {
@@ -65,6 +68,16 @@ fn check_wavenumbers(grid: &Grid, places: &[usize], centres_cm1: &[f64], widths_
         "wavelength_um" => Some((place, true)),
         _ => None,
     };
+    // An axis by another name is not passed over: its rows may be in another order.
+    let is_axis = |name: &&String| {
+        let name = name.to_lowercase();
+        AXES.iter().any(|axis| name.starts_with(axis))
+    };
+    let unknown = |name: &&String| is_axis(name) && named((0, name)).is_none();
+    if let Some(other) = grid.header.iter().find(unknown) {
+        let instead = "name the column wavenumber_cm1 or wavelength_um, or leave it out";
+        return Err(Error::malformed(format!("a column `{other}`"), instead).on_line(grid.header_line));
+    }
     let Some((place, is_wavelength)) = grid.header.iter().enumerate().find_map(named) else { return Ok(()) };
     for ((line, cells), i) in grid.rows.iter().zip(places.iter().copied()) {
         let centre = centres_cm1.get(i).unwrap_or(&f64::NAN);

@@ -11,7 +11,7 @@ use hadar::instrument::{Assumed, Camera, Readout};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::spectrum::Bands;
-use hadar_scenario::{BandSource, DistanceKind, FilterPlace, Filters, Setting};
+use hadar_scenario::{BandSource, DistanceKind, FilterPlace, Filters, PixelsFilled, Setting};
 use std::collections::{HashMap, HashSet};
 
 /// Share of draws of the emissivities that settles a question.
@@ -239,9 +239,10 @@ impl Study {
         // The farther, the fewer.
         let pixels = self.extent(camera, asked.distance_m).pixels();
         if scenario.is_of_object() {
-            found.push(Condition::AlikePixels { pixels });
+            let square = matches!(scenario.target.pixels, Some(PixelsFilled::All(2..)));
+            found.push(Condition::AlikePixels { pixels, square });
             if camera.pixels.is_none() && pixels > 1.0 {
-                let figure = Assumed::favourable("pixels", "as many as the object fills");
+                let figure = Assumed::favourable("pixels", "enough");
                 found.push(Condition::Assumed { figure, counts: None });
             }
         }
@@ -287,8 +288,16 @@ impl Study {
         if asked.unlit > UNLIT && !self.surroundings.objects().is_empty() {
             found.push(Condition::DarkRest { share: asked.unlit });
         }
-        if !self.is_unknown(Nuisance::EnvironmentTemperature) && !self.surroundings.objects().is_empty() {
-            found.push(Condition::SurroundingsKnown);
+        let objects = self.surroundings.objects();
+        if !self.is_unknown(Nuisance::EnvironmentTemperature) && !objects.is_empty() {
+            let black = objects.iter().filter(|object| object.emissivity.is_none()).count();
+            found.push(Condition::SurroundingsKnown { black });
+        }
+        if !self.is_unknown(Nuisance::Temperature) {
+            found.push(Condition::TemperatureKnown);
+        }
+        if !self.is_unknown(Nuisance::Lighting) && !objects.is_empty() {
+            found.push(Condition::LightingKnown);
         }
         if !self.is_unknown(Nuisance::Gain) {
             found.push(Condition::Calibrated);

@@ -16,7 +16,7 @@ use super::Study;
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::view::fill;
-use hadar::instrument::{Camera, Extent, Light, NoiseSpec, View};
+use hadar::instrument::{Camera, Extent, Light, NoiseSpec, View, check_covered};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::scene::State;
@@ -189,16 +189,9 @@ impl Study {
             let place = scenario.place(&format!("camera.{}", curve.name()));
             curve.check_covers(&self.open_bands).map_err(|error| error.at(place))?;
         }
-        if let NoiseSpec::Table { wavenumbers_cm1, .. } = &camera.noise
-            && let (Some(from), Some(to)) = (wavenumbers_cm1.first(), wavenumbers_cm1.last())
-        {
-            let (low, high) = self.open_bands.range_cm1();
-            if low < *from || high > *to {
-                let found = format!(
-                    "the noise is given from {from} to {to} cm^-1, the bands reach from {low} to {high} cm^-1"
-                );
-                return refuse("camera.noise_table", &found, "add rows, or narrow the bands");
-            }
+        if let NoiseSpec::Table { wavenumbers_cm1, .. } = &camera.noise {
+            check_covered("the noise", wavenumbers_cm1, &self.open_bands)
+                .map_err(|error| error.at(scenario.place("camera.noise_table")))?;
         }
         Ok(())
     }

@@ -26,10 +26,10 @@ pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Resu
 }
 
 /// A step that is so many times as wide as all of so many on either side is a gap.
-const WIDE: f64 = 10.0;
+const WIDE: f64 = 5.0;
 const BESIDE: usize = 4;
 
-/// Gaps of a spectrum: rows more than 10 times as far apart as any of four on either side. What was measured at even steps was not measured
+/// Gaps of a spectrum: rows more than 5 times as far apart as any of four on either side. What was measured at even steps was not measured
 /// between them; a table of a few rows by hand has no steps.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gaps(Vec<[f64; 2]>);
@@ -59,11 +59,18 @@ impl Gaps {
     /// # Errors
     /// The rows around it.
     pub fn check(&self, wavenumber_cm1: f64) -> Result<()> {
-        let inside =
-            |[a, b]: &&[f64; 2]| a * (1.0 + SAME) < wavenumber_cm1 && wavenumber_cm1 < b * (1.0 - SAME);
+        self.check_range([wavenumber_cm1; 2])
+    }
+
+    /// Refuses a range that reaches into one.
+    ///
+    /// # Errors
+    /// The rows around it.
+    pub fn check_range(&self, [low_cm1, high_cm1]: [f64; 2]) -> Result<()> {
+        let inside = |[a, b]: &&[f64; 2]| a * (1.0 + SAME) < high_cm1 && low_cm1 < b * (1.0 - SAME);
         let Some([a, b]) = self.0.iter().find(inside) else { return Ok(()) };
         Err(Error::malformed(
-            format!("no rows between {a:.2} and {b:.2} cm^-1, over ten times as far apart as those beside"),
+            format!("no rows between {a:.2} and {b:.2} cm^-1, over five times as far apart as those beside"),
             "add what was measured there, or narrow the bands to what was",
         ))
     }

@@ -328,6 +328,14 @@ fn mistakes_are_one_message() {
     let refusal = folder.refusal(&["decompose", "b.toml"]);
     let message = "sigma.csv:2: wavenumber_cm1: a row at 300.000 cm^-1 for band 0 at 800.000 cm^-1";
     assert!(refusal.contains(message), "{refusal}");
+    for name in ["Wavenumber_cm1", "wavenumber", "wavelength_nm"] {
+        folder.file("sigma.csv", &rows(801.0).replace("wavenumber_cm1", name));
+        let refusal = folder.refusal(&["decompose", "b.toml"]);
+        assert!(
+            refusal.contains(&format!("sigma.csv:1: a column `{name}`; name the column wavenumber_cm1")),
+            "{refusal}"
+        );
+    }
     folder.file("sigma.csv", &rows(801.0));
     assert_eq!(folder.run(&["decompose", "b.toml"]).code, 0);
     // A file of [cube] data alone is of whichever command it is given to.

@@ -49,6 +49,10 @@ const FEWEST_OF_ALL: f64 = 256.0;
 const ALIKE: f64 = 0.999;
 /// Standard errors by which the mean of a band may be below the dark level.
 const BELOW_DARK: f64 = 5.0;
+/// Standard errors beyond which a bend is no chance (Student's law of 31 degrees of freedom: 4 in 10 000), and its share of the slope from
+/// which on it matters.
+const BENT: f64 = 4.0;
+const MATTERS: f64 = 0.05;
 /// Deviations of ⟨d_A d_B⟩ above which a ratio by it is taken.
 const TOLD: f64 = 10.0;
 
@@ -70,6 +74,9 @@ pub struct Transfer {
     pub common: Line,
     /// χ²/ν of the bands' variances about the common line; NaN of too few bands.
     pub chi_square_reduced: f64,
+    /// c of a parabola in place of the line, with its standard error, where the line is straight: beyond chance gains of pixels differ or
+    /// the detector is not linear, and b and a are those of neither end.
+    pub bend: Option<[f64; 2]>,
     /// What it stays below with a probability of 99.9 % where bands have that line in common.
     pub chi_square_limit: f64,
     /// Share of the differences that were left out as outliers.
@@ -133,6 +140,16 @@ impl Transfer {
         self
     }
 
+    /// Whether variance over mean is bent beyond chance, and by more than a twentieth of the photons' share at the brightest mean.
+    #[must_use]
+    pub fn is_bent(&self) -> bool {
+        let bins = self.bands.iter().flat_map(|band| &band.bins);
+        let most = bins.map(|bin| bin[0].abs()).fold(0.0, f64::max);
+        self.bend.is_some_and(|[c, sigma]| {
+            c.abs() > BENT * sigma && c.abs() * most > MATTERS * self.common.per_photon.abs()
+        })
+    }
+
     /// The least variance that the common line has at a mean that was seen.
     #[must_use]
     pub fn least_variance(&self) -> f64 {
@@ -193,7 +210,9 @@ pub fn photon_transfer<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Res
     let common = line(&solutions).ok_or_else(|| no_line(NoLine::Bins(0, 2), count, spatial))?;
     let [chi_square_reduced, chi_square_limit] =
         misfit(&sets, &solutions, if asked.gain_spread { 3.0 } else { 2.0 })?;
+    let bent = || line(&replicated(&all, averaged, true).ok()?).map(|bent| [bent.spread, bent.sigma_spread]);
     Ok(Transfer {
+        bend: if asked.gain_spread { None } else { bent() },
         chi_square_reduced,
         chi_square_limit,
         bands: of_bands,

@@ -96,7 +96,7 @@ fn holds(figure: &Assumed, counts: Option<f64>) -> String {
         "dark_rate" => "it counts nothing in the dark".into(),
         "read_noise" => "reading it adds no noise".into(),
         "quantisation_bits" => "its converter adds no noise".into(),
-        "pixels" => format!("it has {taken}"),
+        "pixels" => "it has as many pixels as the object fills".into(),
         other => format!("{other} is {taken}"),
     };
     format!("{said} ({} is not stated)", figure.figure)
@@ -140,9 +140,10 @@ impl Say for Condition {
             Self::PixelsByLens => {
                 "as many pixels are on the target as pixel and focal length give, which the field of view contradicts".into()
             }
-            Self::AlikePixels { pixels } => format!(
-                "the {} pixels that are added up are identified, and all see the target in the same state",
-                in_number(*pixels)
+            Self::AlikePixels { pixels, square } => format!(
+                "the {} pixels that are added up are identified{}, and all see the target in the same state",
+                in_number(*pixels),
+                if *square { ", fill a square (their rows and columns are not stated)" } else { "" }
             ),
             Self::FrameNoise { figures } => format!(
                 "rows, columns and frames of the array have no common noise from frame to frame ({} not stated)",
@@ -207,7 +208,12 @@ impl Say for Condition {
             Self::SamplesArePhotons => "one unit of its samples is one photon".into(),
             Self::ExpectedCounts => "its counts are expectations, and none of their texture is noise".into(),
             Self::OneScene => "real objects have the texture of the one scene that is rendered".into(),
-            Self::SurroundingsKnown => "the temperatures of the surroundings are known".into(),
+            Self::SurroundingsKnown { black: 0 } => "the temperatures of the surroundings are known".into(),
+            Self::SurroundingsKnown { black } => {
+                format!("the temperatures of the surroundings are known; taken as black: {black} (no material is stated)")
+            }
+            Self::TemperatureKnown => "the temperature of the target is known".into(),
+            Self::LightingKnown => "how much each of the surroundings lights the target is known".into(),
             Self::Calibrated => "the gain of the camera is known".into(),
             Self::Extrapolated { materials } => {
                 format!("spectra continue beyond their tables as extrapolated ({})", listed(materials))
@@ -224,7 +230,7 @@ impl Say for Condition {
 }
 
 /// Codes of conditions, what they mean, and what to do; figures of a camera are explained as their keys are.
-pub(crate) const EXPLAINED: [[&str; 3]; 41] = [
+pub(crate) const EXPLAINED: [[&str; 3]; 43] = [
     [
         "range",
         "A range that the scenario sets for the alternatives excludes states that could not be distinguished.",
@@ -384,8 +390,19 @@ pub(crate) const EXPLAINED: [[&str; 3]; 41] = [
     ],
     [
         "surroundings-known",
-        "The temperatures of the surroundings are not among the unknowns: they are taken as known.",
-        "Add \"environment-temperature\" to unknown.nuisances if they are unknown.",
+        "The temperatures of the surroundings are not among the unknowns: they are taken as known; surroundings without a material are \
+         taken as black.",
+        "Add \"environment-temperature\" to unknown.nuisances if they are unknown; write the material of every [[environment]].",
+    ],
+    [
+        "temperature-known",
+        "The temperature of the target is not among the unknowns: whoever decides is taken to know it exactly.",
+        "Add \"temperature\" to unknown.nuisances if nobody measures it.",
+    ],
+    [
+        "lighting-known",
+        "The lighting is not among the unknowns: whoever decides is taken to know how much each of the surroundings lights the target.",
+        "Add \"lighting\" to unknown.nuisances if nobody measures it.",
     ],
     [
         "emissivity-known",

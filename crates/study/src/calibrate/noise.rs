@@ -20,7 +20,7 @@ const TEXTURE: f64 = 0.2;
 /// Key of the sample without light.
 const DARK_LEVEL: &str = "noise.dark_level";
 /// Share of samples at the largest value from which on the line is another one.
-const CUT_OFF: f64 = 0.01;
+const CUT_OFF: f64 = 0.002;
 /// Share of outliers from which on they are said.
 const OUTLIERS: f64 = 1e-3;
 
@@ -201,6 +201,10 @@ impl PhotonNoise {
                 limit: transfer.chi_square_limit,
             });
         }
+        let is_bent = transfer.is_bent();
+        if let Some([bend, sigma]) = transfer.bend.filter(|_| is_bent) {
+            warnings.push(Warning::NoiseNotStraight { bend, sigma });
+        }
         let [low, high] = Line::interval(common.per_photon, common.sigma_per_photon);
         let [least, most] = common.noise_electrons_interval();
         let told = low > 0.0;
@@ -224,7 +228,7 @@ impl PhotonNoise {
             photons_per_unit: [inverse(common.per_photon), inverse(high), inverse(low)],
             noise_electrons: [common.noise_electrons(), least, most],
             gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
-            usable: told && alike && possible,
+            usable: told && alike && possible && !is_bent,
             transfer,
         }
     }

@@ -209,8 +209,9 @@ impl Asked {
             verdict: match (is_judged, rejected) {
                 (true, true) => ModelVerdict::Rejected,
                 _ if !self.is_told => ModelVerdict::SharedNotTold,
-                (false, _) => ModelVerdict::NotJudged,
-                (true, false) => ModelVerdict::NotRejected,
+                // Where no cause was asked for, nothing was heard against it.
+                (true, false) if sums.is_some() => ModelVerdict::NotRejected,
+                _ => ModelVerdict::NotJudged,
             },
             pixels,
             p_value_mean: of_exact(p_sum / pixels as f64),

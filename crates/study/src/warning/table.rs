@@ -110,6 +110,8 @@ warnings! {
     ModelRejected { if_it_holds: usize, causes: Vec<CauseRow> } = "model-rejected";
     /// A library without errors.
     LibraryTakenAsExact = "library-taken-as-exact";
+    /// Largest error of the emissivities of a material, over what it reflects.
+    LibraryErrorNotSmall { share: f64 } = "library-error-not-small";
 
     /// Bands whose lines differ from those beside them beyond noise, the rms of it and what noise explains, over their level, in the worst band.
     LinesDiffer { axis: &'static str, bands: Vec<usize>, of: usize, apart: f64, noise: f64 } = "lines-differ";
@@ -163,6 +165,8 @@ warnings! {
     TextureInNoise { share: f64 } = "texture-in-noise";
     /// Dimension along which the noise of frames goes together, the correlation of neighbours, and what independent noise stays within.
     CorrelatedNoise { of: &'static str, value: f64, limit: f64 } = "correlated-noise";
+    /// c of a parabola through variances over means where a straight line was fitted, and its error.
+    NoiseNotStraight { bend: f64, sigma: f64 } = "noise-not-straight";
     /// χ²/ν of the noise of bands about one line, and what it stays below by chance.
     BandsDifferInNoise { chi_square: f64, limit: f64 } = "bands-differ-in-noise";
     /// Variance that a sample without light would have, its error, and the level that was taken as no light.

@@ -312,7 +312,8 @@ fn assumptions_that_fail_are_warned_of() {
     let stated = size(&SCENE.replace(
         "netd =",
         "full_well = 1e12\nquantisation_bits = 16\n\
-         fixed_pattern = \"0 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\noffset_drift = \"0 mK\"\nnetd =",
+         fixed_pattern = \"0 mK\"\nrow_noise = \"0 mK\"\ncolumn_noise = \"0 mK\"\noffset_drift = \"0 mK\"\n\
+         quantum_efficiency = 1\ndark_rate = \"0 1/s\"\nread_noise = 0\nnetd =",
     ));
     assert!(!codes(&stated).contains(&"camera-figure-assumed"));
     // A pixel as large as the blur, and bunching that is in the noise.

@@ -3,31 +3,53 @@
 //! Proofs look at the ends of intervals. These are multiples of a power of two, so that pairs of one scene share them; what a spectrum
 //! is does not hang on who asked for it first.
 
+use super::proof::by_place;
+use crate::aligned::Aligned;
 use crate::planck;
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Numbers that are kept at most.
 const ROOM: usize = 1 << 20;
 
 /// B and ∂B/∂T at the nodes.
-pub(super) type Blackbody = Arc<[Vec<f64>; 2]>;
+#[derive(Debug)]
+pub(super) struct Blackbody {
+    pub(super) radiance: [Aligned; 2],
+    /// The same by place, and in groups of how many neighbours.
+    by_place: OnceLock<(usize, [Aligned; 2])>,
+}
+
+impl Blackbody {
+    fn of(nodes_cm1: &[f64], temperature_k: f64) -> Self {
+        let [mut value, mut slope] = [(); 2].map(|()| Aligned::unset(nodes_cm1.len()));
+        planck::photon_radiance_and_slope_into(nodes_cm1, temperature_k, &mut value, &mut slope);
+        Self { radiance: [value, slope], by_place: OnceLock::new() }
+    }
+
+    /// Both by place in groups of so many neighbours, as all that ask of one scene have them; `None` where others were asked for first.
+    pub(super) fn by_place(&self, count: usize) -> Option<&[Aligned; 2]> {
+        let placed = || (count, self.radiance.each_ref().map(|radiance| by_place(radiance, count)));
+        let (of, placed) = self.by_place.get_or_init(placed);
+        (*of == count).then_some(placed)
+    }
+}
 
 /// The spectra known so far.
 #[derive(Debug, Default)]
 pub(super) struct Blackbodies {
-    known: Mutex<HashMap<u64, Blackbody>>,
+    known: Mutex<HashMap<u64, Arc<Blackbody>>>,
 }
 
 impl Blackbodies {
     /// The spectrum of a temperature, kept for others.
-    pub(super) fn at(&self, nodes_cm1: &[f64], temperature_k: f64) -> Blackbody {
+    pub(super) fn at(&self, nodes_cm1: &[f64], temperature_k: f64) -> Arc<Blackbody> {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(found) = known.get(&temperature_k.to_bits()) {
             return Arc::clone(found);
         }
-        let made = Self::once(nodes_cm1, temperature_k);
-        if (known.len() + 1) * 2 * nodes_cm1.len() > ROOM {
+        let made = Arc::new(Self::once(nodes_cm1, temperature_k));
+        if (known.len() + 1) * 4 * nodes_cm1.len() > ROOM {
             known.clear();
         }
         known.insert(temperature_k.to_bits(), Arc::clone(&made));
@@ -36,9 +58,7 @@ impl Blackbodies {
 
     /// The spectrum of a temperature that hardly comes again.
     pub(super) fn once(nodes_cm1: &[f64], temperature_k: f64) -> Blackbody {
-        let [mut value, mut slope] = [(); 2].map(|()| vec![0.0; nodes_cm1.len()]);
-        planck::photon_radiance_and_slope_into(nodes_cm1, temperature_k, &mut value, &mut slope);
-        Arc::new([value, slope])
+        Blackbody::of(nodes_cm1, temperature_k)
     }
 }
 
@@ -84,7 +104,10 @@ mod tests {
         for i in 0..20_000 {
             known.at(&nodes, 200.0 + f64::from(i) / 64.0);
         }
-        assert_eq!(known.at(&nodes, 311.0), before);
+        assert_eq!(
+            known.at(&nodes, 311.0).radiance.each_ref().map(|x| x.to_vec()),
+            before.radiance.each_ref().map(|x| x.to_vec())
+        );
         assert!(known.known.lock().unwrap().len() * 200 <= ROOM);
     }
 }

@@ -34,6 +34,7 @@ pub(super) use self::prover::Memory;
 use self::prover::{Goal, Looked, Prover};
 use self::region::Region;
 pub(in crate::limits::identifiability) use self::sources::{Chord, chord};
+pub(super) use self::vectors::by_place;
 use self::wings::Wings;
 use super::refine::{NearestDistance, refine};
 use super::residual::{Comparison, Target};

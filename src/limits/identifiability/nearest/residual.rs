@@ -240,7 +240,7 @@ impl<'a> Comparison<'a> {
         self.separate(target, state, false);
         let lines = self.lines(target);
         let is_dark = |&w: &usize| {
-            let other = lines.counts.mul_add(lines.signal[w], lines.noise[w]);
+            let other = lines.counts * lines.signal[w] + lines.noise[w];
             other < DARK * lines.root[w] * lines.root[w]
         };
         (0..lines.root.len()).filter(is_dark).collect()

@@ -241,6 +241,17 @@ words! {
             significant(*limit, 2)
         ),
     }
+    NoiseNotStraight {
+        meaning: "Variance over mean is no straight line: the detector is not linear, samples are cut off, or gains of pixels that are \
+            compared differ.",
+        remedy: "Give counts that are in proportion to light; ask for noise.gain_spread = true where gains of pixels differ.",
+        NoiseNotStraight { bend, sigma } => format!(
+            "variance over mean is bent (m^2 times {} +- {}): a detector that is not linear, or gains that differ; photons and electronic \
+             noise by a straight line hold for neither end",
+            significant(*bend, 2),
+            significant(*sigma, 2)
+        ),
+    }
     BandsDifferInNoise {
         meaning: "Bands of a cube scatter by different noise models.",
         remedy: "Use the variance of each band (sigma.csv); give counts as the camera made them, before \

@@ -137,6 +137,17 @@ words! {
         remedy: "State library.emissivity_error if the spectra are measured.",
         LibraryTakenAsExact => "the library is taken as exact: errors of its emissivities make temperatures less accurate than stated",
     }
+    LibraryErrorNotSmall {
+        meaning: "The errors of the library's emissivities are not small beside what a material reflects. Deviations hold them to first \
+            order: the same error stands in the fit's own derivatives, and intervals hold the truth less often than they state.",
+        remedy: "State a smaller emissivity_error if the spectra are better; else take temperatures of such a material as known to several \
+            of their deviations.",
+        LibraryErrorNotSmall { share } => format!(
+            "the errors of the emissivities are up to {} % of what a material reflects: temperatures err by more than their deviations, which \
+             hold such errors to first order (at 5 % some 5 % too few are held, at 20 % half)",
+            significant(100.0 * share, 2)
+        ),
+    }
     NoRelativeEmissivity {
         meaning: "Pixels of a cube radiate like what lights them, or like no possible surface: no emissivity \
             follows from one of them alone.",

@@ -14,7 +14,9 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
-use super::vectors::{multiply, neighbours_summed, product_into, products_summed, whole};
+use super::vectors::{
+    by_place, multiply, neighbours_summed, product_into, products_by_place_into, products_summed, whole,
+};
 use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::Blackbodies;
@@ -74,6 +76,8 @@ pub(super) struct Sources<'a> {
     blackbodies: Arc<Blackbodies>,
     /// Every so many neighbouring bands are counted as one.
     merged: usize,
+    /// Strengths of the sources of unknown temperature by place in groups of so many, where bands are counted together and each has one node.
+    by_place: Arc<[Option<Aligned>]>,
     /// Rounding of the target's own counts, as a share of them.
     own_rounding: f64,
     /// The lowest wavenumber, ν₀, and the highest.
@@ -136,8 +140,15 @@ impl<'a> Sources<'a> {
         });
         let list = std::iter::once(surface).chain(lights).collect();
         let blackbodies = Arc::clone(&comparison.blackbodies);
-        let mut sources =
-            Self { bands, list, blackbodies, merged: 1, own_rounding: 0.0, range_cm1: comparison.range_cm1 };
+        let mut sources = Self {
+            bands,
+            list,
+            blackbodies,
+            merged: 1,
+            by_place: Arc::default(),
+            own_rounding: 0.0,
+            range_cm1: comparison.range_cm1,
+        };
         sources.own_rounding = sources.rounding_of(comparison, target);
         sources
     }
@@ -174,19 +185,36 @@ impl<'a> Sources<'a> {
 
     /// The same with neighbouring bands counted as one.
     pub(super) fn merged(&self, merged: usize) -> Self {
-        Self { merged, ..self.clone() }
+        let is_placed = merged > 1 && self.bands.one_node_per_band();
+        // Of a temperature that is known there is one spectrum alone.
+        let placed =
+            |source: &Source| (is_placed && source.free()).then(|| by_place(&source.strength, merged));
+        let placed = self.list.iter().map(placed);
+        Self { merged, by_place: placed.collect(), ..self.clone() }
     }
 
     /// Source `s` at a temperature that other pairs look at, too.
     pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
         let blackbody = self.blackbodies.at(self.bands.nodes_cm1(), temperature_k);
-        self.of(s, temperature_k, blackbody.each_ref().map(Vec::as_slice))
+        let strength = self.by_place.get(s).and_then(Option::as_ref);
+        match strength.and_then(|strength| Some((strength, blackbody.by_place(self.merged)?))) {
+            None => self.of(s, temperature_k, blackbody.radiance.each_ref().map(|radiance| &radiance[..])),
+            Some((strength, radiance)) => {
+                crate::stop::check();
+                let counted = radiance.each_ref().map(|radiance| {
+                    let mut sums = Aligned::unset(strength.len() / self.merged);
+                    products_by_place_into(radiance, strength, &mut sums);
+                    sums
+                });
+                Spectrum::of(temperature_k, temperature_k, counted)
+            }
+        }
     }
 
     /// The same at one that is the pair's own.
     pub(super) fn own_spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
         let blackbody = Blackbodies::once(self.bands.nodes_cm1(), temperature_k);
-        self.of(s, temperature_k, blackbody.each_ref().map(Vec::as_slice))
+        self.of(s, temperature_k, blackbody.radiance.each_ref().map(|radiance| &radiance[..]))
     }
 
     /// The same of B and ∂B/∂T at the nodes.
@@ -292,7 +320,7 @@ impl<'a> Sources<'a> {
         let [mut bend, mut third] = [(); 2].map(|()| Aligned::unset(nodes.len()));
         planck::photon_radiance_into(nodes, temperature_k, &mut bend);
         let ends = [low, high].map(|end| self.blackbodies.at(nodes, end));
-        let [cold, hot] = ends.each_ref().map(|end| &end[0][..]);
+        let [cold, hot] = ends.each_ref().map(|end| &end.radiance[0][..]);
         bends(Bends { nodes, temperature_k, low_k: low, bend: &mut bend, third: &mut third, cold, hot });
         [bend, third].map(|spectrum| self.counted(s, &spectrum))
     }

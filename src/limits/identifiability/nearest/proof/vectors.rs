@@ -1,7 +1,7 @@
 //! Loops over the bands that a proof spends its time in.
 
 use crate::aligned::Aligned;
-use crate::simd::{Chunk, LANES, added, dispatched, fold, fold_all, padded, product};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, padded, product};
 
 dispatched! {
     /// a·b, element by element.
@@ -162,9 +162,6 @@ pub(super) fn whole(bands: usize) -> usize {
     bands.next_multiple_of(LANES)
 }
 
-/// Groups that are summed at a time.
-const GROUPS: usize = 16;
-
 /// So many neighbours summed each, in whole chunks.
 pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Aligned {
     summed(bands, None, count)
@@ -177,66 +174,85 @@ pub(super) fn products_summed([a, b]: [&[f64]; 2], count: usize) -> Aligned {
 
 fn summed(bands: &[f64], factor: Option<&[f64]>, count: usize) -> Aligned {
     let mut all = Aligned::unset(whole(bands.len().div_ceil(count)));
-    let mut groups = [[0.0; LANES]; GROUPS];
-    for (some, sums) in all.chunks_mut(GROUPS).enumerate() {
-        let first = (some * GROUPS * count).min(bands.len());
-        let groups = &mut groups[..sums.len()];
-        by_group(&bands[first..], factor.map(|x| &x[first..]), count, groups);
-        folded_into(groups, sums);
-    }
+    summed_into(bands, factor, count, &mut all);
     all
 }
 
 dispatched! {
-    /// Lanes of the sums of so many neighbours each, times a factor if there is any.
-    fn by_group<'a>(bands: &'a [f64], factor: Option<&'a [f64]>, count: usize, groups: &'a mut [Chunk]) -> () {
-        let per_group = count / LANES;
-        let chunks: &[Chunk] = bands.as_chunks().0;
-        let whole = if per_group * LANES == count { (chunks.len() / per_group).min(groups.len()) } else { 0 };
-        let (in_chunks, others) = groups.split_at_mut(whole);
+    /// The sums of so many neighbours each, times a factor if there is any.
+    fn summed_into<'a>(bands: &'a [f64], factor: Option<&'a [f64]>, count: usize, sums: &'a mut [f64]) -> () {
+        let (chunks, per_group) = (bands.as_chunks::<LANES>().0, count / LANES);
+        let whole = if per_group * LANES == count { (chunks.len() / per_group).min(sums.len()) } else { 0 };
+        let (in_chunks, others) = sums.split_at_mut(whole);
+        // Loops written out: a closure need not be inlined, and would then be compiled for the oldest processor.
         match factor {
             Some(factor) => {
                 let factor: &[Chunk] = factor.as_chunks().0;
-                fill(in_chunks, per_group, |c| product(chunks[c], factor[c]), |c, lanes| added(chunks[c], factor[c], lanes));
+                let groups = chunks.chunks_exact(per_group.max(1)).zip(factor.chunks_exact(per_group.max(1)));
+                for (sum, (a, b)) in in_chunks.iter_mut().zip(groups) {
+                    let mut lanes = product(a[0], b[0]);
+                    for (a, b) in a[1..].iter().zip(&b[1..]) {
+                        lanes = added(*a, *b, lanes);
+                    }
+                    *sum = fold(&lanes);
+                }
             }
-            None => fill(in_chunks, per_group, |c| chunks[c], |c, lanes| added([1.0; LANES], chunks[c], lanes)),
+            None => {
+                for (sum, a) in in_chunks.iter_mut().zip(chunks.chunks_exact(per_group.max(1))) {
+                    let mut lanes = a[0];
+                    for a in &a[1..] {
+                        lanes = added([1.0; LANES], *a, lanes);
+                    }
+                    *sum = fold(&lanes);
+                }
+            }
         }
         // Groups that are no whole chunks, the last one, and those beyond it.
         let mut rest = (whole * count).min(bands.len());
-        for lanes in others {
-            *lanes = [0.0; LANES];
+        for sum in others {
+            let mut lanes = [0.0; LANES];
             let end = (rest + count).min(bands.len());
             for i in (rest..end).step_by(LANES) {
                 let part = i..(i + LANES).min(end);
                 let by = factor.map_or([1.0; LANES], |factor| padded(&factor[part.clone()]));
-                *lanes = added(padded(&bands[part]), by, *lanes);
+                lanes = added(padded(&bands[part]), by, lanes);
             }
+            *sum = fold(&lanes);
             rest = end;
         }
     }
 }
 
-/// Of each group its first chunk, to which the others are added.
-#[inline(always)]
-fn fill(
-    groups: &mut [Chunk],
-    per_group: usize,
-    first: impl Fn(usize) -> Chunk,
-    added: impl Fn(usize, Chunk) -> Chunk,
-) {
-    for (g, lanes) in groups.iter_mut().enumerate() {
-        let mut sum = first(g * per_group);
-        for c in g * per_group + 1..(g + 1) * per_group {
-            sum = added(c, sum);
+/// Values by their place in groups of so many neighbours: the first of every group, then the second of every one and so on, each in
+/// whole chunks; 0 where the last group has none. Sums over neighbours are then sums of whole lanes.
+pub(in super::super) fn by_place(values: &[f64], count: usize) -> Aligned {
+    let groups = whole(values.len().div_ceil(count));
+    let mut placed = Aligned::unset(count * groups);
+    for (place, row) in placed.chunks_exact_mut(groups.max(1)).enumerate() {
+        let mut next = place;
+        for to in row {
+            *to = values.get(next).copied().unwrap_or(0.0);
+            next += count;
         }
-        *lanes = sum;
     }
+    placed
 }
 
 dispatched! {
-    /// The sums of lanes, apart from what fills them: else that is compiled for the pairs that folding asks for.
-    fn folded_into<'a>(groups: &'a [Chunk], sums: &'a mut [f64]) -> () {
-        fold_all(groups, 1.0, sums);
+    /// [`products_summed`] of values by their place.
+    pub(super) fn products_by_place_into<'a>(a: &'a [f64], b: &'a [f64], sums: &'a mut [f64]) -> () {
+        let (a, b): (&[Chunk], &[Chunk]) = (a.as_chunks().0, b.as_chunks().0);
+        let sums = sums.as_chunks_mut::<LANES>().0;
+        let groups = sums.len();
+        for (g, sum) in sums.iter_mut().enumerate() {
+            let mut lanes = product(a[g], b[g]);
+            let mut next = g + groups;
+            while next < a.len() {
+                lanes = added(a[next], b[next], lanes);
+                next += groups;
+            }
+            *sum = lanes;
+        }
     }
 }
 
@@ -262,6 +278,11 @@ mod tests {
                     neighbours_summed(&a, count)[..],
                     products_summed([&a, &vec![1.0; bands]], count)[..]
                 );
+                let mut by_places = Aligned::zeros(found.len());
+                products_by_place_into(&by_place(&a, count), &by_place(&b, count), &mut by_places);
+                for (one, other) in by_places.iter().zip(&found) {
+                    assert!((one - other).abs() <= 1e-14 * other, "{bands} {count}: {one} {other}");
+                }
             }
         }
     }
