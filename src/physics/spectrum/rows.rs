@@ -27,9 +27,9 @@ pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Resu
 
 /// A step that is so many times as wide as all of so many on either side is a gap.
 const WIDE: f64 = 5.0;
-const BESIDE: usize = 4;
+const BESIDE: usize = 3;
 
-/// Gaps of a spectrum: rows more than 5 times as far apart as any of four on either side. What was measured at even steps was not measured
+/// Gaps of a spectrum: rows more than 5 times as far apart as any of the three steps on either side. What was measured at even steps was not measured
 /// between them; a table of a few rows by hand has no steps.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gaps(Vec<[f64; 2]>);

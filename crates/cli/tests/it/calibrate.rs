@@ -332,7 +332,9 @@ fn mistakes_are_one_message() {
         folder.file("sigma.csv", &rows(801.0).replace("wavenumber_cm1", name));
         let refusal = folder.refusal(&["decompose", "b.toml"]);
         assert!(
-            refusal.contains(&format!("sigma.csv:1: a column `{name}`; name the column wavenumber_cm1")),
+            refusal.contains(&format!(
+                "sigma.csv:1: cube.noise: a column `{name}`; name the column wavenumber_cm1"
+            )),
             "{refusal}"
         );
     }

@@ -138,8 +138,8 @@ words! {
         LibraryTakenAsExact => "the library is taken as exact: errors of its emissivities make temperatures less accurate than stated",
     }
     LibraryErrorNotSmall {
-        meaning: "The errors of the library's emissivities are not small beside what a material reflects. Deviations hold them to first \
-            order: the same error stands in the fit's own derivatives, and intervals hold the truth less often than they state.",
+        meaning: "The errors of the library's emissivities are not small compared with what a material reflects. Deviations hold them to first \
+            order: the fit's own derivatives have the same error, and intervals hold the truth less often than they state.",
         remedy: "State a smaller emissivity_error if the spectra are better; else take temperatures of such a material as known to several \
             of their deviations.",
         LibraryErrorNotSmall { share } => format!(
