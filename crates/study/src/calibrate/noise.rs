@@ -48,7 +48,7 @@ pub struct NoiseFound {
     /// Variances of the noise in three dimensions, unit² of the cube; `None` of one frame, or where samples are missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub three_dimensional: Option<[Component; 7]>,
-    /// How the noise goes together along the dimensions of the frames, as far as that can be told; of one frame nothing.
+    /// How the noise goes together along each dimension of the frames that is long enough to tell; of one frame nothing.
     pub correlations: Vec<Correlation>,
     /// What was done and what was spared.
     pub stats: Work,

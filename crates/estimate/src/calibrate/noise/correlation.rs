@@ -42,7 +42,7 @@ impl Correlation {
     #[must_use]
     pub fn is_large(&self) -> bool {
         // Of what is no number nothing follows either.
-        !(self.value.abs() <= self.limit)
+        self.value.is_nan() || self.value.abs() > self.limit
     }
 }
 
