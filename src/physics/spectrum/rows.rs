@@ -28,6 +28,8 @@ pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Resu
 /// A step that is so many times as wide as all of so many on either side is a gap.
 const WIDE: f64 = 5.0;
 const BESIDE: usize = 3;
+/// Share of a gap at either end that still is its row: wavenumbers of files are rounded.
+const EDGE: f64 = 1e-3;
 
 /// Gaps of a spectrum: rows more than 5 times as far apart as any of the three steps on either side. What was measured at even steps was not measured
 /// between them; a table of a few rows by hand has no steps.
@@ -67,7 +69,10 @@ impl Gaps {
     /// # Errors
     /// The rows around it.
     pub fn check_range(&self, [low_cm1, high_cm1]: [f64; 2]) -> Result<()> {
-        let inside = |[a, b]: &&[f64; 2]| a * (1.0 + SAME) < high_cm1 && low_cm1 < b * (1.0 - SAME);
+        let inside = |[a, b]: &&[f64; 2]| {
+            let edge = EDGE * (b - a);
+            a + edge < high_cm1 && low_cm1 < b - edge
+        };
         let Some([a, b]) = self.0.iter().find(inside) else { return Ok(()) };
         Err(Error::malformed(
             format!("no rows between {a:.2} and {b:.2} cm^-1, over five times as far apart as those beside"),
