@@ -45,7 +45,7 @@ pub use budget::NoiseLine;
 pub use camera::{Camera, Figures, gamma_per_band};
 pub use comparison::Comparison;
 pub use counting::Counting;
-pub use efficiency::{EfficiencyCurve, check_covered};
+pub use efficiency::EfficiencyCurve;
 pub use equivalents::Equivalents;
 pub use figures::{CameraSpec, Efficiency, FASTEST_F_NUMBER};
 pub use made::REFERENCE_K;

@@ -8,7 +8,7 @@
 
 use crate::error::{Error, Result, check};
 use crate::order;
-use crate::spectrum::{Bands, Gaps};
+use crate::spectrum::Bands;
 
 /// Efficiency at ascending wavenumbers, straight lines between the rows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -81,24 +81,6 @@ impl EfficiencyCurve {
     /// # Errors
     /// Bands that reach beyond its rows or into a gap of them.
     pub fn check_covers(&self, bands: &Bands) -> Result<()> {
-        check_covered(&self.name, &self.wavenumbers_cm1, bands)
+        bands.check_within(&self.name, &self.wavenumbers_cm1)
     }
-}
-
-/// Refuses bands of which rows at these ascending wavenumbers, cm⁻¹, say nothing.
-///
-/// # Errors
-/// Bands that reach beyond the rows or into a gap of them.
-pub fn check_covered(name: &str, rows_cm1: &[f64], bands: &Bands) -> Result<()> {
-    let (low, high) = bands.range_cm1();
-    if let (Some(from), Some(to)) = (rows_cm1.first(), rows_cm1.last())
-        && !(low >= *from && high <= *to)
-    {
-        return Err(Error::malformed(
-            format!("{name} is given from {from} to {to} cm^-1, the bands reach from {low} to {high} cm^-1"),
-            "add rows, or narrow the bands",
-        ));
-    }
-    let gaps = Gaps::of(rows_cm1);
-    bands.bands().iter().try_for_each(|band| gaps.check_range([band.low_cm1, band.high_cm1]))
 }

@@ -435,6 +435,14 @@ mod tests {
         assert!(share > 0.3);
         let clipped: Vec<f64> = good().iter().map(|n| n.max(5400.0)).collect();
         assert_eq!(cut_off_share(&cube(clipped), &all).unwrap(), Some([5400.0, 1.0 - share]));
+        // Whole numbers that are cut off have many at the next one too.
+        let whole: Vec<f64> =
+            (0..72 * BANDS).map(|i| ((i * 7919 % 613 / 40) as f64 - 6.0).max(0.0)).collect();
+        assert!(
+            cut_off_share(&cube(whole), &all)
+                .unwrap()
+                .is_some_and(|[least, share]| least == 0.0 && share > 0.4)
+        );
         // Counts of 0.05 photons: 0 in 95 of 100, 1 in 5, 2 in a tenth.
         let few = (0..72 * BANDS)
             .map(|i| if i % 20 == 0 { 1.0 } else { 0.0 } + if i % 400 == 0 { 1.0 } else { 0.0 });

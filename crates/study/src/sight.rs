@@ -16,7 +16,7 @@ use super::Study;
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::view::fill;
-use hadar::instrument::{Camera, Extent, Light, NoiseSpec, View, check_covered};
+use hadar::instrument::{Camera, Extent, Light, NoiseSpec, View};
 use hadar::planck;
 use hadar::policy::caps::longest_wavelength_m;
 use hadar::scene::State;
@@ -190,7 +190,9 @@ impl Study {
             curve.check_covers(&self.open_bands).map_err(|error| error.at(place))?;
         }
         if let NoiseSpec::Table { wavenumbers_cm1, .. } = &camera.noise {
-            check_covered("the noise", wavenumbers_cm1, &self.open_bands)
+            let bands = &self.open_bands;
+            bands
+                .check_within("the noise", wavenumbers_cm1)
                 .map_err(|error| error.at(scenario.place("camera.noise_table")))?;
         }
         Ok(())

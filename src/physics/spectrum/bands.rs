@@ -4,6 +4,8 @@ mod build;
 mod join;
 
 use super::filter::FilterCurve;
+use super::rows::Gaps;
+use crate::error::{Error, Result};
 use crate::simd::dispatched;
 
 /// Transmittance of what is opaque.
@@ -143,6 +145,38 @@ impl Bands {
             Shape::Filter(filter) => integral(filter),
         };
         Some(self.shapes.iter().map(of_shape).collect())
+    }
+
+    /// Refuses bands of which a table with rows at these ascending wavenumbers, cm⁻¹, says nothing.
+    ///
+    /// # Errors
+    /// Bands that reach beyond the rows or into a gap of them; `name` is what the table gives.
+    ///
+    /// ```
+    /// use hadar::spectrum::Bands;
+    /// let bands = Bands::uniform(800.0, 900.0, 20.0)?;
+    /// let rows: Vec<f64> = (0..40).map(|i| 700.0 + 10.0 * f64::from(i)).collect();
+    /// assert!(bands.check_within("the noise", &rows).is_ok());
+    /// assert!(bands.check_within("the noise", &rows[..15]).is_err());
+    /// // Without the rows from 800 to 880 cm⁻¹.
+    /// let cut: Vec<f64> = rows.iter().copied().filter(|nu| !(800.0..=880.0).contains(nu)).collect();
+    /// assert!(bands.check_within("the noise", &cut).is_err());
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn check_within(&self, name: &str, rows_cm1: &[f64]) -> Result<()> {
+        let (low, high) = self.range_cm1();
+        if let (Some(from), Some(to)) = (rows_cm1.first(), rows_cm1.last())
+            && (low < *from || high > *to)
+        {
+            return Err(Error::malformed(
+                format!(
+                    "{name} is given from {from} to {to} cm^-1, the bands reach from {low} to {high} cm^-1"
+                ),
+                "add rows, or narrow the bands",
+            ));
+        }
+        let gaps = Gaps::of(rows_cm1);
+        self.bands.iter().try_for_each(|band| gaps.check_range([band.low_cm1, band.high_cm1]))
     }
 
     /// The largest transmittance at which the rows of a filter end within a range, cm⁻¹ ([`FilterCurve::cut_within`]).

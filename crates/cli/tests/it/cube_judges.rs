@@ -16,6 +16,11 @@ const PIXELS: usize = ROWS * COLUMNS;
 
 /// Shot noise of two materials, all counts larger by a share.
 fn counts(seed: u64, gain: f64) -> Vec<f64> {
+    counts_of(seed, gain, 1e-13)
+}
+
+/// The same with so many counts for a photon radiance.
+fn counts_of(seed: u64, gain: f64, scale: f64) -> Vec<f64> {
     let mut random = generator(seed, 0);
     let mut all = Vec::with_capacity(PIXELS * BANDS);
     for i in 0..PIXELS {
@@ -24,7 +29,7 @@ fn counts(seed: u64, gain: f64) -> Vec<f64> {
         for w in 0..BANDS {
             let (e, nu) = (emissivity(m, w), wavenumber(w));
             let lit = v * sky(w) + (1.0 - v) * photon_radiance(nu, 293.15);
-            let mean = 1e-13 * (1.0 + gain) * (e * photon_radiance(nu, t) + (1.0 - e) * lit);
+            let mean = scale * (1.0 + gain) * (e * photon_radiance(nu, t) + (1.0 - e) * lit);
             // Twelve even numbers have the variance 1; of these counts shot noise is normal.
             let normal = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
             all.push((mean + mean.sqrt() * normal).round());
@@ -71,6 +76,42 @@ fn a_gain_is_named_and_nothing_is_decided() {
     assert!(text.starts_with("The cube does not follow its model: "), "{text}");
     assert!(text.contains("none is decided") && text.contains("a gain: all counts larger by "), "{text}");
     assert!(text.contains("[model-rejected]"), "{text}");
+}
+
+/// Where fewer than half of the pixels have one candidate no cause is asked for: a wrong gain is then not judged, and nothing speaks for the model.
+#[test]
+fn a_model_of_which_no_cause_was_asked_is_not_judged() {
+    let mut few = 0;
+    for scale in [1e-13, 1e-15, 1e-16, 3e-17, 1e-17] {
+        let folder = asked(&counts_of(4, 0.05, scale));
+        let text = fs::read_to_string(folder.path().join("a.toml")).unwrap();
+        folder.file("a.toml", &text.replace("= 1e-13", &format!("= {scale:e}")));
+        let found = answered(&folder);
+        let model = &found["model"];
+        let is_asked = model["pixels_asked"].as_u64().unwrap() > 0;
+        assert!(is_asked || model["verdict"] != "not-rejected", "{scale:e}: {model:#}");
+        few += usize::from(model["verdict"] == "not-judged");
+        if model["verdict"] == "not-judged" {
+            let said = folder.run(&["decompose", "a.toml"]).stdout;
+            assert!(said.contains("Whether the cube follows its model was not asked"), "{said}");
+        }
+    }
+    assert!(few > 0);
+}
+
+/// Errors of the library that are not small beside what its materials reflect are warned of.
+#[test]
+fn errors_of_the_library_that_are_not_small_are_said() {
+    let folder = asked(&counts(5, 0.0));
+    let text = fs::read_to_string(folder.path().join("a.toml")).unwrap();
+    for (error, is_said) in [("0.0005", false), ("0.02", true)] {
+        folder.file(
+            "a.toml",
+            &text.replace("[library]\n", &format!("[library]\nemissivity_error = {error}\n")),
+        );
+        let warnings = answered(&folder)["warnings"].to_string();
+        assert_eq!(warnings.contains("library-error-not-small"), is_said, "{error}: {warnings}");
+    }
 }
 
 /// Whatever is put into a pixel, the files of all others keep their bits.

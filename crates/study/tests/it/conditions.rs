@@ -281,3 +281,48 @@ fn a_range_that_decides_is_said_with_how_far_it_holds() {
     assert_eq!(at(range.holds.unwrap()[1]), Some(YesNo::Yes));
     assert_ne!(at(range.holds.unwrap()[1] + 0.5), Some(YesNo::Yes));
 }
+
+/// What is taken out of the unknowns is taken as known, which is said, each by its own code; so are surroundings that nobody states a material of,
+/// and rows and columns of an object of which only the number is stated.
+#[test]
+fn what_is_taken_out_of_the_unknowns_is_said() {
+    const KNOWN: [(&str, &str); 4] = [
+        ("temperature", "temperature-known"),
+        ("lighting", "lighting-known"),
+        ("gain", "calibrated"),
+        ("environment-temperature", "surroundings-known"),
+    ];
+    // Three bands do not distinguish beside three unknowns.
+    for kept in (0..16_usize).filter(|kept| kept.count_ones() < 3) {
+        let is_kept = |place: usize| kept >> place & 1 == 1;
+        let unknown: Vec<&str> = (0..4).filter(|place| is_kept(*place)).map(|place| KNOWN[place].0).collect();
+        let rows = text(STATED).replace("[\"temperature\", \"lighting\"]", &format!("{unknown:?}"));
+        let found = verdict(&rows.replace("distance = 0.02", "distance = 1e-6")).unwrap();
+        assert_eq!(found.answer, Some(YesNo::Yes), "{unknown:?}");
+        let codes: Vec<String> =
+            found.conditions.iter().filter(|one| one.favourable()).map(Condition::code).collect();
+        for (place, (_, code)) in KNOWN.iter().enumerate() {
+            assert_eq!(
+                codes.iter().any(|one| one == code),
+                !is_kept(place),
+                "{unknown:?}: {code} in {codes:?}"
+            );
+        }
+    }
+    let black = |more: &str| {
+        let rows = text(STATED).replace("lighting = 0.6", &format!("lighting = 0.6\n{more}"));
+        let found = verdict(&rows.replace("distance = 0.02", "distance = 1e-6")).unwrap();
+        found.conditions.iter().find_map(|one| match one {
+            Condition::SurroundingsKnown { black } => Some(*black),
+            _ => None,
+        })
+    };
+    assert_eq!((black(""), black("material = \"concrete\"")), (Some(1), Some(0)));
+    let square = |pixels: &str| {
+        let rows = text(&of_object()).replace("size = \"0.25 m\"", &format!("pixels = {pixels}"));
+        let rows = rows.replace("[background]\ntemperature = \"5 degC\"\n", "");
+        let found = verdict(&rows.replace("distance = 0.02", "distance = 1e-6")).unwrap();
+        found.conditions.iter().any(|one| matches!(one, Condition::AlikePixels { square: true, .. }))
+    };
+    assert!(square("45") && !square("[5, 9]") && !square("1"));
+}

@@ -21,7 +21,8 @@ pub(super) struct Blackbody {
 }
 
 impl Blackbody {
-    fn of(nodes_cm1: &[f64], temperature_k: f64) -> Self {
+    /// The spectrum of a temperature that hardly comes again.
+    pub(super) fn of(nodes_cm1: &[f64], temperature_k: f64) -> Self {
         let [mut value, mut slope] = [(); 2].map(|()| Aligned::unset(nodes_cm1.len()));
         planck::photon_radiance_and_slope_into(nodes_cm1, temperature_k, &mut value, &mut slope);
         Self { radiance: [value, slope], by_place: OnceLock::new() }
@@ -48,17 +49,12 @@ impl Blackbodies {
         if let Some(found) = known.get(&temperature_k.to_bits()) {
             return Arc::clone(found);
         }
-        let made = Arc::new(Self::once(nodes_cm1, temperature_k));
+        let made = Arc::new(Blackbody::of(nodes_cm1, temperature_k));
         if (known.len() + 1) * 4 * nodes_cm1.len() > ROOM {
             known.clear();
         }
         known.insert(temperature_k.to_bits(), Arc::clone(&made));
         made
-    }
-
-    /// The spectrum of a temperature that hardly comes again.
-    pub(super) fn once(nodes_cm1: &[f64], temperature_k: f64) -> Blackbody {
-        Blackbody::of(nodes_cm1, temperature_k)
     }
 }
 

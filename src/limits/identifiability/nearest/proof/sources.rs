@@ -19,7 +19,7 @@ use super::vectors::{
 };
 use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
-use crate::identifiability::nearest::blackbodies::Blackbodies;
+use crate::identifiability::nearest::blackbodies::{Blackbodies, Blackbody};
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::identifiability::space::LARGEST_LN_GAIN;
 use crate::planck;
@@ -213,7 +213,7 @@ impl<'a> Sources<'a> {
 
     /// The same at one that is the pair's own.
     pub(super) fn own_spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
-        let blackbody = Blackbodies::once(self.bands.nodes_cm1(), temperature_k);
+        let blackbody = Blackbody::of(self.bands.nodes_cm1(), temperature_k);
         self.of(s, temperature_k, blackbody.radiance.each_ref().map(|radiance| &radiance[..]))
     }
 
