@@ -104,12 +104,6 @@ fn noise_of_two_frames_makes_the_intervals_of_a_decomposition_hold() {
     let with = covered(&DECOMPOSITION.replace("1e-13\n", "1e-13\nnoise = \"noise/sigma.csv\"\n"));
     // 960 pixels: 0.95 +- 0.007.
     assert!(without < 0.7 && (0.925..=0.975).contains(&with), "{without} {with}");
-    // The same file is the noise of a ranging scenario.
-    let range = "[cube]\nleft = \"frame_1.npy\"\nnoise_variance = \"noise/variance.csv\"\n[stereo]\nbaseline = \"0.2 m\"\n\
-                 focal_length = \"14 mm\"\npixel = \"24 um\"\nwindow = [5, 5]\n";
-    folder.file("range.toml", range);
-    let outcome = folder.run(&["range", "range.toml"]);
-    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
 }
 
 #[test]
@@ -383,6 +377,40 @@ fn a_dark_level_that_is_not_said_makes_no_camera() {
         refusal.contains("dark.toml:4: noise.dark_level: 1000000000000, but samples of band 0"),
         "{refusal}"
     );
+}
+
+/// Frames of which each is the mean of two exposures have less noise than their photons: nothing that another command reads is written.
+#[test]
+fn frames_that_a_camera_filtered_leave_nothing_to_read() {
+    let folder = walls();
+    let (means, _) = wall();
+    let frames: Vec<Vec<f64>> = (0..5).map(|stream| drawn(&means, 30 + stream)).collect();
+    let ask = |name: &str, of: &dyn Fn(usize, usize) -> f64| {
+        let mut args = vec!["calibrate".to_owned(), "noise".to_owned()];
+        for k in 1..frames.len() {
+            let file = format!("{name}_{k}.npy");
+            written(&folder, &file, BANDS, &(0..means.len()).map(|i| of(k, i)).collect::<Vec<f64>>());
+            args.push(file);
+        }
+        args.extend(["--out".to_owned(), name.to_owned()]);
+        let found = folder.json(&args.iter().map(String::as_str).collect::<Vec<_>>());
+        let there = |file: &str| folder.path().join(name).join(file).exists();
+        (found["usable"].as_bool().unwrap(), ["camera.toml", "variance.csv", "sigma.csv"].map(there), found)
+    };
+    let (usable, files, found) = ask("whole", &|k, i| frames[k][i]);
+    assert!(usable && files == [true; 3], "{found:#}");
+    // The noise of a ranging scenario, where photons follow.
+    let range = "[cube]\nleft = \"frame_1.npy\"\nnoise_variance = \"whole/variance.csv\"\n[stereo]\nbaseline = \"0.2 m\"\n\
+                 focal_length = \"14 mm\"\npixel = \"24 um\"\nwindow = [5, 5]\n";
+    folder.file("range.toml", range);
+    let outcome = folder.run(&["range", "range.toml"]);
+    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+    let (usable, files, found) = ask("mean", &|k, i| 0.5 * (frames[k][i] + frames[k - 1][i]));
+    assert!(!usable && files == [false; 3], "{found:#}");
+    assert!(found["warnings"].to_string().contains("correlated-noise"), "{}", found["warnings"]);
+    let of_frames = found["correlations"].as_array().unwrap().iter().find(|of| of["of"] == "frames").unwrap();
+    // The mean of two has a correlation of a half.
+    assert!((of_frames["value"].as_f64().unwrap() - 0.5).abs() < 0.1, "{of_frames:#}");
 }
 
 /// Frames of a shutter before a camera of one band: what pixels and rows share is found, and put into a camera by the NETD, as a scenario reads it.

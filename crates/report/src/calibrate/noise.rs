@@ -24,8 +24,13 @@ pub fn bundle(result: &NoiseFound) -> Result<Bundle> {
     bundle.add_asked("scenario.toml", result.scenario.to_toml());
     if let Some(found) = &result.photons {
         bundle.add_table("noise.csv", bands(found))?;
-        bundle.add_table("variance.csv", variances(found))?;
-        bundle.add_table("sigma.csv", sigmas(found))?;
+        // What other commands read is not written where nothing of it follows.
+        if found.usable {
+            bundle.add_table("variance.csv", variances(found))?;
+        }
+        if result.is_independent() {
+            bundle.add_table("sigma.csv", sigmas(found))?;
+        }
     }
     if let Some(camera) = camera(result) {
         bundle.add("camera.toml", camera);

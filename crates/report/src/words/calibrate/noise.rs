@@ -97,7 +97,7 @@ fn independent(result: &NoiseFound) -> String {
     let of: Vec<String> = result
         .correlations
         .iter()
-        .map(|of| format!("{} of {} (+- {})", significant(of.value, 2), of.of, significant(of.limit, 1)))
+        .map(|of| format!("{} of {} (at most {})", significant(of.value, 2), of.of, significant(of.limit, 1)))
         .collect();
     let unseen: Vec<&str> = ["frames", "rows", "columns"]
         .into_iter()
@@ -106,7 +106,9 @@ fn independent(result: &NoiseFound) -> String {
         .collect();
     let seen = match of.is_empty() {
         true => String::new(),
-        false => format!("Noise that is independent, by its correlation {}.\n  ", of.join(", ")),
+        false => {
+            format!("Noise of neighbours that is independent; its correlation is {}.\n  ", of.join(", "))
+        }
     };
     format!("{seen}That a camera does not filter along {} is not checked.", unseen.join(", "))
 }
@@ -123,6 +125,12 @@ fn sentence(result: &NoiseFound) -> String {
             of(1),
             of(2),
             of(3)
+        );
+    }
+    if !result.is_independent() {
+        return format!(
+            "No noise follows from these {} samples: theirs goes together from pixel to pixel or from frame to frame, see the warnings.",
+            whole((result.shape.len() * result.frames) as u64)
         );
     }
     let Some(PhotonNoise { photons_per_unit, noise_electrons, .. }) = usable else {
