@@ -3,6 +3,8 @@
 //! Matérn, 5/2: ρ = (1 + x + x²/3) e⁻ˣ, x = 3.55 |a − b|/ℓ, so that ρ has fallen to a quarter where the places are ℓ apart. Curves of
 //! this correlation have two derivatives: smooth, but not without an end.
 //!
+//! A curve with kinks has the exponential one, ρ = 4^(−|a − b|/ℓ) (Matérn, 1/2): no derivative, and a quarter at the same ℓ.
+//!
 //! Source: Rasmussen and Williams, 'Gaussian Processes for Machine Learning' (2006), section 4.2.
 
 use crate::error::{Error, Result};
@@ -28,6 +30,11 @@ pub const QUARTER: f64 = 3.55;
 pub fn matern(apart: f64, length: f64) -> f64 {
     let x = QUARTER * apart.abs() / length;
     if x > FAR { 0.0 } else { (1.0 + x + x * x / 3.0) * libm::exp(-x) }
+}
+
+/// That of a curve with kinks: exponential, a quarter at the same `length`.
+pub fn exponential(apart: f64, length: f64) -> f64 {
+    libm::exp2(-2.0 * apart.abs() / length)
 }
 
 /// The covariance of `count` places, an element at a time.
@@ -92,6 +99,8 @@ mod tests {
         assert_eq!(matern(0.0, 50.0), 1.0);
         assert!((matern(-50.0, 50.0) - 0.25).abs() < 2e-3);
         assert_eq!(matern(10.0, f64::MIN_POSITIVE), 0.0);
+        assert_eq!([0.0, -50.0, 100.0].map(|apart| exponential(apart, 50.0)), [1.0, 0.25, 0.0625]);
+        assert_eq!(exponential(10.0, f64::MIN_POSITIVE), 0.0);
     }
 
     #[test]

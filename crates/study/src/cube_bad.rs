@@ -192,7 +192,7 @@ fn bands_among<S: Sample>(looked: &MemoryCube<S>, bad_bands: &[usize], noise: f6
     found
 }
 
-/// The value at which samples of these bands are cut off, above or below, and the share of them that are, if they are.
+/// The value at which samples of these bands are cut off, above or below, and the share of them that are, if they are; of both the larger one.
 pub(super) fn cut_off_share(cube: &Cube, used: &[usize]) -> Result<Option<[f64; 2]>> {
     fn of<S: Sample>(looked: &MemoryCube<S>, used: &[usize]) -> Option<[f64; 2]> {
         let all = numbers(looked, used);
@@ -200,11 +200,9 @@ pub(super) fn cut_off_share(cube: &Cube, used: &[usize]) -> Result<Option<[f64; 
             all.iter().filter(|value| is_cut(**value)).count() as f64 / all.len() as f64
         };
         let above = cut_off(all.clone(), PILED_OVER_NEXT).map(|most| [most, share(&|value| value >= most)]);
-        let below = || {
-            let least = -cut_off(all.iter().map(|value| -value).collect(), PILED_BELOW_OVER_NEXT)?;
-            Some([least, share(&|value| value <= least)])
-        };
-        above.or_else(below)
+        let least = cut_off(all.iter().map(|value| -value).collect(), PILED_BELOW_OVER_NEXT);
+        let below = least.map(|least| [-least, share(&|value| value <= -least)]);
+        above.into_iter().chain(below).reduce(|a, b| if b[1] > a[1] { b } else { a })
     }
     match cube {
         Cube::F32(rows) => Ok(of(&some(rows.as_ref(), LOOKED)?, used)),

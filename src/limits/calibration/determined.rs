@@ -22,7 +22,7 @@
 //! Source: Backus and Gilbert, Phil. Trans. R. Soc. A 266, 123 (1970), doi:10.1098/rsta.1970.0005 (resolving kernels); Rodgers,
 //! 'Inverse Methods for Atmospheric Sounding' (2000), section 2.4 (degrees of freedom for signal).
 
-use crate::correlation::{ROUNDS, covariance, matern, modes};
+use crate::correlation::{ROUNDS, covariance, exponential, matern, modes};
 use crate::error::{Error, Result, check};
 use crate::order;
 use nalgebra::{DMatrix, DVector};
@@ -54,6 +54,23 @@ impl CurvePrior {
     /// # Errors
     /// No value, another number of them, deviations or a length that are not positive.
     pub fn smooth(centres_cm1: &[f64], typical: &[f64], known: CurveSmoothness) -> Result<Self> {
+        Self::correlated(centres_cm1, typical, known, matern)
+    }
+
+    /// The same for curves with kinks, of exponential correlation at the same length: what smoothness is worth.
+    ///
+    /// # Errors
+    /// As [`Self::smooth`].
+    pub fn kinked(centres_cm1: &[f64], typical: &[f64], known: CurveSmoothness) -> Result<Self> {
+        Self::correlated(centres_cm1, typical, known, exponential)
+    }
+
+    fn correlated(
+        centres_cm1: &[f64],
+        typical: &[f64],
+        known: CurveSmoothness,
+        correlation: fn(f64, f64) -> f64,
+    ) -> Result<Self> {
         check::positive("relative deviation of the response's scale", known.scale, "")?;
         check::positive("deviation of the response's shape", known.shape, "")?;
         check::positive("correlation of the response", known.correlation_cm1, "cm^-1")?;
@@ -66,7 +83,7 @@ impl CurvePrior {
         let (scale, shape) = (known.scale * known.scale, known.shape * known.shape);
         let covariance = covariance(count, |i, j| {
             let apart = centres_cm1[i] - centres_cm1[j];
-            scale * typical[i] * typical[j] + shape * matern(apart, known.correlation_cm1)
+            scale * typical[i] * typical[j] + shape * correlation(apart, known.correlation_cm1)
         })?;
         Ok(Self { mean: typical.to_vec(), factor: modes(covariance, count)? })
     }

@@ -279,7 +279,13 @@ fn a_response_that_is_hardly_known_is_said_to_be() {
     // By hand: at either blackbody a radiance errs by 0.2 K as its temperature does, in the middle by 0.2/√2.
     folder.file("a.toml", &two.replace("30 mK", "200 mK"));
     let found = folder.json(&["calibrate", "blackbody", "a.toml"]);
-    assert_eq!(codes(&found), Vec::<String>::new());
+    // Two blackbodies are on any line. A hundredth of the span of 50 K, by hand at 1200 cm^-1: (0.0080 - 0.0032)/100/0.000093.
+    assert_eq!(codes(&found), ["linearity-not-tested"]);
+    assert!(
+        found["warnings"][0]["message"].as_str().unwrap().contains("1.0 % of the span"),
+        "{}",
+        found["warnings"]
+    );
     let worst = found["worst"]["sigma_common_k"][1].as_f64().unwrap();
     assert!((worst / 0.2 - 1.0).abs() < 1e-3, "{worst}");
     let most = found["scene"]["sigma_common_most_k"].as_f64().unwrap();
@@ -288,13 +294,37 @@ fn a_response_that_is_hardly_known_is_said_to_be() {
     assert!(text.contains("only sigma.csv carries it"), "{text}");
     folder.file("a.toml", &two.replacen("uncertainty = \"30 mK\"\n", "", 1));
     let found = folder.json(&["calibrate", "blackbody", "a.toml", "--out", "out"]);
-    assert_eq!(codes(&found), ["uncertainty-not-stated"]);
+    assert_eq!(codes(&found), ["uncertainty-not-stated", "linearity-not-tested"]);
     assert!(found["warnings"][0]["message"].as_str().unwrap().contains("blackbody[0]"));
     // And said again when what was written is run.
     assert_eq!(
         codes(&folder.json(&["calibrate", "blackbody", "out/scenario.toml"])),
-        ["uncertainty-not-stated"]
+        ["uncertainty-not-stated", "linearity-not-tested"]
     );
+}
+
+/// A detector that is not linear: three blackbodies show it, and no errors are written for other commands to read; two cannot.
+#[test]
+fn errors_of_a_detector_that_is_not_linear_are_not_written() {
+    let folder = spectrometer(SPECTROMETER);
+    for (name, size) in [("cold", [8, 8]), ("mild", [8, 8]), ("warm", [8, 8]), ("scene", SIZE)] {
+        let path = folder.path().join(format!("{name}.npy"));
+        // By 2 % of a reading of 1500 counts.
+        let bent: Vec<f64> = read_doubles(&path).iter().map(|x| x - 0.02 * x * x / 1500.0).collect();
+        write(&folder, &format!("{name}.npy"), [size[0], size[1], BANDS], &bent);
+    }
+    let found = folder.json(&["calibrate", "blackbody", "a.toml", "--out", "out"]);
+    assert_eq!(codes(&found), ["blackbodies-do-not-fit"]);
+    assert_eq!(found["misfit"], true);
+    let out = folder.path().join("out");
+    let written = ["radiance.npy", "sigma.csv", "sigma_common.npy"].map(|name| out.join(name).exists());
+    assert_eq!(written, [true, false, false]);
+    let text = folder.run(&["calibrate", "blackbody", "a.toml"]).stdout;
+    assert!(
+        text.starts_with("The blackbodies do not lie on straight lines, so that no error below holds"),
+        "{text}"
+    );
+    assert!(!text.contains("sigma.csv"), "{text}");
 }
 
 /// Blackbodies of an emissivity of 0.97 and 0.98 before a room of 22 °C, drawn by Planck's law.
@@ -332,8 +362,8 @@ fn a_blackbody_that_is_not_quite_black_reflects_its_surroundings() {
     folder.file("black.toml", &format!("{start}{middle}{end}"));
     let found = folder.json(&["calibrate", "blackbody", "grey.toml", "--out", "grey"]);
     let black = folder.json(&["calibrate", "blackbody", "black.toml", "--out", "black"]);
-    assert_eq!(codes(&found), Vec::<String>::new());
-    assert_eq!(codes(&black), ["blackbodies-taken-as-black"]);
+    assert_eq!(codes(&found), ["linearity-not-tested"]);
+    assert_eq!(codes(&black), ["blackbodies-taken-as-black", "linearity-not-tested"]);
     let message = black["warnings"][0]["message"].as_str().unwrap();
     assert!(
         message.contains("one of 0.98 at 333.1 K") || message.contains("one of 0.98 at 333.2 K"),
@@ -525,7 +555,20 @@ fn a_wrong_temperature_behind_filters_is_named() {
     let scenario = WHEEL.split("[scene]").next().unwrap().to_owned();
     folder.file("a.toml", &scenario);
     let found = folder.json(&["calibrate", "response", "a.toml", "--out", "out"]);
-    assert_eq!(codes(&found), ["uncertainty-not-stated"]);
+    assert_eq!(codes(&found), ["smoothness-not-stated", "uncertainty-not-stated"]);
+    // Errors of a response that has kinks are larger, in every value and behind every filter; who states how smooth it is is not told.
+    for row in found["response"].as_array().unwrap() {
+        let [smooth, kinked] = ["sigma", "sigma_kinked"].map(|key| row[key].as_f64().unwrap());
+        assert!(kinked > 0.999 * smooth, "{row}");
+    }
+    folder.file(
+        "stated.toml",
+        &scenario
+            .replace("centre_half = 3", "centre_half = 3\nshape_error = 0.15\ncorrelation = \"100 cm^-1\""),
+    );
+    let stated = folder.json(&["calibrate", "response", "stated.toml"]);
+    assert_eq!(codes(&stated), ["uncertainty-not-stated"]);
+    assert_eq!(stated["response"], found["response"]);
     // 40 readings, less 10 offsets and what the readings tell of the curve.
     let freedom = found["freedom"].as_f64().unwrap();
     let effective = found["effective"].as_f64().unwrap();

@@ -21,8 +21,9 @@
 //! The sum stands for an integral: on a grid that is too coarse for the prior its error is far beyond the noise, and no deviation holds it.
 //! The wheel and the prior belong on the parts of [`hadar::calibration::finer`]; [`Response::at_values`] then has the values.
 //!
-//! Assumptions: normal readings; η = 1 where they are made; the prior is true. What the prior costs where it is not is
-//! (K − 1)(r − m), K the resolving kernels.
+//! Assumptions: normal readings; η = 1 where they are made; the prior is true. Where it is not, the estimate is off by (K − 1)(r − m), K the
+//! resolving kernels: curves of another covariance P′ have errors of covariance N Nᵀ + (K − 1) P′ (K − 1)ᵀ ([`Response::of_curves`]), N what
+//! the readings' errors and the blackbodies' become: N = G F⁻ᵀ Hᵀ over their rows H, and K = N W, W the readings' derivatives by r.
 
 use hadar::calibration::determined::CurvePrior;
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
@@ -57,6 +58,10 @@ pub struct Response {
     pub offset_sigmas: Vec<f64>,
     /// The blackbody by whose other temperature χ² falls most.
     pub worst: Option<Suspect>,
+    /// N, a row for each value: the readings first, then the errors of the blackbodies.
+    noise: DMatrix<f64>,
+    /// W, a row for each reading.
+    scores: DMatrix<f64>,
 }
 
 /// A blackbody whose temperature, were it free, would explain part of χ².
@@ -115,6 +120,7 @@ impl Response {
         let (n, filters, modes, others) = (readings.len(), wheel.filters(), prior.unknowns(), unknowns.len());
         let columns = modes + filters + others;
         let mut rows = DMatrix::zeros(n + modes + others, columns);
+        let mut scores = DMatrix::zeros(n, prior.mean().len());
         let mut right = DVector::zeros(n + modes + others);
         let centres = wheel.centres_cm1();
         let mut radiance = vec![0.0; centres.len()];
@@ -125,10 +131,7 @@ impl Response {
                 reading.sent.radiance_into(centres, &mut radiance);
             }
             for (j, b) in radiance.iter().enumerate() {
-                let weight = wheel.weight(reading.filter, j) * b / reading.sigma;
-                for z in 0..modes {
-                    rows[(i, z)] += weight * prior.factor()[(j, z)];
-                }
+                scores[(i, j)] = wheel.weight(reading.filter, j) * b / reading.sigma;
             }
             rows[(i, modes + reading.filter)] = 1.0 / reading.sigma;
             for (u, (moved, one)) in wheel.moved(reading, unknowns, about).zip(unknowns).enumerate() {
@@ -139,6 +142,7 @@ impl Response {
             per_kelvin.extend(wheel.moved(reading, &[warmer], about).map(|moved| moved / reading.sigma));
             right[i] = (count - wheel.counts(reading.filter, prior.mean(), &radiance)) / reading.sigma;
         }
+        rows.view_mut((0, 0), (n, modes)).copy_from(&(&scores * prior.factor()));
         (0..modes).for_each(|z| rows[(n + z, z)] = 1.0);
         (0..others).for_each(|k| rows[(n + modes + k, modes + filters + k)] = 1.0);
         let kept = (rows.clone(), right.clone());
@@ -182,10 +186,15 @@ impl Response {
         if !factor.tr_solve_upper_triangular_mut(&mut covariance) {
             return Err(unread());
         }
+        let factor = covariance.transpose();
+        let mut read = kept.0.remove_rows(n, modes).transpose();
+        read = within(read)?;
         let shifts = (0..others).map(|u| solved[modes + filters + u] * unknowns[u].deviation);
         Ok(Self {
             values: prior.at(&solved.as_slice()[..modes]),
-            factor: covariance.transpose(),
+            noise: &factor * read,
+            scores,
+            factor,
             offsets: (0..filters).map(|q| solved[modes + q]).collect(),
             shifts: shifts.collect(),
             chi_square: residual.norm_squared(),
@@ -200,9 +209,26 @@ impl Response {
     #[must_use]
     pub fn at_values(&self, finer: &Finer) -> Self {
         let values = finer.at_values(&self.values);
-        let factor =
-            DMatrix::from_fn(values.len(), self.factor.ncols(), |j, k| self.factor[(finer.place(j), k)]);
-        Self { values, factor, ..self.clone() }
+        let at_values =
+            |of: &DMatrix<f64>| DMatrix::from_fn(values.len(), of.ncols(), |j, k| of[(finer.place(j), k)]);
+        Self { factor: at_values(&self.factor), noise: at_values(&self.noise), values, ..self.clone() }
+    }
+
+    /// The same estimate with the errors that it has where curves are `drawn` from another prior about the same typical curve.
+    ///
+    /// # Errors
+    /// A prior of other places than the wheel's.
+    pub fn of_curves(&self, drawn: &CurvePrior) -> Result<Self> {
+        let (n, expected) = (self.scores.nrows(), self.scores.ncols());
+        for found in [drawn.mean().len(), self.noise.nrows()] {
+            if found != expected {
+                return Err(Error::Length { what: "values of a response".into(), found, expected });
+            }
+        }
+        let missed = self.noise.columns(0, n) * (&self.scores * drawn.factor()) - drawn.factor();
+        let mut factor = self.noise.clone().resize_horizontally(self.noise.ncols() + missed.ncols(), 0.0);
+        factor.columns_mut(self.noise.ncols(), missed.ncols()).copy_from(&missed);
+        Ok(Self { factor, ..self.clone() })
     }
 
     /// Deviation of value j.
@@ -241,7 +267,7 @@ mod tests {
     use super::*;
     use crate::calibrate::twin::{FilterWheelTwin, KNOWN, normal, response_values_cm1};
     use hadar::calibration::determined::Determined;
-    use hadar::correlation::matern;
+    use hadar::correlation::{exponential, matern};
     use hadar::random::generator;
     use nalgebra::Cholesky;
 
@@ -281,9 +307,28 @@ mod tests {
         assert!(found.offsets.iter().zip(&twin.offsets).all(|(a, b)| (a - b).abs() < 20.0));
     }
 
-    /// Shares of 95 % intervals of the values, and of radiances behind the filters, that hold the truth: curves drawn from the prior at `true_parts` of each value,
-    /// readings by the sum over these, fits on `parts`.
-    fn held(parts: usize, true_parts: usize, sigma: f64, draws: u64) -> [f64; 2] {
+    /// The errors for curves of another prior are those of the fit where that prior is its own, blackbodies' errors among them.
+    #[test]
+    fn errors_for_curves_of_the_own_prior_are_the_own_ones() {
+        let twin = FilterWheelTwin::cut(3).unwrap();
+        let (readings, errors) = (twin.readings(0.5), Unknown::temperatures(&[0.02; 31]));
+        let counts = twin.means(&readings, &twin.prior.at(&[0.3, -1.0, 0.5]), &vec![0.0; 31]);
+        let found = Response::found(&twin.wheel, &twin.prior, &readings, &counts, &errors).unwrap();
+        let again = found.of_curves(&twin.prior).unwrap();
+        for j in 0..90 {
+            assert!((again.sigma(j) / found.sigma(j) - 1.0).abs() < 1e-6, "{j}");
+        }
+        let finer = Finer::cut(&response_values_cm1(), 3).unwrap();
+        let refused = found.at_values(&finer).of_curves(&twin.prior).unwrap_err().to_string();
+        assert!(refused.contains("30") && refused.contains("90"), "{refused}");
+    }
+
+    type Correlation = fn(f64, f64) -> f64;
+
+    /// Shares of 95 % intervals of the values, and of radiances behind the filters, that hold the truth: curves of this correlation drawn
+    /// at `true_parts` of each value, readings by the sum over these, fits on `parts`. Then the same two by the errors for
+    /// curves with kinks.
+    fn held(parts: usize, true_parts: usize, sigma: f64, (draws, drawn): (u64, Correlation)) -> [f64; 4] {
         let (twin, truth) = (FilterWheelTwin::cut(parts).unwrap(), FilterWheelTwin::cut(true_parts).unwrap());
         let [finer, finest] =
             [parts, true_parts].map(|parts| Finer::cut(&response_values_cm1(), parts).unwrap());
@@ -291,7 +336,7 @@ mod tests {
         let typical = truth.prior.mean();
         // By Cholesky, not by the modes that the fit has.
         let covariance = DMatrix::from_fn(fine.len(), fine.len(), |i, j| {
-            let alike = matern(fine[i] - fine[j], KNOWN.correlation_cm1);
+            let alike = drawn(fine[i] - fine[j], KNOWN.correlation_cm1);
             let own = if i == j { 1e-12 } else { 0.0 };
             KNOWN.scale.powi(2) * typical[i] * typical[j] + KNOWN.shape.powi(2) * alike + own
         });
@@ -308,7 +353,8 @@ mod tests {
             radiance
         });
         let ones = vec![1.0; fine.len()];
-        let (mut values, mut radiances) = (0.0, 0.0);
+        let kinked = CurvePrior::kinked(twin.wheel.centres_cm1(), twin.prior.mean(), KNOWN).unwrap();
+        let mut shares = [0.0; 4];
         for draw in 0..draws {
             let mut rng = generator(42, draw);
             let z = DVector::from_fn(fine.len(), |_, _| normal(&mut rng));
@@ -317,18 +363,22 @@ mod tests {
             let mut counts = truth.means(&readings, &curve, &exact);
             counts.iter_mut().for_each(|count| *count += sigma * normal(&mut rng));
             let found = Response::found(&twin.wheel, &twin.prior, &readings, &counts, &[]).unwrap();
-            let at_values = found.at_values(&finer);
-            for (j, own) in finest.at_values(&curve).iter().enumerate() {
-                values += f64::from(u8::from((at_values.values[j] - own).abs() < 1.96 * at_values.sigma(j)));
-            }
-            for q in 0..10 {
-                let of = |x: &[f64]| truth.wheel.counts(q, &curve, x);
-                let measured = found.radiance(&twin.wheel, q, of(&scene) - of(&reference), 308.15);
-                let off = measured.radiance - of(&scene) / of(&ones);
-                radiances += f64::from(u8::from(off.abs() < 1.96 * measured.sigma_common));
+            for (shares, found) in shares.chunks_mut(2).zip([&found, &found.of_curves(&kinked).unwrap()]) {
+                let at_values = found.at_values(&finer);
+                for (j, own) in finest.at_values(&curve).iter().enumerate() {
+                    let off = (at_values.values[j] - own).abs();
+                    shares[0] += f64::from(u8::from(off < 1.96 * at_values.sigma(j))) / (30.0 * draws as f64);
+                }
+                for q in 0..10 {
+                    let of = |x: &[f64]| truth.wheel.counts(q, &curve, x);
+                    let measured = found.radiance(&twin.wheel, q, of(&scene) - of(&reference), 308.15);
+                    let off = (measured.radiance - of(&scene) / of(&ones)).abs();
+                    shares[1] +=
+                        f64::from(u8::from(off < 1.96 * measured.sigma_common)) / (10.0 * draws as f64);
+                }
             }
         }
-        [values / (30.0 * draws as f64), radiances / (10.0 * draws as f64)]
+        shares
     }
 
     /// Readings are integrals. 240 curves; the 30 values of one share their errors, so that the share scatters by less than 0.006.
@@ -337,12 +387,25 @@ mod tests {
     fn intervals_hold_what_is_drawn_on_a_finer_grid() {
         let own = Finer::of(&response_values_cm1(), KNOWN.correlation_cm1).unwrap().parts();
         for sigma in [2.0, 0.2, 0.02, 0.0002] {
-            let [values, radiances] = held(own, 5 * own, sigma, 240);
+            let [values, radiances, kinked, _] = held(own, 5 * own, sigma, (240, matern));
             assert!((0.93..0.97).contains(&values), "{sigma} {values}");
             assert!((0.91..0.99).contains(&radiances), "{sigma} {radiances}");
+            assert!(kinked >= values, "{sigma} {kinked}");
         }
         // What the sum over the values alone held: .69 of them.
-        let [coarse, _] = held(1, 5 * own, 0.0002, 40);
+        let [coarse, ..] = held(1, 5 * own, 0.0002, (40, matern));
         assert!(coarse < 0.8, "{coarse}");
+    }
+
+    /// A response with kinks is outside the errors of smooth ones; those for curves with kinks hold it.
+    #[test]
+    fn what_smoothness_is_worth_is_said() {
+        let own = Finer::of(&response_values_cm1(), KNOWN.correlation_cm1).unwrap().parts();
+        for sigma in [2.0, 0.02] {
+            let [smooth, smooth_radiances, values, radiances] = held(own, 5 * own, sigma, (240, exponential));
+            assert!(smooth < 0.9, "{sigma} {smooth}");
+            assert!((0.93..0.97).contains(&values), "{sigma} {values}");
+            assert!((0.91..0.99).contains(&radiances), "{sigma} {radiances} {smooth_radiances}");
+        }
     }
 }

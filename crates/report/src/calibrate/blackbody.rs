@@ -25,6 +25,12 @@ pub fn bundle(result: &BlackbodyFound, format: CubeFormat) -> Result<Bundle> {
         let mut add =
             |name: &str, samples: &[f32]| format.add(&mut bundle, name, scene.shape, samples, centres);
         add("radiance", &scene.radiance)?;
+    }
+    // Errors that do not hold are not written for other commands to read.
+    if let Some(scene) = result.scene.as_ref().filter(|_| !result.misfit) {
+        let centres = &result.centres_cm1;
+        let mut add =
+            |name: &str, samples: &[f32]| format.add(&mut bundle, name, scene.shape, samples, centres);
         add("sigma_common", &scene.sigma_common)?;
         if let Some(pixel) = &scene.sigma_pixel {
             add("sigma_pixel", pixel)?;

@@ -23,7 +23,10 @@ pub fn bundle(result: &ResponseFound) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml());
     bundle.add_table("values.csv", response(result))?;
-    bundle.add_table("covariance.csv", square(result, &result.covariance))?;
+    // Errors that do not hold are not written for other commands to read.
+    if !result.misfit {
+        bundle.add_table("covariance.csv", square(result, &result.covariance))?;
+    }
     bundle.add_table("kernels.csv", square(result, &result.kernels))?;
     bundle.add_table("filters.csv", filters(result))?;
     let mut plots = vec![figure(result)];
@@ -36,6 +39,8 @@ pub fn bundle(result: &ResponseFound) -> Result<Bundle> {
         let mut cube = Vec::with_capacity(scene.shape.len() * 4 + 128);
         write_npy_to(&mut cube, scene.shape, &scene.radiance)?;
         bundle.add("radiance.npy", cube);
+    }
+    if let Some(scene) = result.scene.as_ref().filter(|_| !result.misfit) {
         let to = |values: &[f64]| values.iter().map(|x| *x as f32).collect::<Vec<f32>>();
         bundle.add("sigma_noise.npy", npy_map(&[result.filters.len()], &to(&scene.sigma_noise))?);
         bundle.add("sigma_common.npy", npy_map(&[result.filters.len()], &to(&scene.sigma_common))?);
@@ -52,6 +57,7 @@ fn response(result: &ResponseFound) -> Table {
             ("wavenumber_cm1", &|row| number(row.wavenumber_cm1)),
             ("response", &|row| number(row.response)),
             ("sigma", &|row| number(row.sigma)),
+            ("sigma_kinked", &|row| number(row.sigma_kinked)),
             ("sigma_beforehand", &|row| number(row.sigma_beforehand)),
             ("sigma_readings_alone", &|row| optional(row.sigma_readings_alone)),
             ("typical", &|row| number(row.typical)),
@@ -70,7 +76,14 @@ fn square(result: &ResponseFound, values: &[f64]) -> Table {
 }
 
 fn filters(result: &ResponseFound) -> Table {
-    let mut table = Table::new(["filter", "offset", "offset_sigma", "sigma_noise", "sigma_common"]);
+    let mut table = Table::new([
+        "filter",
+        "offset",
+        "offset_sigma",
+        "sigma_noise",
+        "sigma_common",
+        "sigma_common_kinked",
+    ]);
     for (q, name) in result.filters.iter().enumerate() {
         let scene = |pick: &dyn Fn(&hadar_study::calibrate::FilterRadiances) -> f64| {
             optional(result.scene.as_ref().map(pick))
@@ -81,6 +94,7 @@ fn filters(result: &ResponseFound) -> Table {
             number(result.offset_sigmas[q]),
             scene(&|scene| scene.sigma_noise[q]),
             scene(&|scene| scene.sigma_common[q]),
+            scene(&|scene| scene.sigma_common_kinked[q]),
         ]);
     }
     table

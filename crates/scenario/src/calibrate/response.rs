@@ -53,10 +53,26 @@ pub struct ResponseSpec {
     pub values: usize,
     /// The typical curve, in any unit; level where none is given.
     pub typical: Option<PathBuf>,
-    /// What is known beforehand.
-    pub known: CurveSmoothness,
+    /// Relative deviation of the scale of the whole curve.
+    pub scale_error: Option<f64>,
+    /// Deviation of its shape, of the peak.
+    pub shape_error: Option<f64>,
+    /// Difference of wavenumbers at which the correlation of the shape has fallen to a quarter, cm⁻¹.
+    pub correlation_cm1: Option<f64>,
     /// Rows and columns about the centre, on each side, whose mean is a reading.
     pub centre_half: usize,
+}
+
+impl ResponseSpec {
+    /// What is known beforehand, as it is reckoned with.
+    #[must_use]
+    pub fn known(&self) -> CurveSmoothness {
+        CurveSmoothness {
+            scale: self.scale_error.unwrap_or(KNOWN.scale),
+            shape: self.shape_error.unwrap_or(KNOWN.shape),
+            correlation_cm1: self.correlation_cm1.unwrap_or(KNOWN.correlation_cm1),
+        }
+    }
 }
 
 /// A scene, and the reference that is taken off (`[scene]`).
@@ -94,9 +110,9 @@ impl ResponseScenario {
             .put_quantity("stop", nu, Some(spec.range_cm1[1]))
             .put("values", spec.values as i64)
             .put_if("typical", spec.typical.as_ref().map(|path| paths.file(path)))
-            .put("scale_error", spec.known.scale)
-            .put("shape_error", spec.known.shape)
-            .put_quantity("correlation", nu, Some(spec.known.correlation_cm1))
+            .put_if("scale_error", spec.scale_error)
+            .put_if("shape_error", spec.shape_error)
+            .put_quantity("correlation", nu, spec.correlation_cm1)
             .put("centre_half", spec.centre_half as i64);
         let scene = |scene: &SceneSpec| {
             let (kelvin, error) = (Some(scene.reference_k), Some(scene.reference_error_k));
@@ -125,17 +141,14 @@ fn response(entry: &Entry<'_>) -> Result<ResponseSpec> {
         return Err(section.fail("stop", error));
     }
     let values = section.read("values", |entry| entry.count("30"))?.unwrap_or(VALUES);
-    let number = |key: &str, silent: f64| -> Result<f64> { Ok(section.number(key)?.unwrap_or(silent)) };
     Ok(ResponseSpec {
         filters: file(&section.require("filters")?)?,
         range_cm1,
         values: values as usize,
         typical: section.read("typical", file)?,
-        known: CurveSmoothness {
-            scale: number("scale_error", KNOWN.scale)?,
-            shape: number("shape_error", KNOWN.shape)?,
-            correlation_cm1: nu("correlation")?.unwrap_or(KNOWN.correlation_cm1),
-        },
+        scale_error: section.number("scale_error")?,
+        shape_error: section.number("shape_error")?,
+        correlation_cm1: nu("correlation")?,
         centre_half: section.read("centre_half", |entry| entry.count("10"))?.unwrap_or(HALF) as usize,
     })
 }

@@ -85,7 +85,7 @@ const AIR_UNKNOWN_KEYS: &[Key] = &[
         WAVENUMBER,
         Means("100 cm^-1, where the emissivity is unknown"),
         "\"100 cm^-1\"",
-        "Difference of wavenumbers over which that error loses its correlation.",
+        "Difference of wavenumbers at which the correlation of that error has fallen to a quarter (Matern 5/2).",
         "covariance of the emissivity",
     ),
 ];

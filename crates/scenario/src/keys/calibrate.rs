@@ -72,8 +72,8 @@ const RESPONSE_KEYS: &[Key] = &[
         WAVENUMBER,
         Is("\"100 cm^-1\""),
         "\"100 cm^-1\"",
-        "Difference of wavenumbers over which the shape loses its correlation.",
-        "prior of the response, s^2 exp(-|dnu|/l)",
+        "Difference of wavenumbers at which the correlation of the shape has fallen to a quarter (Matern 5/2).",
+        "prior of the response, s^2 (1 + x + x^2/3) exp(-x), x = 3.55 |dnu|/l",
     ),
     Key::row(
         "centre_half",

@@ -201,7 +201,7 @@ const LIBRARY_KEYS: &[Key] = &[
         WAVENUMBER,
         Means("50 cm^-1"),
         "\"50 cm^-1\"",
-        "Difference of wavenumbers over which these errors lose their correlation.",
+        "Difference of wavenumbers at which the correlation of these errors has fallen to a quarter (Matern 5/2).",
         "covariance of the residuals",
     ),
 ];
@@ -558,8 +558,8 @@ const EMISSIVITY_KEYS: &[Key] = &[
         WAVENUMBER,
         Is("\"50 cm^-1\""),
         "\"50 cm^-1\"",
-        "Difference of wavenumbers over which the shape loses its correlation.",
-        "prior of the emissivities, s^2 exp(-|dnu|/l)",
+        "Difference of wavenumbers at which the correlation of the shape has fallen to a quarter (Matern 5/2).",
+        "prior of the emissivities, s^2 (1 + x + x^2/3) exp(-x), x = 3.55 |dnu|/l",
     ),
 ];
 /// `[emissivity]`.

@@ -28,6 +28,8 @@ const MISFIT: f64 = 1.3;
 const BARELY: f64 = 0.2;
 /// Readings beyond which squares of them are no numbers any more.
 const LARGEST: f64 = 1e60;
+/// Share of the span of two blackbodies by which a response that is not linear may lie off their line in the middle.
+const BEND: f64 = 0.01;
 /// Temperatures of the range of the blackbodies at which errors are looked at.
 const STEPS: usize = 41;
 /// Share of the samples that may lie beyond the blackbodies without a word.
@@ -103,6 +105,8 @@ pub struct BlackbodyFound {
     pub temperature_shifts_k: Vec<[f64; 2]>,
     /// χ² over its degrees of freedom; none of two blackbodies.
     pub chi_square_reduced: Option<f64>,
+    /// Whether the blackbodies lie off straight lines beyond chance, so that errors do not hold.
+    pub misfit: bool,
     /// The calibrated scene; none where no scene was given.
     pub scene: Option<SceneFound>,
     /// What was done and what was spared.
@@ -214,13 +218,14 @@ impl BlackbodyStudy {
         }
         let freedom = nu.len() * (specs.len() - 2);
         let chi_square_reduced = (freedom > 0).then(|| found.chi_square / freedom as f64);
-        if let Some(chi) =
-            chi_square_reduced.filter(|chi| *chi > MISFIT.max(1.0 + 5.0 * (2.0 / freedom as f64).sqrt()))
-        {
-            warnings.push(Warning::BlackbodiesDoNotFit { chi_square: chi });
-        }
+        let misfit =
+            chi_square_reduced.filter(|chi| *chi > MISFIT.max(1.0 + 5.0 * (2.0 / freedom as f64).sqrt()));
+        warnings.extend(misfit.map(|chi_square| Warning::BlackbodiesDoNotFit { chi_square }));
         let [low, high] = ends(&temperatures_k);
         let middle_k = 0.5 * (low + high);
+        if freedom == 0 {
+            warnings.push(Warning::LinearityNotTested { share: BEND, off_k: self.bent_k([low, high]) });
+        }
         let channels = (0..nu.len()).map(|c| self.row(&found, c, middle_k)).collect();
         let spectrometer = Spectrometer {
             found: &found,
@@ -263,6 +268,7 @@ impl BlackbodyStudy {
                 .map(|(k, shift)| [*shift, found.bound.sigma_temperature_k(&found.blackbodies, k)])
                 .collect(),
             chi_square_reduced,
+            misfit: misfit.is_some(),
             scene,
             stats,
             warnings,
@@ -314,6 +320,15 @@ impl BlackbodyStudy {
                 Err(Error::malformed(found, instead))
             }
         }
+    }
+
+    /// What a bend of [`BEND`] of the span of two blackbodies makes of a radiance in their middle, K: the largest of the channels.
+    fn bent_k(&self, [low, high]: [f64; 2]) -> f64 {
+        let off = |nu: &f64| {
+            let span = planck::photon_radiance(*nu, high) - planck::photon_radiance(*nu, low);
+            BEND * span / planck::photon_radiance_slope(*nu, 0.5 * (low + high))
+        };
+        self.wavenumbers_cm1.iter().map(off).fold(0.0, f64::max)
     }
 
     fn worst(&self, found: &Calibration, range_k: [f64; 2]) -> Worst {

@@ -56,6 +56,8 @@ struct Fitted {
     /// At the parts.
     found: Response,
     at_values: Response,
+    /// The same with the errors for curves that have kinks.
+    kinked: Response,
     /// What the readings determine, with the parts and with the values alone.
     seen: Determined,
     known: Determined,
@@ -108,6 +110,8 @@ impl ResponseStudy {
         let mut warnings: Vec<Warning> = self.warnings_of_left_out().collect();
         let misfit = chi_square_reduced.filter(|chi| *chi > most_by_chance(found.freedom.max(TESTED)));
         warnings.extend(misfit.map(|chi_square| self.does_not_fit(found, chi_square)));
+        let response = self.rows(&fitted, scale);
+        warnings.extend(self.smoothness_not_stated(&response));
         warnings.extend(uncertainty_not_stated(specs));
         warnings.extend(taken_as_black(specs, self.centres_cm1[self.centres_cm1.len() / 2]));
         // Also where all pixels are about the centre: then it is of each to their mean.
@@ -122,7 +126,7 @@ impl ResponseStudy {
         }
         let scene = match &self.scene {
             Some([scene, reference]) => {
-                Some(self.radiances(&wheel, found, eta.as_ref(), [scene, reference])?)
+                Some(self.radiances(&wheel, [found, &fitted.kinked], eta.as_ref(), [scene, reference])?)
             }
             None => None,
         };
@@ -134,7 +138,7 @@ impl ResponseStudy {
             scenario: scenario.clone(),
             filters: self.names.clone(),
             left_out: self.left_out.clone(),
-            response: self.rows(&fitted, scale),
+            response,
             covariance: fitted.covariance(scale),
             kernels: self.kernels(&fitted.seen),
             determined: known.number,
@@ -166,8 +170,9 @@ impl ResponseStudy {
         counts: &[f64],
     ) -> Result<Fitted> {
         let (scenario, source) = (&self.scenario, &self.scenario.source);
+        let smoothness = scenario.response.known();
         let prior = |centres: &[f64], typical: &[f64]| {
-            CurvePrior::smooth(centres, typical, scenario.response.known).map_err(at(source, "response"))
+            CurvePrior::smooth(centres, typical, smoothness).map_err(at(source, "response"))
         };
         let finer = &self.finer;
         let typical = finer.at_values(&self.typical);
@@ -180,20 +185,22 @@ impl ResponseStudy {
         let found =
             Response::found(wheel, &prior, readings, counts, errors).map_err(at(source, "blackbody"))?;
         let at_values = found.at_values(finer);
+        let kinked = found.of_curves(&CurvePrior::kinked(finer.centres_cm1(), &self.typical, smoothness)?)?;
         let about = (!errors.is_empty()).then_some((errors, &found.values[..]));
         let seen = Determined::of(&wheel.scores(readings, about)?, &prior)?;
         let about = (!errors.is_empty()).then_some((errors, &at_values.values[..]));
         let of_values = self.wheel_of_values(scale)?;
         let known = Determined::of(&of_values.scores(readings, about)?, &prior_of_values)?;
-        Ok(Fitted { found, at_values, seen, known, typical })
+        Ok(Fitted { found, at_values, kinked, seen, known, typical })
     }
 
     fn rows(&self, fitted: &Fitted, scale: f64) -> Vec<ResponseRow> {
-        let Fitted { at_values, known, typical, .. } = fitted;
+        let Fitted { at_values, kinked, known, typical, .. } = fitted;
         let row = |j: usize| ResponseRow {
             wavenumber_cm1: self.centres_cm1[j],
             response: scale * at_values.values[j],
             sigma: scale * at_values.sigma(j),
+            sigma_kinked: scale * kinked.sigma(self.finer.place(j)),
             sigma_beforehand: scale * known.sigma_prior[j],
             typical: scale * typical[j],
             sigma_readings_alone: Some(scale * known.sigma_free[j]).filter(|sigma| sigma.is_finite()),
@@ -231,6 +238,24 @@ impl ResponseStudy {
             }
         }
         (readings, counts)
+    }
+
+    /// Errors that rest on a smoothness that nobody stated, and what they are if the response has kinks, of its peak.
+    fn smoothness_not_stated(&self, rows: &[ResponseRow]) -> Option<Warning> {
+        let spec = &self.scenario.response;
+        let silent = [("shape_error", spec.shape_error), ("correlation", spec.correlation_cm1)];
+        let keys: Vec<&'static str> =
+            silent.into_iter().filter_map(|(key, stated)| stated.is_none().then_some(key)).collect();
+        let peak = rows.iter().map(|row| row.response).fold(0.0, f64::max);
+        let rms = |of: fn(&ResponseRow) -> f64| {
+            let square: f64 = rows.iter().map(|row| (of(row) / peak).powi(2)).sum();
+            (square / rows.len() as f64).sqrt()
+        };
+        (!keys.is_empty()).then(|| Warning::SmoothnessNotStated {
+            keys,
+            smooth: rms(|row| row.sigma),
+            kinked: rms(|row| row.sigma_kinked),
+        })
     }
 
     /// Readings off the response beyond chance, with the blackbody that explains most of it.

@@ -121,6 +121,11 @@ warnings! {
     BlackbodyNotEven { blackbody: usize, over: f64 } = "blackbody-not-even";
     /// Blackbodies whose temperatures are taken as exact since nothing is said of them.
     UncertaintyNotStated { blackbodies: Vec<usize>, of: usize } = "uncertainty-not-stated";
+    /// Two blackbodies lie on any line: what a bend of this share of their span is in the middle, K.
+    LinearityNotTested { share: f64, off_k: f64 } = "linearity-not-tested";
+    /// Keys of a response's smoothness of which nothing is said, and the errors of its values (rms, of its peak): as smooth as is taken, and
+    /// of a response with kinks.
+    SmoothnessNotStated { keys: Vec<&'static str>, smooth: f64, kinked: f64 } = "smoothness-not-stated";
     /// Blackbodies that are taken as black since nothing is said of it, and by how much the warmest (K) would send less of this emissivity.
     BlackbodiesTakenAsBlack {
         blackbodies: Vec<usize>,

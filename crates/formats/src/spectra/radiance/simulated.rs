@@ -43,16 +43,23 @@ pub(super) fn column(text: &str, wanted: &str) -> Result<Option<Column>> {
     let lines: Vec<(usize, &str)> =
         text.lines().enumerate().map(|(at, line)| (at + 1, line.trim())).collect();
     let at = |is_one: fn(&str) -> bool| lines.iter().position(|(_, line)| is_one(line));
-    match (at(is_names), at(is_lblrtm)) {
-        (Some(at), _) => modtran(&lines, at, wanted).map(Some),
-        (None, Some(at)) => lblrtm(&lines, at, wanted).map(Some),
-        (None, None) => Ok(None),
+    match (at(is_names), at(is_lblrtm), at(is_names_with_commas)) {
+        (Some(at), _, _) => modtran(&lines, at, wanted).map(Some),
+        (None, Some(at), _) => lblrtm(&lines, at, wanted).map(Some),
+        (None, None, Some(at)) => Err(Error::malformed(
+            "this is a table of MODTRAN 6 with commas, of whose columns and units there is no public description",
+            "give the .tp7 of the same run; or, in Python, import pandas and keep two columns under a header that says the unit: \
+             t = pandas.read_csv(FILE, skiprows=LINES, header=None); t[[0, 9]][:-1].to_csv(\"sky.csv\", index=False, \
+             header=[\"wavenumber_cm1\", \"sky [W cm^-2 sr^-1 (cm^-1)^-1]\"])",
+        )
+        .on_line(at + 1)),
+        (None, None, None) => Ok(None),
     }
 }
 
 /// The program that wrote a text.
 pub(super) fn program(text: &str) -> Option<&'static str> {
-    if text.lines().any(is_names) {
+    if text.lines().any(|line| is_names(line) || is_names_with_commas(line)) {
         return Some("MODTRAN");
     }
     text.lines().any(is_lblrtm).then_some("LBLRTM")
@@ -70,6 +77,14 @@ fn is_names(line: &str) -> bool {
     !line.contains(',')
         && (first.starts_with("FREQ") || first.starts_with("WAVLEN"))
         && (line.contains("THRML") || line.contains("TRAN") || line.contains("COMBIN"))
+}
+
+/// Whether a line names the columns of what MODTRAN 6 writes with commas.
+fn is_names_with_commas(line: &str) -> bool {
+    let mut cells = line.split(',').map(|cell| cell.trim().to_lowercase().replace(['_', '-'], " "));
+    let first = cells.next().unwrap_or_default();
+    let of_paths = ["total rad", "path emiss", "pth thrml", "path thermal scat", "surf emis", "surface emiss", "combin trans"];
+    first.starts_with("freq") && cells.any(|cell| of_paths.contains(&cell.as_str()))
 }
 
 /// Names of columns, of two words with a line between them.

@@ -121,6 +121,24 @@ fn text_of_lblrtm_is_read_and_its_records_are_named() {
     assert!(simulated::refuse_unformatted(b"wavenumber_cm1,sky\n").is_ok());
 }
 
+/// What MODTRAN 6 writes with commas has no public description: no layout of it is taken for a table.
+#[test]
+fn a_table_of_modtran_6_with_commas_is_named() {
+    let rows = "700,.5,8.7e-6,1e-6\n710,.5,8.6e-6,1e-6\n-9999.\n";
+    for above in ["", "MODTRAN6.0\n\nRadiance\n"] {
+        for names in ["freq,path trans,path emiss,total rad", "FREQ,TOT_TRANS,PTH_THRML,TOTAL_RAD", "Freq, path-trans, path-emiss, total-rad"] {
+            let text = format!("{above}{names}\n{rows}");
+            for column in ["total rad", "TOTAL_RAD", "freq"] {
+                let refused = refused(&text, column);
+                assert!(refused.contains("MODTRAN 6") && refused.contains(".tp7"), "{refused}");
+            }
+            assert_eq!(simulated::program(&text), Some("MODTRAN"));
+        }
+    }
+    // A table of one's own with a frequency is none.
+    assert!(!refused("frequency,sky\n1,2\n", "sky").contains("MODTRAN"));
+}
+
 #[test]
 fn the_air_of_one_path_is_no_table_of_lengths() {
     let folder = tempfile::tempdir().unwrap();

@@ -16,14 +16,26 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
     let worst = result.worst;
     let [noise, temperature] = worst.sigma_common_k;
     let milli = |kelvin: f64| if kelvin > 0.0 { quantity(kelvin, "K") } else { "0".to_owned() };
-    let mut out = format!(
-        "{} channels calibrated by {} blackbodies: radiances as at {} to {} K err by up to {} in all pixels alike, and by up to {} in \
-         each sample{}.\n\n",
+    let mut out = match result.misfit {
+        true => {
+            "The blackbodies do not lie on straight lines, so that no error below holds (see the warning).\n"
+                .to_owned()
+        }
+        false => String::new(),
+    };
+    let _ = writeln!(
+        out,
+        "{} channels calibrated by {} blackbodies: radiances as at {} to {} K err by up to {} in all pixels alike{}, and by up to {} in \
+         each sample{}.\n",
         result.channels.len(),
         result.temperature_shifts_k.len(),
         significant(worst.range_k[0], 4),
         significant(worst.range_k[1], 4),
         milli(noise.hypot(temperature)),
+        match result.chi_square_reduced {
+            Some(_) => "",
+            None => " if the response is linear",
+        },
         milli(worst.noise_k),
         match &result.scene {
             Some(scene) => format!(
@@ -67,16 +79,21 @@ pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
             let square: f64 = values.iter().map(|x| x * x).sum();
             (square / values.len().max(1) as f64).sqrt()
         };
-        let _ = writeln!(
-            out,
-            "\nScene: {file} ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
+        let _ = match result.misfit {
+            true => {
+                writeln!(out, "\nScene: {file} ({RADIANCE}); errors of it are not written, since none holds")
+            }
+            false => writeln!(
+                out,
+                "\nScene: {file} ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
              by band in sigma.csv, by sample in {}; for a decomposition\n  [cube]\n  data = \"{file}\"\n  unit = \
              \"{RADIANCE}\"\n  noise = \"sigma.csv\"\n  (a number as noise leaves out what all pixels have in common, up to {}: only sigma.csv carries it)",
-            significant(mean(&scene.sigma_noise), 2),
-            significant(mean(&scene.sigma_common_most), 2),
-            format.file("sigma_common"),
-            milli(scene.sigma_common_most_k),
-        );
+                significant(mean(&scene.sigma_noise), 2),
+                significant(mean(&scene.sigma_common_most), 2),
+                format.file("sigma_common"),
+                milli(scene.sigma_common_most_k),
+            ),
+        };
     }
     let _ = writeln!(
         out,

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 #[must_use]
 pub fn text(result: &ResponseFound) -> String {
     let values = result.response.len();
-    let known = result.scenario.response.known;
+    let known = result.scenario.response.known();
     let headline = match result.misfit {
         true => {
             "The readings do not fit a response, so that no error or interval below holds (see the warning).\n"
@@ -34,11 +34,16 @@ pub fn text(result: &ResponseFound) -> String {
     );
     let _ = writeln!(
         out,
-        "  with smoothness: {} numbers are the readings' own; values {} of the peak (rms; beforehand {} %)",
+        "  with smoothness: {} numbers are the readings' own; values {} (rms{}; beforehand {} %)",
         significant(result.effective, 3),
         match result.misfit {
-            true => "known to no stated share".to_owned(),
-            false => format!("known to {} %", significant(relative(&|row| row.sigma), 2)),
+            true => "known to no stated share of the peak".to_owned(),
+            false => format!("known to {} % of the peak", significant(relative(&|row| row.sigma), 2)),
+        },
+        match result.misfit {
+            true => String::new(),
+            false =>
+                format!("; {} % if the response has kinks", significant(relative(&|row| row.sigma_kinked), 2)),
         },
         significant(relative(&|row| row.sigma_beforehand), 2)
     );
@@ -75,9 +80,11 @@ pub fn text(result: &ResponseFound) -> String {
             left("filter", width),
             right("noise of a sample", 18),
             right("common to all pixels", 20),
+            right("with kinks", 10),
         ]);
         for (q, name) in result.filters.iter().enumerate() {
-            let sigmas = [scene.sigma_noise[q], scene.sigma_common[q]].map(|x| significant(x, 2));
+            let sigmas = [scene.sigma_noise[q], scene.sigma_common[q], scene.sigma_common_kinked[q]]
+                .map(|x| significant(x, 2));
             table.row(std::iter::once(name.clone()).chain(sigmas));
         }
         out.push_str(&table.text());
@@ -85,7 +92,8 @@ pub fn text(result: &ResponseFound) -> String {
     let _ = writeln!(
         out,
         "\n{ASSUMPTIONS}\n  an offset for each filter that stays the same; {} that fill the view (a reference is black); noise of {} (unit of the \
-         cubes) in every sample\n  known beforehand: scale to {} %, shape to {} % of the peak, correlated over {}\n",
+         cubes) in every sample\n  known beforehand: scale to {} %, shape to {} % of the peak, correlated over {} (a quarter there; Matern 5/2: no \
+         kinks)\n",
         super::blackbody::sent_by(&result.scenario.blackbodies),
         significant(result.scenario.noise, 3),
         significant(100.0 * known.scale, 2),

@@ -51,6 +51,32 @@ words! {
             format!("the temperature of {which} is taken as exact since no uncertainty is stated: errors are larger than given")
         },
     }
+    LinearityNotTested {
+        meaning: "Two blackbodies lie on a line whatever the response: nothing shows one that is not linear.",
+        remedy: "Give a third blackbody between them, or know that the detector is linear.",
+        LinearityNotTested { share, off_k } => format!(
+            "errors hold if the response is linear, and two blackbodies cannot show that it is not: a bend of {} % of the span between them is \
+             {} in the middle, in all pixels alike",
+            significant(100.0 * share, 2),
+            quantity(*off_k, "K")
+        ),
+    }
+    SmoothnessNotStated {
+        meaning: "Errors of a response rest on how smooth it is, and nothing is said of that.",
+        remedy: "State response.shape_error and response.correlation as the detector's data sheet has them; take \
+            sigma_kinked where the response may have edges.",
+        SmoothnessNotStated { keys, smooth, kinked } => {
+            let keys: Vec<String> = keys.iter().map(|key| format!("response.{key}")).collect();
+            format!(
+                "errors rest on how smooth the response is, and {} {} not stated: values are known to {} % of the peak if it is as smooth as \
+                 is taken, to {} % if it has kinks (sigma_kinked)",
+                keys.join(" and "),
+                if keys.len() == 1 { "is" } else { "are" },
+                significant(100.0 * smooth, 2),
+                significant(100.0 * kinked, 2)
+            )
+        },
+    }
     BlackbodiesTakenAsBlack {
         meaning: "Blackbodies are taken as black, since no emissivity of them is stated: what they reflect \
             is taken for their own light.",

@@ -35,7 +35,7 @@ impl ResponseStudy {
         let step = (high - low) / (spec.values - 1) as f64;
         let centres_cm1: Vec<f64> = (0..spec.values).map(|j| low + step * j as f64).collect();
         let key = if spec.values < 2 { "response.values" } else { "response.correlation" };
-        let finer = Finer::of(&centres_cm1, spec.known.correlation_cm1).map_err(at(source, key))?;
+        let finer = Finer::of(&centres_cm1, spec.known().correlation_cm1).map_err(at(source, key))?;
         let parts_cm1 = finer.centres_cm1();
         let (names, transmittances) =
             filters(&spec.filters, parts_cm1, finer.step_cm1()).map_err(at(source, "response.filters"))?;

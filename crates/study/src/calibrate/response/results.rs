@@ -16,6 +16,8 @@ pub struct ResponseRow {
     pub response: f64,
     /// Standard deviation of the response, in its unit.
     pub sigma: f64,
+    /// Standard deviation of the same estimate if the response has kinks: exponential correlation, of the same length.
+    pub sigma_kinked: f64,
     /// Standard deviation of the response before any reading, in its unit.
     pub sigma_beforehand: f64,
     /// The typical curve, scaled to the readings.
@@ -48,6 +50,8 @@ pub struct FilterRadiances {
     pub sigma_noise: Vec<f64>,
     /// Deviation common to all pixels at the mean radiance, of every filter: by the response, by the centre's η, by the reference's temperature.
     pub sigma_common: Vec<f64>,
+    /// The same if the response has kinks: exponential correlation, of the same length.
+    pub sigma_common_kinked: Vec<f64>,
 }
 
 /// What was found.

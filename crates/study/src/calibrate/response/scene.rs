@@ -18,7 +18,7 @@ impl ResponseStudy {
     pub(super) fn radiances(
         &self,
         wheel: &FilterWheel,
-        found: &Response,
+        [found, kinked]: [&Response; 2],
         eta: Option<&Vignette>,
         [scene, reference]: [&Cube; 2],
     ) -> Result<FilterRadiances> {
@@ -54,7 +54,7 @@ impl ResponseStudy {
         let mut base = slope.clone();
         planck::photon_radiance_and_slope_into(centres, reference_k, &mut base, &mut slope);
         let error_k = self.scenario.scene.as_ref().map_or(0.0, |spec| spec.reference_error_k);
-        let common = |q: usize| {
+        let common = |found: &Response, q: usize| {
             let at = |count: f64| found.radiance(wheel, q, count, reference_k).sigma_common;
             let by_response = at(ends[q][0]).max(at(ends[q][1]));
             let by_centre = lines[q].per_count * most[q] * sigma_centre;
@@ -66,7 +66,8 @@ impl ResponseStudy {
             shape,
             radiance: radiance.collect(),
             sigma_noise: (0..filters).map(own).collect(),
-            sigma_common: (0..filters).map(common).collect(),
+            sigma_common: (0..filters).map(|q| common(found, q)).collect(),
+            sigma_common_kinked: (0..filters).map(|q| common(kinked, q)).collect(),
         })
     }
 }
