@@ -104,6 +104,8 @@ fn rows(text: &str) -> Result<(Bands, Vec<f64>)> {
 /// What a header holds that says of its numbers that they are something else.
 const NO_TRANSMITTANCE: [&str; 7] =
     ["%", "percent", "pct", "absorbance", "absorptance", "reflectance", "optical density"];
+/// A word that says so where it stands alone: an optical density.
+const OPTICAL_DENSITY: &str = "od";
 /// A column of this ending is the reflectance of the filter before it.
 const REFLECTANCE: &str = ":reflectance";
 
@@ -125,7 +127,9 @@ fn curves(text: &str) -> Result<Vec<FilterCurve>> {
         let at_column = |error: Error| error.for_key(header.clone()).on_line(grid.header_line);
         let Some(of) = header.strip_suffix(REFLECTANCE) else {
             let lower = header.to_lowercase();
-            if let Some(word) = NO_TRANSMITTANCE.iter().find(|word| lower.contains(**word)) {
+            let is_density = lower.split(|c: char| !c.is_alphanumeric()).any(|word| word == OPTICAL_DENSITY);
+            let density = is_density.then_some(&OPTICAL_DENSITY);
+            if let Some(word) = NO_TRANSMITTANCE.iter().find(|word| lower.contains(**word)).or(density) {
                 let found = format!("the numbers of `{header}` are no transmittances by its name (`{word}`)");
                 let instead =
                     "write shares from 0 to 1 that are transmitted, under the name of the filter alone";
@@ -138,13 +142,13 @@ fn curves(text: &str) -> Result<Vec<FilterCurve>> {
             filters.push(FilterCurve::new(header.clone(), rows(column, "transmittance")?)?);
             continue;
         };
-        let Some(place) = filters.iter().position(|filter| filter.name() == of) else {
+        let Some(filter) = filters.iter_mut().find(|filter| filter.name() == of) else {
             let found = format!("a reflectance of `{of}`, which is no filter before it");
             return Err(at_column(Error::malformed(found, format!("write a column `{of}` to its left"))));
         };
         let reflectance = rows(column, "reflectance")?;
-        let filter = filters.swap_remove(place).with_reflectance(reflectance).map_err(at_column)?;
-        filters.push(filter);
+        // In its place: the order of the filters is that of the bands of a cube.
+        *filter = filter.clone().with_reflectance(reflectance).map_err(at_column)?;
     }
     Ok(filters)
 }
@@ -183,11 +187,22 @@ mod tests {
                 "line 1: a (%): the numbers of `a (%)` are no transmittances by its name (`%`); write shares from 0 to 1 that are transmitted, under the name of the filter alone",
             ),
             (
+                "wavelength_um,a,OD [b]\n8,0,4\n9,0.9,0.1\n",
+                "line 1: OD [b]: the numbers of `OD [b]` are no transmittances by its name (`od`); write shares from 0 to 1 that are transmitted, under the name of the filter alone",
+            ),
+            (
                 "nm,a\n8,0\n",
                 "line 1: the first column has another name; name it wavenumber_cm1 or wavelength_um",
             ),
         ] {
             assert_eq!(curves(text).unwrap_err().to_string(), found);
         }
+        let names = |text: &str| -> Vec<String> {
+            curves(text).unwrap().iter().map(|filter| filter.name().to_owned()).collect()
+        };
+        assert_eq!(names("wavelength_um,wood,model,c\n8,0,0,0\n9,1,1,1\n"), ["wood", "model", "c"]);
+        // Whatever the order of the columns of reflectances.
+        let text = "wavelength_um,a,b,c,a:reflectance,c:reflectance\n8,0,0,0,1,1\n9,0.9,0.9,0.9,0.1,0.1\n";
+        assert_eq!(names(text), ["a", "b", "c"]);
     }
 }

@@ -83,7 +83,15 @@ fn is_names(line: &str) -> bool {
 fn is_names_with_commas(line: &str) -> bool {
     let mut cells = line.split(',').map(|cell| cell.trim().to_lowercase().replace(['_', '-'], " "));
     let first = cells.next().unwrap_or_default();
-    let of_paths = ["total rad", "path emiss", "pth thrml", "path thermal scat", "surf emis", "surface emiss", "combin trans"];
+    let of_paths = [
+        "total rad",
+        "path emiss",
+        "pth thrml",
+        "path thermal scat",
+        "surf emis",
+        "surface emiss",
+        "combin trans",
+    ];
     first.starts_with("freq") && cells.any(|cell| of_paths.contains(&cell.as_str()))
 }
 

@@ -126,7 +126,11 @@ fn text_of_lblrtm_is_read_and_its_records_are_named() {
 fn a_table_of_modtran_6_with_commas_is_named() {
     let rows = "700,.5,8.7e-6,1e-6\n710,.5,8.6e-6,1e-6\n-9999.\n";
     for above in ["", "MODTRAN6.0\n\nRadiance\n"] {
-        for names in ["freq,path trans,path emiss,total rad", "FREQ,TOT_TRANS,PTH_THRML,TOTAL_RAD", "Freq, path-trans, path-emiss, total-rad"] {
+        for names in [
+            "freq,path trans,path emiss,total rad",
+            "FREQ,TOT_TRANS,PTH_THRML,TOTAL_RAD",
+            "Freq, path-trans, path-emiss, total-rad",
+        ] {
             let text = format!("{above}{names}\n{rows}");
             for column in ["total rad", "TOTAL_RAD", "freq"] {
                 let refused = refused(&text, column);

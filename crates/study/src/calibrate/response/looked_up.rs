@@ -14,15 +14,14 @@ use hadar::calibration::finer::Finer;
 use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::order;
-use hadar::spectrum::{FilterCurve, interpolated};
+use hadar::spectrum::interpolated;
+use hadar_formats::filter_curves;
 use hadar_scenario::calibrate::ResponseScenario;
 use hadar_scenario::calibrate::blackbodies::CubeFile;
 use std::path::Path;
 
 /// Points over the width of a part of a response value at which a filter is looked at.
 const POINTS: usize = 11;
-/// A column of this ending is the reflectance of the filter before it.
-const REFLECTANCE: &str = ":reflectance";
 
 impl ResponseStudy {
     /// Looks up filters and the typical curve, and opens the cubes.
@@ -143,17 +142,13 @@ fn same_size(cube: &Cube, other: &Cube, name: &str) -> Result<()> {
 /// Names and mean transmittances over each width `step` about some centres.
 fn filters(path: &Path, centres_cm1: &[f64], step: f64) -> Result<(Vec<String>, Vec<Vec<f64>>)> {
     let (mut names, mut all) = (Vec::new(), Vec::new());
-    for (name, rows) in columns(path)? {
-        if name.ends_with(REFLECTANCE) {
-            continue;
-        }
-        let curve = FilterCurve::new(name.clone(), rows).map_err(|error| error.in_file(path))?;
+    for curve in filter_curves(path)? {
         let mean = |nu: &f64| {
             let at = |i: usize| curve.transmittance(nu + step * ((i as f64 + 0.5) / POINTS as f64 - 0.5));
             (0..POINTS).map(at).sum::<f64>() / POINTS as f64
         };
         all.push(centres_cm1.iter().map(mean).collect());
-        names.push(name);
+        names.push(curve.name().to_owned());
     }
     Ok((names, all))
 }
