@@ -133,7 +133,7 @@ impl Preset {
         let pattern_at = NetdConditions {
             temperature_k: stated.netd_temperature_k.unwrap_or(reference_temperature_k),
             f_number: stated.netd_f_number.or(at.f_number).unwrap_or(f_number),
-            optics_efficiency: stated.netd_optics_efficiency.unwrap_or_else(|| at.optics_efficiency),
+            optics_efficiency: stated.netd_optics_efficiency.unwrap_or(at.optics_efficiency),
             pixel_m: stated.netd_pixel_m.or(at.pixel_m).unwrap_or(pixel_m),
         };
         let own = Own {

@@ -159,7 +159,7 @@ pub fn all() -> Result<&'static [Preset]> {
 pub fn find(name: &str) -> Result<&'static Preset> {
     static FIGURES: OnceLock<Vec<OnceLock<Arc<[u8]>>>> = OnceLock::new();
     let cameras = all()?;
-    match cameras.iter().position(|camera| camera.name == name).and_then(|at| Some((at, cameras.get(at)?))) {
+    match cameras.iter().enumerate().find(|(_, camera)| camera.name == name) {
         Some((at, camera)) => {
             // What it costs is no figure that an answer rests on.
             let figures = || Preset {
