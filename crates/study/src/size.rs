@@ -6,8 +6,9 @@ use crate::rests_on::Reached;
 use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
+use hadar::instrument::{Camera, NoiseLine, View, gamma_per_band};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
+use hadar::spectrum::Bands;
 use hadar_scenario::{DistanceKind, Scenario};
 use serde::ser::{SerializeMap, Serializer};
 
@@ -342,22 +343,23 @@ impl Study {
             return Ok(self.brightest_member(&trial.camera));
         }
         let sight = self.sight_at(&trial.camera, trial.distance_m)?;
-        let reading = |surface: &Surface| {
-            let signal = sight.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
-            trial.camera.brightest_reading(&signal, &sight.view)
-        };
-        Ok(self.targets().map(reading).fold(0.0, f64::max))
+        Ok(self.fullest_reading(&trial.camera, &sight.bands, &sight.view))
     }
 
     /// Counts of the fullest reading that any member of the target's class gives.
     pub(crate) fn brightest_member(&self, camera: &Camera) -> f64 {
-        let view = self.view_of(camera);
-        let reading = |surface: &Surface| {
-            let signal = self.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
-            camera.brightest_reading(&signal, &view)
-        };
+        self.fullest_reading(camera, &self.bands, &self.view_of(camera))
+    }
+
+    /// The same through bands and with a view, which has the signal of the target itself.
+    fn fullest_reading(&self, camera: &Camera, bands: &Bands, view: &View) -> f64 {
+        let own = camera.brightest_reading(&view.signal, view);
         let others = self.targets().filter(|surface| surface.emissivity != self.target.emissivity);
-        others.map(reading).fold(camera.brightest_reading(&view.signal, &view).max(0.0), f64::max)
+        let reading = |surface: &Surface| {
+            let signal = bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
+            camera.brightest_reading(&signal, view)
+        };
+        others.map(reading).fold(own.max(0.0), f64::max)
     }
 
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
