@@ -1,7 +1,6 @@
 //! By what a row of a sweep is found again: a hash of what it asks of whom.
 
 use crate::manifest::sha256;
-use hadar::parallel;
 use hadar_study::sweep::Plan;
 
 /// The rows of a plan by what they ask.
@@ -16,7 +15,7 @@ impl Keys {
     /// Those of a plan, where `common` says what all rows rest on.
     #[must_use]
     pub fn of(common: &str, plan: &Plan) -> Self {
-        let of_rows = parallel::map(plan.rows(), |row| key(common, plan, row));
+        let of_rows: Vec<u128> = (0..plan.rows()).map(|row| key(common, plan, row)).collect();
         let mut sorted: Vec<usize> = (0..of_rows.len()).collect();
         sorted.sort_by_key(|row| of_rows.get(*row));
         Self { of_rows, sorted }
