@@ -48,7 +48,7 @@ pub use counting::Counting;
 pub use efficiency::EfficiencyCurve;
 pub use equivalents::Equivalents;
 pub use figures::{CameraSpec, Efficiency, FASTEST_F_NUMBER};
-pub use made::REFERENCE_K;
+pub use made::{NoiseCamera, REFERENCE_K};
 pub use noise::NoiseSpec;
 pub use pattern::{Pattern, PatternFigures};
 pub use price::Price;

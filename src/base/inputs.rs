@@ -8,6 +8,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, HashSet};
 use std::marker::PhantomData;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 thread_local! {
@@ -54,7 +55,7 @@ pub struct Inputs {
     /// What can be read only once, such as standard input: what it is called, and its content.
     pub streams: Vec<(String, Vec<u8>)>,
     /// Content of what is built in, by kind and name (`material`, `skin`).
-    pub built_in: BTreeMap<(&'static str, String), Vec<u8>>,
+    pub built_in: BTreeMap<(&'static str, String), Arc<[u8]>>,
 }
 
 impl Inputs {
@@ -125,7 +126,7 @@ pub fn add(other: &Inputs) {
     OPEN.with_borrow_mut(|open| {
         if let Some(inputs) = open {
             for (name, content) in &other.built_in {
-                inputs.built_in.entry(name.clone()).or_insert_with(|| content.clone());
+                inputs.built_in.entry(name.clone()).or_insert_with(|| Arc::clone(content));
             }
         }
     });
@@ -204,8 +205,9 @@ pub fn slashed(path: &Path) -> String {
     path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// Something built in was used. `content` is what it consists of, and changes when that does and not with its neighbours.
-pub(crate) fn built_in(kind: &'static str, name: &str, content: impl FnOnce() -> Vec<u8>) {
+/// Something built in was used. `content` is what it consists of, and changes when that does and not with its neighbours; whoever is asked
+/// many times puts it together once.
+pub(crate) fn built_in(kind: &'static str, name: &str, content: impl FnOnce() -> Arc<[u8]>) {
     OPEN.with_borrow_mut(|open| {
         if let Some(inputs) = open {
             inputs.built_in.entry((kind, name.to_owned())).or_insert_with(content);

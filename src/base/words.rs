@@ -133,6 +133,13 @@ pub fn is_hidden(letter: char) -> bool {
     unseen || (letter.is_control() && !matches!(letter, '\n' | '\t'))
 }
 
+/// Whether a text has such a letter.
+#[must_use]
+pub fn has_hidden(text: &str) -> bool {
+    // Most texts are of plain letters, of which none is hidden.
+    !text.bytes().all(|byte| matches!(byte, b' '..=b'~' | b'\n')) && text.contains(is_hidden)
+}
+
 /// A text as it may be shown: letters that are not seen, or that change the order of others, as `\u{202e}`. Lines stay lines.
 ///
 /// ```
@@ -142,7 +149,7 @@ pub fn is_hidden(letter: char) -> bool {
 /// ```
 #[must_use]
 pub fn visible(text: &str) -> Cow<'_, str> {
-    if !text.contains(is_hidden) {
+    if !has_hidden(text) {
         return Cow::Borrowed(text);
     }
     let shown = |letter: char| match is_hidden(letter) {

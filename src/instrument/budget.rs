@@ -82,10 +82,15 @@ impl Camera {
 
     /// The same of a band that is seen once.
     pub(super) fn collected(&self, view: &View) -> f64 {
+        self.collected_within(self.integration_s(), view)
+    }
+
+    /// The same within a time, s.
+    fn collected_within(&self, time_s: f64, view: &View) -> f64 {
         self.etendue_m2_sr(view.distance_m)
             * self.optics_efficiency
             * self.quantum_efficiency
-            * self.integration_s()
+            * time_s
             * view.fill
     }
 
@@ -214,9 +219,8 @@ impl Camera {
 
     /// Counts that the fullest reading of one frame holds of the target (`signal` by band) and all other light.
     #[must_use]
-    pub fn brightest_reading(&self, bands: &Bands, signal: &[f64], view: &View) -> f64 {
-        let one = Self { frames: 1, readout: Readout::Simultaneous, ..self.clone() };
-        let kappa = one.counts_per_radiance(bands, view);
+    pub fn brightest_reading(&self, signal: &[f64], view: &View) -> f64 {
+        let kappa = self.collected_within(self.exposure_s, view);
         let counts =
             signal.iter().enumerate().map(|(w, s)| kappa * s + kappa / view.fill * view.other_light(w));
         let light = match self.readout {

@@ -77,7 +77,7 @@ impl Camera {
         let full = self.full_well?;
         let bands = self.received(bands);
         let view = self.view_of_blackbody(&bands, temperature_k);
-        Some(full * self.exposure_s / self.brightest_reading(&bands, &view.signal, &view))
+        Some(full * self.exposure_s / self.brightest_reading(&view.signal, &view))
     }
 
     /// What a pixel sees of a far blackbody, of bands as they are received.

@@ -31,6 +31,7 @@ impl CameraSpec {
     /// Whether it states a noise of its own.
     #[must_use]
     pub fn states_noise(&self) -> bool {
-        NOISES.iter().any(|key| row(key).is_some_and(|row| row.is_given(self)))
+        // One is of its own kind.
+        self.noise.is_of_kind(&self.noise)
     }
 }

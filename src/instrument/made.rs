@@ -91,11 +91,8 @@ impl Preset {
             Some(table) => table.clone(),
             None => {
                 let at = self.noise_camera();
-                let at = [
-                    at.f_number.unwrap_or(f_number),
-                    at.optics_efficiency.taken(),
-                    at.pixel_m.unwrap_or(pixel_m),
-                ];
+                let at =
+                    [at.f_number.unwrap_or(f_number), at.optics_efficiency, at.pixel_m.unwrap_or(pixel_m)];
                 noise_of(figures.noise.stated(), at, &mut assumed)
             }
         };
@@ -136,7 +133,7 @@ impl Preset {
         let pattern_at = NetdConditions {
             temperature_k: stated.netd_temperature_k.unwrap_or(reference_temperature_k),
             f_number: stated.netd_f_number.or(at.f_number).unwrap_or(f_number),
-            optics_efficiency: stated.netd_optics_efficiency.unwrap_or_else(|| at.optics_efficiency.taken()),
+            optics_efficiency: stated.netd_optics_efficiency.unwrap_or(at.optics_efficiency),
             pixel_m: stated.netd_pixel_m.or(at.pixel_m).unwrap_or(pixel_m),
         };
         let own = Own {
@@ -216,16 +213,16 @@ impl Preset {
 
     /// The camera that the noise is stated of; what its document is silent on is as here.
     #[must_use]
-    pub fn noise_camera(&self) -> CameraSpec {
-        let figures = &self.figures;
-        let Some(at) = self.noise_at.as_deref() else { return figures.clone() };
+    pub fn noise_camera(&self) -> NoiseCamera {
+        let own = NoiseCamera::of(&self.figures);
+        let Some(at) = self.noise_at else { return own };
         let is_timed = at.exposure_s.is_some() || at.frame_rate_hz.is_some();
-        CameraSpec {
-            exposure_s: at.exposure_s.or(figures.exposure_s.filter(|_| !is_timed)),
-            frame_rate_hz: at.frame_rate_hz.or(figures.frame_rate_hz.filter(|_| !is_timed)),
-            f_number: at.f_number.or(figures.f_number),
-            pixel_m: at.pixel_m.or(figures.pixel_m),
-            ..at.clone()
+        NoiseCamera {
+            exposure_s: at.exposure_s.or(own.exposure_s.filter(|_| !is_timed)),
+            frame_rate_hz: at.frame_rate_hz.or(own.frame_rate_hz.filter(|_| !is_timed)),
+            f_number: at.f_number.or(own.f_number),
+            pixel_m: at.pixel_m.or(own.pixel_m),
+            ..at
         }
     }
 
@@ -245,8 +242,7 @@ impl Preset {
         }
         if noise.netd_k.is_some() || noise.nesr_microflick.is_some() {
             noise.netd_f_number = noise.netd_f_number.or(at.f_number);
-            noise.netd_optics_efficiency =
-                noise.netd_optics_efficiency.or(Some(at.optics_efficiency.taken()));
+            noise.netd_optics_efficiency = noise.netd_optics_efficiency.or(Some(at.optics_efficiency));
             noise.netd_pixel_m = noise.netd_pixel_m.or(at.pixel_m);
         }
         (noise, self.noise_exposure_s())
@@ -301,6 +297,31 @@ impl Preset {
         }
         let optics_efficiency = optics_efficiency.taken();
         Ok(Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency })
+    }
+}
+
+/// Figures of a camera that a noise hangs on, each stated or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseCamera {
+    /// Exposure of one frame, s.
+    pub exposure_s: Option<f64>,
+    /// Number of frames in a second, Hz.
+    pub frame_rate_hz: Option<f64>,
+    /// f-number of the lens.
+    pub f_number: Option<f64>,
+    /// Side of a square pixel, m.
+    pub pixel_m: Option<f64>,
+    /// Efficiency of the optics, but for what depends on wavenumber; 1 where it is not stated.
+    pub optics_efficiency: f64,
+}
+
+impl NoiseCamera {
+    /// Those of what is stated.
+    #[must_use]
+    pub fn of(figures: &CameraSpec) -> Self {
+        let CameraSpec { exposure_s, frame_rate_hz, f_number, pixel_m, .. } = *figures;
+        let optics_efficiency = figures.optics_efficiency.taken();
+        Self { exposure_s, frame_rate_hz, f_number, pixel_m, optics_efficiency }
     }
 }
 

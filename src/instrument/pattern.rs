@@ -139,7 +139,7 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
 
     fn boson() -> Camera {
-        let mut preset = presets::find("flir-boson-640-14mm").unwrap();
+        let mut preset = presets::find("flir-boson-640-14mm").unwrap().clone();
         preset.figures.f_number = Some(1.0);
         preset.camera().unwrap().checked().unwrap()
     }

@@ -7,12 +7,13 @@
 #[cfg(feature = "library")]
 use super::Camera;
 use super::figures::{self, NOISES, Part, Row};
+use super::made::NoiseCamera;
 use super::{CameraSpec, EfficiencyCurve, NoiseSpec, Price};
 use crate::error::Error;
 #[cfg(feature = "library")]
 use crate::{error::Result, inputs};
 #[cfg(feature = "library")]
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 #[cfg(feature = "library")]
 /// The paper's cameras, and those of public data sheets.
@@ -82,7 +83,7 @@ pub struct Preset {
     /// The camera that its noise is stated of, where figures were moved since: conditions that the noise does not state are those of
     /// this one; none where it is the camera itself.
     #[serde(skip)]
-    pub noise_at: Option<Box<CameraSpec>>,
+    pub noise_at: Option<NoiseCamera>,
     /// Efficiencies over wavenumber, read from the files of the figures.
     #[serde(skip)]
     pub efficiency_curves: Vec<EfficiencyCurve>,
@@ -135,7 +136,7 @@ impl Missing {
 /// # Errors
 /// A file that is not valid; a test keeps that from happening.
 pub fn all() -> Result<&'static [Preset]> {
-    // A rule asks for its cameras thousands of times.
+    // A rule asks for its cameras thousands of times, a sweep in every row.
     static READ: OnceLock<Vec<Preset>> = OnceLock::new();
     if let Some(cameras) = READ.get() {
         return Ok(cameras);
@@ -155,10 +156,11 @@ pub fn all() -> Result<&'static [Preset]> {
 ///
 /// # Errors
 /// [`Error::UnknownName`] with the nearest names.
-pub fn find(name: &str) -> Result<Preset> {
+pub fn find(name: &str) -> Result<&'static Preset> {
+    static FIGURES: OnceLock<Vec<OnceLock<Arc<[u8]>>>> = OnceLock::new();
     let cameras = all()?;
-    match cameras.iter().find(|camera| camera.name == name) {
-        Some(camera) => {
+    match cameras.iter().enumerate().find(|(_, camera)| camera.name == name) {
+        Some((at, camera)) => {
             // What it costs is no figure that an answer rests on.
             let figures = || Preset {
                 kind: None,
@@ -168,8 +170,12 @@ pub fn find(name: &str) -> Result<Preset> {
                 price_source: None,
                 ..camera.clone()
             };
-            inputs::built_in("camera", name, || serde_json::to_vec(&figures()).unwrap_or_default());
-            Ok(camera.clone())
+            let content = || Arc::from(serde_json::to_vec(&figures()).unwrap_or_default());
+            let of_all = FIGURES.get_or_init(|| cameras.iter().map(|_| OnceLock::new()).collect());
+            inputs::built_in("camera", name, || {
+                of_all.get(at).map_or_else(content, |slot| Arc::clone(slot.get_or_init(content)))
+            });
+            Ok(camera)
         }
         None => Err(Error::unknown_name("camera", name, cameras.iter().map(|camera| camera.name.as_str()))),
     }

@@ -63,7 +63,7 @@ impl Atmosphere {
             .iter()
             .find(|table| table.name == name)
             .ok_or_else(|| Error::unknown_name("model atmosphere", name, embedded::NAMES.iter().copied()))?;
-        inputs::built_in("air", table.name, || table.text.into());
+        inputs::built_in("air", table.name, || table.text.as_bytes().into());
         Ok(Self {
             name: table.name.to_owned(),
             temperature_k: Some(table.temperature_k),

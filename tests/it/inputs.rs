@@ -18,7 +18,7 @@ fn what_is_used_is_noted_with_what_it_is_made_of() {
     assert_eq!(names, ["air tropical", "camera ideal-pnrd", "material brass-rough"]);
     // Its own entry, that of the brass it is made of, and the constants of that, not those of others.
     let content = &found.built_in[&("material", "brass-rough".to_owned())];
-    let content = String::from_utf8(content.clone()).unwrap();
+    let content = String::from_utf8(content.to_vec()).unwrap();
     assert!(content.contains("name = \"brass-rough\"") && content.contains("name = \"brass\""), "{content}");
     assert!(content.contains("n,k") || content.lines().count() > 50, "{content}");
     assert!(!content.contains("name = \"iron\""));

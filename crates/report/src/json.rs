@@ -2,7 +2,7 @@
 
 use crate::words;
 use hadar::error::{Error, Result};
-use hadar::words::is_hidden;
+use hadar::words::{has_hidden, is_hidden};
 use hadar_study::spoken::with_voice;
 use serde::Serialize;
 use serde_json::Value;
@@ -33,13 +33,12 @@ pub fn pretty(answer: &impl Serialize) -> Result<String> {
 
 /// The same JSON, letters that are not seen or change the order of others as `\u202e`. They are in its strings alone.
 fn seen(text: String) -> String {
-    let is_in_string = |letter: char| is_hidden(letter) && letter != '\n';
-    if !text.contains(is_in_string) {
+    if !has_hidden(&text) {
         return text;
     }
     let mut out = String::with_capacity(text.len() + 16);
     for letter in text.chars() {
-        if is_in_string(letter) {
+        if is_hidden(letter) {
             letter.encode_utf16(&mut [0; 2]).iter().for_each(|unit| out.push_str(&format!("\\u{unit:04x}")));
         } else {
             out.push(letter);

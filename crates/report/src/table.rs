@@ -100,10 +100,14 @@ pub(crate) fn csv_of<R: IntoIterator<Item: AsRef<str>>>(rows: impl Iterator<Item
 /// Whether a spreadsheet would take a cell for a formula, behind apostrophes that were before it. A dash alone is none, nor is what
 /// begins with a number and has no operator in it, such as several numbers or `-20 to 50 degC`.
 fn is_formula(cell: &str) -> bool {
+    // Most begin with a letter or a digit.
+    if cell.starts_with(|letter: char| letter.is_ascii_alphanumeric()) {
+        return false;
+    }
     let cell = cell.trim_start_matches('\'');
     let signed = cell.starts_with(['+', '-']) && cell != "-";
-    let first = cell.split(' ').next().unwrap_or_default().trim_end_matches([';', ',']);
     let harmless = || {
+        let first = cell.split(' ').next().unwrap_or_default().trim_end_matches([';', ',']);
         first.parse::<f64>().is_ok_and(f64::is_finite)
             && !cell.chars().skip(1).any(|letter| "*/^&=<>|!(\"'@".contains(letter))
             && !cell.contains(" +")

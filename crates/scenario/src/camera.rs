@@ -46,7 +46,8 @@ pub(super) fn read_with(
     section.at_most_one(&NOISES)?;
     let mut stated = CameraSpec::default();
     let spec = &mut stated;
-    for row in TABLE {
+    let own: Vec<&str> = section.keys().collect();
+    for row in TABLE.iter().filter(|row| own.contains(&row.key)) {
         let (key, example) = (row.key, row.example);
         let Some(entry) = section.get(key) else { continue };
         if uncertain(row, &entry)? {

@@ -21,7 +21,7 @@ use toml::de::DeTable;
 /// A text that is TOML.
 #[derive(Debug)]
 pub(super) struct Parsed {
-    text: &'static str,
+    text: Arc<str>,
     path: Option<PathBuf>,
     document: DeTable<'static>,
     lines: Arc<BTreeMap<String, usize>>,
@@ -35,13 +35,13 @@ pub(super) struct Parsed {
 
 impl Parsed {
     /// The text of a file, whose places `source` says; none of what is no TOML.
-    pub(super) fn of(text: &str, path: Option<&Path>, mut source: Source) -> Option<Self> {
+    pub(super) fn of(text: &Arc<str>, path: Option<&Path>, mut source: Source) -> Option<Self> {
         parse(text, &source).ok()?;
-        let text: &'static str = Box::leak(text.to_owned().into_boxed_str());
-        let document = parse(text, &source).ok()?;
-        source.note_lines(text, &document);
+        let kept: &'static str = Box::leak(text.to_string().into_boxed_str());
+        let document = parse(kept, &source).ok()?;
+        source.note_lines(kept, &document);
         Some(Self {
-            text,
+            text: Arc::clone(text),
             path: path.map(Path::to_owned),
             document,
             lines: source.lines,
@@ -53,8 +53,8 @@ impl Parsed {
     }
 
     /// Whether it is that of a text and file.
-    pub(super) fn is_of(&self, text: &str, path: Option<&Path>) -> bool {
-        self.text == text && self.path.as_deref() == path
+    pub(super) fn is_of(&self, text: &Arc<str>, path: Option<&Path>) -> bool {
+        self.text == *text && self.path.as_deref() == path
     }
 
     /// The document, and in `source` where its keys stand.

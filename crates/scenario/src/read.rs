@@ -33,7 +33,7 @@ pub(super) fn of_root(
     root: &Section<'_>,
     requirement: impl FnOnce(&Entry<'_>) -> Result<Requirement>,
 ) -> Result<Scenario> {
-    let target = target(&root.table("target", MINIMUM)?)?;
+    let target = root.table_once("target", MINIMUM, target)?;
     let unknown = root.read_once("unknown", unknown)?.unwrap_or_default();
     let environment = environment(root, unknown.lighting_total)?;
     Ok(Scenario {
@@ -91,12 +91,17 @@ fn background(entry: &Entry<'_>) -> Result<Background> {
 }
 
 pub(super) fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<EnvironmentObject>> {
-    let example = "[[environment]], in double brackets, once for each object";
-    let items = root.read("environment", |entry| entry.items(example))?.unwrap_or_default();
-    if items.is_empty() && total.is_some() {
+    let read = |entry: &Entry<'_>| environment_objects(entry, total);
+    let objects = root.read_once_beside("environment", &["unknown"], read)?.unwrap_or_default();
+    if objects.is_empty() && total.is_some() {
         let found = "there is no [[environment]] whose lighting this could be";
         return Err(root.fail("unknown.lighting_total", Error::malformed(found, "add one")));
     }
+    Ok(objects)
+}
+
+fn environment_objects(entry: &Entry<'_>, total: Option<f64>) -> Result<Vec<EnvironmentObject>> {
+    let items = entry.items("[[environment]], in double brackets, once for each object")?;
     let mut objects = Vec::with_capacity(items.len());
     let mut sum = 0.0;
     for (index, item) in items.iter().enumerate() {

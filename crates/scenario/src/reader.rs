@@ -7,6 +7,7 @@ use super::keys::Table;
 use super::kind::Kind;
 use super::parsed::parse;
 use super::section::Section;
+use super::setting::Setting;
 use super::source::Source;
 use super::written::Written;
 use hadar::error::{Error, Result};
@@ -107,7 +108,7 @@ pub(super) fn open<T>(
     (kind, minimum, keys): (Kind, &str, &'static Table),
     read: impl FnOnce(&Section<'_>) -> Result<T>,
 ) -> Result<(T, Source)> {
-    let text = written.text.as_str();
+    let text = &*written.text;
     let mut source = written.source();
     if text.trim().is_empty() {
         return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
@@ -122,11 +123,18 @@ pub(super) fn open<T>(
     };
     kind.check(&document, &source)?;
     if written.settings.iter().any(camera::moves_noise) {
-        let mut filed = document.clone();
-        let mut others = written.settings.iter().filter(|setting| !camera::moves_noise(setting));
-        others.try_for_each(|setting| setting.put(&mut filed))?;
-        source.filed =
-            Section::open(&filed, "", &source, keys).map(|root| camera::filed(&root)).unwrap_or_default();
+        let others = || written.settings.iter().filter(|setting| !camera::moves_noise(setting));
+        let filed = || {
+            let mut filed = document.clone();
+            others().try_for_each(|setting| setting.put(&mut filed))?;
+            let root = Section::open(&filed, "", &source, keys);
+            Ok(root.map(|root| camera::filed(&root)).unwrap_or_default())
+        };
+        let is_in_camera = |setting: &Setting| setting.covers("camera") || setting.is_in("camera");
+        source.filed = match source.kept.as_ref().filter(|_| !others().any(is_in_camera)) {
+            Some(kept) => kept.or_read("camera", filed)?,
+            None => filed()?,
+        };
     }
     for setting in &written.settings {
         setting.put(&mut document)?;

@@ -226,6 +226,7 @@ impl Rule {
         let mut scenario = clause.scenario.clone();
         let Some(camera) = self.cameras.get(index) else { return scenario };
         scenario.camera = Some(camera.spec.clone());
+        scenario.source.with_settings_among();
         let lines = Arc::make_mut(&mut scenario.source.lines);
         let own: Vec<(String, usize)> = lines
             .iter()

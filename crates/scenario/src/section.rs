@@ -145,7 +145,18 @@ impl<'a> Section<'a> {
         key: &'static str,
         read: impl FnOnce(&Entry<'a>) -> Result<T>,
     ) -> Result<Option<T>> {
-        match self.source.kept.as_ref().filter(|_| self.name.is_empty() && !self.source.is_set_in(key)) {
+        self.read_once_beside(key, &[], read)
+    }
+
+    /// The same for a table that is read by what `others` of the root say.
+    pub(super) fn read_once_beside<T: Clone + Send + Sync + 'static>(
+        &self,
+        key: &'static str,
+        others: &[&str],
+        read: impl FnOnce(&Entry<'a>) -> Result<T>,
+    ) -> Result<Option<T>> {
+        let is_set = || self.source.is_set_in(key) || others.iter().any(|other| self.source.is_set_in(other));
+        match self.source.kept.as_ref().filter(|_| self.name.is_empty() && !is_set()) {
             Some(kept) => kept.or_read(key, || self.read(key, read)),
             None => self.read(key, read),
         }
@@ -153,8 +164,21 @@ impl<'a> Section<'a> {
 
     /// A table that must be there; `instead` is what to write.
     pub(super) fn table(&self, key: &str, instead: &str) -> Result<Entry<'a>> {
-        let missing = || self.fail(key, Error::malformed("the table is missing", instead));
-        self.get(key).ok_or_else(missing)
+        self.get(key).ok_or_else(|| self.no_table(key, instead))
+    }
+
+    /// The same, read once for all readings of a text that set nothing in it.
+    pub(super) fn table_once<T: Clone + Send + Sync + 'static>(
+        &self,
+        key: &'static str,
+        instead: &str,
+        read: impl FnOnce(&Entry<'a>) -> Result<T>,
+    ) -> Result<T> {
+        self.read_once(key, read)?.ok_or_else(|| self.no_table(key, instead))
+    }
+
+    fn no_table(&self, key: &str, instead: &str) -> Error {
+        self.fail(key, Error::malformed("the table is missing", instead))
     }
 
     /// The title of a file.

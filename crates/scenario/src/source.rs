@@ -1,6 +1,7 @@
 //! Where a scenario was read from: its file, the directory of its relative paths, the line of each key.
 
 use std::collections::BTreeMap;
+use std::ops::Bound;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -32,10 +33,12 @@ pub struct Source {
     pub(super) report: Option<Arc<ReportInputs>>,
     /// Its text.
     pub text: Arc<str>,
-    /// Line of each key that was written, e.g. `target.material` or `environment[0].lighting`.
+    /// Line of each key of the file, e.g. `target.material` or `environment[0].lighting`.
     pub lines: Arc<BTreeMap<String, usize>>,
-    /// Short texts, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.
+    /// Short texts of the file, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.
     pub texts: Arc<BTreeMap<String, String>>,
+    /// What settings leave of these keys, which all readings of a file share: a text, or nothing; none of them has a line.
+    pub(super) over: BTreeMap<String, Option<String>>,
     /// Keys under which something stands that messages know by another: what a clause calls `things` is looked up as
     /// `envelope.materials`.
     pub(super) called: Vec<(&'static str, &'static str)>,
@@ -84,8 +87,8 @@ impl Source {
         }
         let mut known = key;
         let line = loop {
-            match self.lines.get(known) {
-                Some(line) => break Some(*line),
+            match self.line(known) {
+                Some(line) => break Some(line),
                 None => match known.rfind(['.', '[']) {
                     Some(end) => known = known.get(..end).unwrap_or_default(),
                     None => break None,
@@ -109,7 +112,13 @@ impl Source {
     /// Whether the file or a setting over it says anything at `key`.
     #[must_use]
     pub fn states(&self, key: &str) -> bool {
-        self.lines.contains_key(key) || self.is_set_in(key)
+        self.line(key).is_some() || self.is_set_in(key)
+    }
+
+    /// The line of a key that the file has and nothing is set over.
+    #[must_use]
+    pub fn line(&self, key: &str) -> Option<usize> {
+        self.lines.get(key).copied().filter(|_| !self.over.contains_key(key))
     }
 
     /// What stands at `key` in the place of what was written.
@@ -122,7 +131,7 @@ impl Source {
         let made = || self.settings.iter().find(|setting| setting.is_in(key));
         match self.setting(key) {
             Some(setting) => Some(setting.place(key)),
-            None if self.lines.contains_key(key) => None,
+            None if self.line(key).is_some() => None,
             None => made().map(|setting| setting.place(&setting.key)),
         }
     }
@@ -130,7 +139,22 @@ impl Source {
     /// The short text at `key` as it was written.
     #[must_use]
     pub fn written(&self, key: &str) -> Option<&str> {
-        self.texts.get(key).map(String::as_str)
+        match self.over.get(key) {
+            Some(set) => set.as_deref(),
+            None => self.texts.get(key).map(String::as_str),
+        }
+    }
+
+    /// Lines and texts with what is set among them, for who gives them other keys.
+    pub(super) fn with_settings_among(&mut self) {
+        for (key, text) in std::mem::take(&mut self.over) {
+            Arc::make_mut(&mut self.lines).remove(&key);
+            let texts = Arc::make_mut(&mut self.texts);
+            match text {
+                Some(text) => drop(texts.insert(key, text)),
+                None => drop(texts.remove(&key)),
+            }
+        }
     }
 
     /// Notes the line of every key and list item of a parsed `text`.
@@ -141,8 +165,14 @@ impl Source {
 
     /// Notes the texts of a value that stands in the place of one of the file, whose lines and texts hold no more.
     pub(super) fn note_setting(&mut self, setting: &Setting) {
-        Arc::make_mut(&mut self.lines).retain(|key, _| !setting.covers(key));
-        Arc::make_mut(&mut self.texts).retain(|key, _| !setting.covers(key));
+        let from = || (Bound::Included(setting.key.as_str()), Bound::Unbounded);
+        let is_near = |key: &&String| key.starts_with(&setting.key);
+        let lines = self.lines.range::<str, _>(from()).map(|(key, _)| key).take_while(is_near);
+        let texts = self.texts.range::<str, _>(from()).map(|(key, _)| key).take_while(is_near);
+        for key in lines.chain(texts).filter(|key| setting.covers(key)) {
+            self.over.insert(key.clone(), None);
+        }
+        self.over.iter_mut().filter(|(key, _)| setting.covers(key)).for_each(|(_, text)| *text = None);
         self.note_value(None, &setting.key, &setting.toml());
     }
 
@@ -164,7 +194,11 @@ impl Source {
         match value {
             _ if name.len() > LONGEST_NAME => {}
             DeValue::String(text) if text.len() <= LONGEST_TEXT => {
-                Arc::make_mut(&mut self.texts).insert(name.to_owned(), text.trim().to_owned());
+                let (name, text) = (name.to_owned(), text.trim().to_owned());
+                match starts {
+                    Some(_) => drop(Arc::make_mut(&mut self.texts).insert(name, text)),
+                    None => drop(self.over.insert(name, Some(text))),
+                }
             }
             DeValue::Table(table) => self.note_table(starts, name, table),
             DeValue::Array(items) => {

@@ -21,8 +21,8 @@ pub const STDIN: &str = "<stdin>";
 /// A file as it is to be read.
 #[derive(Debug, Clone, Default)]
 pub struct Written {
-    /// Its text.
-    pub text: String,
+    /// Its text, which all that is read of it shares.
+    pub text: Arc<str>,
     /// The file, `None` for text from elsewhere.
     pub path: Option<PathBuf>,
     /// The folder that its relative paths start from, if that is not its own.
@@ -71,7 +71,7 @@ impl Written {
     /// A text, of the file `path` if it is from one.
     #[must_use]
     pub fn of(text: &str, path: Option<&Path>) -> Self {
-        Self { text: text.to_owned(), path: path.map(Path::to_owned), ..Self::default() }
+        Self { text: text.into(), path: path.map(Path::to_owned), ..Self::default() }
     }
 
     /// The same with values in the place of its own.
@@ -152,7 +152,7 @@ impl Written {
             report,
             path,
             inputs: self.inputs.clone(),
-            text: self.text.as_str().into(),
+            text: Arc::clone(&self.text),
             settings,
             cameras,
             files_refused: self.files_refused,

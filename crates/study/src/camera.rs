@@ -4,16 +4,22 @@ use hadar::error::{Error, Place, Result};
 use hadar::grid::Grid;
 use hadar::instrument::figures::{self, Kind, NOISES, NoiseFigures, Part, StatedNoise, TABLE};
 use hadar::instrument::presets::{self, Preset};
-use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec};
+use hadar::instrument::{Camera, EfficiencyCurve, NoiseCamera, NoiseSpec};
 use hadar::words::quantity;
 use hadar_formats::file::text_of_file;
 use hadar_scenario::{CameraSpec, Scenario, Source};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
 /// The preset with what the scenario overrides; without a preset everything must be said.
 pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
     resolved_at(spec, &|key| source.place(&format!("camera.{key}")))
+}
+
+/// The same with all that is stated of it.
+pub(super) fn resolved_as_stated(spec: &CameraSpec, source: &Source) -> Result<(Camera, Preset)> {
+    made_at(spec, &|key| source.place(&format!("camera.{key}")))
 }
 
 /// What a camera is called in a message: a known one by its name, whatever was changed of it.
@@ -33,22 +39,27 @@ pub(super) fn check_time(camera: &Camera, scenario: &Scenario) -> Result<()> {
 }
 
 /// What is known of the camera that a spec names, one of the user's own or of the program's; nothing where it names none.
-pub(super) fn known(spec: &CameraSpec) -> Result<Option<Preset>> {
+pub(super) fn known(spec: &CameraSpec) -> Result<Option<Cow<'static, Preset>>> {
     match (&spec.own, &spec.preset) {
         (Some(own), name) => {
-            let stated = laid(own, known(own)?.unwrap_or_default())?;
-            Ok(Some(Preset { name: name.clone().unwrap_or_default(), ..stated }))
+            let stated = laid(own, known(own)?.unwrap_or_default().into_owned())?;
+            Ok(Some(Cow::Owned(Preset { name: name.clone().unwrap_or_default(), ..stated })))
         }
-        (None, Some(name)) => presets::find(name).map(Some),
+        (None, Some(name)) => presets::find(name).map(|known| Some(Cow::Borrowed(known))),
         (None, None) => Ok(None),
     }
 }
 
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
+    made_at(spec, place).map(|(camera, _)| camera)
+}
+
+fn made_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<(Camera, Preset)> {
     let preset = known(spec).map_err(|error| error.at(place("preset")))?;
-    let stated = stated_over(spec, preset.clone(), place);
-    let stated = stated.map_err(|error| with_missing(error, spec, preset.as_ref()))?;
+    let preset = preset.as_deref();
+    let stated = stated_over(spec, preset, place);
+    let stated = stated.map_err(|error| with_missing(error, spec, preset))?;
     let camera = |preset: &Preset| {
         preset.camera().map_err(|missing| {
             missing.error(&preset.name).at(place(missing.0.first().copied().unwrap_or("preset")))
@@ -66,7 +77,7 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         },
         _ => "the camera".into(),
     };
-    checked_at(camera_made, place)
+    Ok((checked_at(camera_made, place)?, stated))
 }
 
 /// A mistake in a camera of which figures are missing, too, with all of them: nobody is asked twice.
@@ -95,12 +106,12 @@ fn with_lines(error: Error, missing: &presets::Missing) -> Error {
 
 /// All that is stated of a camera, by what it lies over and by its own keys, which stand where `place` says.
 pub(super) fn stated_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
-    stated_over(spec, known(spec).map_err(|error| error.at(place("preset")))?, place)
+    stated_over(spec, known(spec).map_err(|error| error.at(place("preset")))?.as_deref(), place)
 }
 
-fn stated_over(spec: &CameraSpec, preset: Option<Preset>, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
-    check_conditions(spec, preset.as_ref(), place)?;
-    laid(spec, preset.unwrap_or_default())
+fn stated_over(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
+    check_conditions(spec, preset, place)?;
+    laid(spec, preset.cloned().unwrap_or_default())
 }
 
 /// The camera of a spec with the noise of the camera as `filed` states it: what moves figures of a camera states no other noise. The
@@ -109,26 +120,49 @@ fn stated_over(spec: &CameraSpec, preset: Option<Preset>, place: &dyn Fn(&str) -
 pub fn with_noise_kept(spec: &CameraSpec, filed: &CameraSpec) -> CameraSpec {
     let alone = CameraSpec { filed: None, ..spec.clone() };
     let moved = CameraSpec { filed: Some(Arc::new(filed.clone())), ..alone.clone() };
-    let in_full = |spec: &CameraSpec| {
-        let stated = laid(spec, known(spec)?.unwrap_or_default())?;
-        Ok::<_, Error>((stated.noise_in_full(), stated.noise_table))
-    };
-    match (in_full(&moved), in_full(&alone)) {
-        (Ok((own, table)), Ok(other))
-            if (&own, &table) != (&other.0, &other.1)
-                && (own.0.table.is_some()
-                    || own.0.stated().is_some_and(|noise| noise != StatedNoise::None)) =>
-        {
-            let (noise, noise_exposure_s) = own;
-            CameraSpec { noise, noise_exposure_s, ..alone }
-        }
-        _ => alone,
+    match noise_alone(&moved) {
+        Ok(own) => noise_written_out(alone, &own),
+        Err(_) => alone,
     }
 }
 
-/// The same for a spec that knows its file.
-pub(super) fn with_filed_noise(spec: &CameraSpec) -> CameraSpec {
-    spec.filed.as_deref().map_or_else(|| spec.clone(), |filed| with_noise_kept(spec, filed))
+/// The same for a spec that knows its file, of which all this is stated.
+pub(super) fn with_filed_noise(spec: &CameraSpec, stated: &Preset) -> CameraSpec {
+    match spec.filed {
+        Some(_) => noise_written_out(CameraSpec { filed: None, ..spec.clone() }, stated),
+        None => spec.clone(),
+    }
+}
+
+/// A camera with the noise of what is stated, written out where by itself it would have another one.
+fn noise_written_out(alone: CameraSpec, stated: &Preset) -> CameraSpec {
+    let (noise, noise_exposure_s) = stated.noise_in_full();
+    let is_one = noise.table.is_some() || noise.stated().is_some_and(|noise| noise != StatedNoise::None);
+    let is_other = |other: &Preset| {
+        let (own, at) = other.noise_in_full();
+        (&own, at, &other.noise_table) != (&noise, noise_exposure_s, &stated.noise_table)
+    };
+    if is_one && noise_alone(&alone).is_ok_and(|other| is_other(&other)) {
+        return CameraSpec { noise, noise_exposure_s, ..alone };
+    }
+    alone
+}
+
+/// What is stated of a camera's noise, and nothing of what documents say beside.
+fn noise_alone(spec: &CameraSpec) -> Result<Preset> {
+    laid(spec, known(spec)?.as_deref().map(figures_alone).unwrap_or_default())
+}
+
+/// What is stated of a camera without what its documents say beside.
+fn figures_alone(preset: &Preset) -> Preset {
+    Preset {
+        figures: preset.figures.clone(),
+        is_noise_own: preset.is_noise_own,
+        noise_at: preset.noise_at,
+        efficiency_curves: preset.efficiency_curves.clone(),
+        noise_table: preset.noise_table.clone(),
+        ..Preset::default()
+    }
 }
 
 /// A camera whose figures make one; a mistake is told where its key stands.
@@ -197,7 +231,8 @@ fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&
 
 /// What is stated of a camera over a known one. Where figures were moved over a file, the camera of the file is the one whose noise it is.
 fn laid(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
-    let file = spec.filed.as_deref().map(|filed| overridden(filed, preset.clone(), None)).transpose()?;
+    let of_file = |filed: &CameraSpec| overridden(filed, figures_alone(&preset), None);
+    let file = spec.filed.as_deref().map(of_file).transpose()?;
     overridden(spec, preset, file.as_ref())
 }
 
@@ -214,7 +249,7 @@ fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Resul
     let beneath = file.unwrap_or(&preset);
     let own_noise = beneath.figures.noise.clone();
     let own_exposure_s = beneath.figures.noise_exposure_s;
-    let (own_at, is_noise_own) = (Box::new(beneath.noise_camera()), beneath.is_noise_own);
+    let (own_at, is_noise_own) = (beneath.noise_camera(), beneath.is_noise_own);
     let mut stated = preset;
     let figures = &mut stated.figures;
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
@@ -246,7 +281,7 @@ fn overridden(spec: &CameraSpec, preset: Preset, file: Option<&Preset>) -> Resul
         figures.noise_exposure_s = spec.noise_exposure_s.or(own_exposure_s);
     } else {
         (figures.noise, figures.noise_exposure_s) = (noise, spec.noise_exposure_s);
-        stated.noise_at = file.map(|file| Box::new(file.figures.clone()));
+        stated.noise_at = file.map(|file| NoiseCamera::of(&file.figures));
     }
     // Written out with all of its conditions it is still the document's.
     stated.is_noise_own |= !is_of_kind || stated.noise_in_full() != own_in_full;

@@ -9,6 +9,7 @@ use hadar::instrument::{Camera, Readout};
 use hadar::spectrum::{Band, Bands};
 use hadar::units::Spectral;
 use hadar_scenario::{BandSource, CameraSpec};
+use std::borrow::Cow;
 
 /// Filters that a wheel is taken to hold at most where bands are an even grid; more take a word on how they are read.
 const WHEEL: usize = 24;
@@ -29,9 +30,12 @@ pub(super) fn asked(source: &BandSource, camera: Option<(&Camera, &CameraSpec)>)
 }
 
 /// What the entry of a known camera says; nothing of a camera of one's own.
-fn documented(spec: &CameraSpec) -> CameraSpec {
-    let entry = camera::known(spec).ok().flatten();
-    entry.map(|preset| preset.figures).unwrap_or_default()
+fn documented(spec: &CameraSpec) -> Cow<'static, CameraSpec> {
+    match camera::known(spec).ok().flatten() {
+        Some(Cow::Borrowed(known)) => Cow::Borrowed(&known.figures),
+        Some(Cow::Owned(known)) => Cow::Owned(known.figures),
+        None => Cow::default(),
+    }
 }
 
 /// Whether the entry of a camera of one band models it as if it read more of them, and the scenario leaves it so.

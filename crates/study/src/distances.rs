@@ -198,20 +198,28 @@ impl Study {
         };
         match kind {
             DistanceKind::Nearest => {
-                let mut solver = self.nearest_solver();
-                let found = solver.with_counting(target, other, &self.state, counting)?;
-                let lower = self.sure(found.distance, found.lower);
-                let relative_error = Some(found.relative_error + integrals(found.distance));
-                let NearestDistance { distance, state, .. } = found;
-                let found = (Statistical { distance, lower, relative_error }, state);
-                let (found, state) = match self.errors_shared() {
-                    Some(spec) => {
-                        let seen = (&self.bands, counting);
-                        self.with_shared_errors(&mut solver, other, seen, found, spec)?
-                    }
-                    None => found,
+                let search = |solver: &mut NearestSolver<'_>| {
+                    let found = solver.with_counting(target, other, &self.state, counting)?;
+                    let lower = self.sure(found.distance, found.lower);
+                    let relative_error = Some(found.relative_error + integrals(found.distance));
+                    let NearestDistance { distance, state, .. } = found;
+                    let found = (Statistical { distance, lower, relative_error }, state);
+                    let (found, state) = match self.errors_shared() {
+                        Some(spec) => {
+                            let seen = (&self.bands, counting);
+                            self.with_shared_errors(solver, other, seen, found, spec)?
+                        }
+                        None => found,
+                    };
+                    Ok((found, Some(state)))
                 };
-                Ok((found, Some(state)))
+                match &self.remembered {
+                    Some(remembered) => remembered.searching(&self.bands, |known| {
+                        let mut solver = self.nearest_solver().knowing(known);
+                        (search(&mut solver), solver.searched())
+                    }),
+                    None => search(&mut self.nearest_solver()),
+                }
             }
             DistanceKind::Local => local(self.unknowns.clone()),
             DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),

@@ -207,7 +207,7 @@ fn question(scenario: &Scenario) -> Result<(Scenario, FindSpec)> {
         return refuse("envelope", found, "read the file as a rule, or leave the envelope out");
     }
     if let Some(frames) = scenario.camera.as_ref().and_then(|camera| camera.frames) {
-        if scenario.source.lines.contains_key("find.frames") {
+        if scenario.source.line("find.frames").is_some() {
             return refuse(
                 "find.frames",
                 "camera.frames is given as well".into(),

@@ -166,6 +166,14 @@ impl Study {
         camera.counting(&self.bands, &self.view_of(camera))
     }
 
+    /// Signal of the target in each band, photons s⁻¹ m⁻² sr⁻¹, and the counting of the scenario's camera.
+    pub(super) fn seen(&self) -> (Vec<f64>, Option<Counting>) {
+        let Some(camera) = &self.camera else { return (self.target_signal(), None) };
+        let view = self.view_of(camera);
+        let counting = camera.counting(&self.bands, &view);
+        (view.signal, Some(counting))
+    }
+
     /// With `mixtures`, target and alternative are the worst mixtures found of two classes.
     fn pair(
         &self,
@@ -173,8 +181,7 @@ impl Study {
         mixtures: Option<&MixtureAnswer>,
     ) -> Result<(PairResult, Vec<Warning>)> {
         let kind = self.scenario.requirement.by;
-        let counting = self.counting();
-        let signal = self.target_signal();
+        let (signal, counting) = self.seen();
         let photon_radiance: f64 = signal.iter().sum();
         let camera_photons = counting.as_ref().map(|counting| counting.counts_per_radiance * photon_radiance);
         // Priors weigh by the number of photons they compete with: the camera's, else those required.

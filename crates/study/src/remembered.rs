@@ -6,7 +6,7 @@ use super::integration::{Integrals, Integrand};
 use hadar::error::Result;
 use hadar::fisher::Unknowns;
 use hadar::identifiability::local::LocalDistance;
-use hadar::identifiability::nearest::{NearestDistance, StateRange};
+use hadar::identifiability::nearest::{NearestDistance, Searched, StateRange};
 use hadar::scene::{State, Surroundings};
 use hadar::spectrum::Bands;
 use hadar_scenario::DistanceKind;
@@ -17,6 +17,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 const MOST: usize = 1000;
 /// Sets of integrals that are kept: comparing the spectra of more would take longer.
 const MOST_INTEGRALS: usize = 16;
+/// Sets of bands of which it is kept what searches have computed: one for each row that is computed at a time will do.
+const MOST_SEARCHED: usize = 8;
 
 /// What scenarios share.
 #[derive(Debug, Clone, Default)]
@@ -28,6 +30,8 @@ struct Shared {
     pairs: Mutex<Vec<Arc<Known>>>,
     /// Integrals over the bands, the last ones.
     integrals: Mutex<VecDeque<Arc<(Integrand, Integrals)>>>,
+    /// What searches have computed of their bands, the last ones.
+    searched: Mutex<Vec<(Bands, Searched)>>,
 }
 
 /// A pair and what is known of it; whoever needs it first computes it, and others wait.
@@ -106,6 +110,23 @@ impl Remembered {
         kept.truncate(MOST_INTEGRALS - 1);
         kept.push_front(Arc::new((integrand, found.clone())));
         Ok(found)
+    }
+
+    /// Searches in some bands, with what others before have computed of these and, behind it, for the next ones.
+    pub(super) fn searching<T>(&self, bands: &Bands, search: impl FnOnce(Searched) -> (T, Searched)) -> T {
+        let kept = || self.0.searched.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut before = kept();
+        let place = before.iter().position(|(known, _)| known == bands);
+        let (own, known) =
+            place.map(|place| before.remove(place)).unwrap_or_else(|| (bands.clone(), Searched::default()));
+        drop(before);
+        let (found, known) = search(known);
+        let mut kept = kept();
+        if kept.len() >= MOST_SEARCHED {
+            kept.remove(0);
+        }
+        kept.push((own, known));
+        found
     }
 
     /// What is known of a scene, or a place for it; none where there are too many.

@@ -94,8 +94,8 @@ impl Study {
         let target =
             finder.group("target.material", &scenario.target.material, scenario.target.extrapolate)?;
         let (environment, behind) = (finder.environment()?, finder.behind()?);
-        let mut camera =
-            scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
+        let made = scenario.camera.as_ref().map(|spec| camera::resolved_as_stated(spec, &scenario.source));
+        let (mut camera, stated) = made.transpose()?.unzip();
         let asked =
             camera_bands::asked(&scenario.bands.source, camera.as_ref().zip(scenario.camera.as_ref()));
         let sine = camera.as_ref().map(Camera::rim_sine).or(sine);
@@ -164,7 +164,7 @@ impl Study {
         let range = state_range(&scenario);
         check_range(&scenario, &range)?;
         let names: Vec<String> = groups.iter().map(|group| group.name.clone()).collect();
-        fill(&mut scenario, &names, camera.as_ref(), &range);
+        fill(&mut scenario, &names, camera.as_ref().zip(stated.as_ref()), &range);
         let mut study = Self {
             scenario,
             open_bands: bands.clone(),

@@ -6,8 +6,9 @@ use crate::rests_on::Reached;
 use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
+use hadar::instrument::{Camera, NoiseLine, View, gamma_per_band};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
+use hadar::spectrum::Bands;
 use hadar_scenario::{DistanceKind, Scenario};
 use serde::ser::{SerializeMap, Serializer};
 
@@ -226,7 +227,8 @@ impl Study {
             _ => None,
         };
         let mut scenario = identification.scenario;
-        let spoiled = own.spoiled(camera.as_ref());
+        let brightest = camera.as_ref().map_or(0.0, |camera| own.brightest_member(&camera.camera));
+        let spoiled = camera.as_ref().map_or_else(Vec::new, |camera| own.spoiled_at(camera, brightest));
         let met = pair.told_apart == Some(true) && spoiled.is_empty();
         let errors = match (&sensitivity, &own.camera) {
             (Some(found), _) => Some([found.emissivity.error, found.emissivity.share_met]),
@@ -240,7 +242,6 @@ impl Study {
         if errors.is_some() {
             scenario.sensitivity.get_or_insert_default();
         }
-        let brightest = camera.as_ref().map_or(0.0, |camera| own.brightest_member(&camera.camera));
         let reached = Reached { pair, errors, brightest };
         let verdict = own.verdict(&reached, index, &requirement, spoiled)?;
         Ok(Sizing {
@@ -295,10 +296,10 @@ impl Study {
 
     pub(super) fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
         let camera = self.camera.as_ref()?;
-        let counting = self.counting()?;
-        let signal = self.target_signal();
+        let view = self.view_of(camera);
+        let counting = camera.counting(&self.bands, &view);
         let photons = counting.counts_per_radiance * photon_radiance;
-        let gamma = gamma_per_band(&counting, &signal);
+        let gamma = gamma_per_band(&counting, &view.signal);
         let distance_m = self.scenario.target.distance_m;
         let blur = self.scenario.requirement.speed_m_s.and_then(|speed| {
             let time_s = camera.sweep_s(self.bands.len());
@@ -307,7 +308,7 @@ impl Study {
         let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
         Some(CameraResult {
             photons,
-            brightest_reading: camera.brightest_reading(&self.bands, &signal, &self.view_of(camera)),
+            brightest_reading: camera.brightest_reading(&view.signal, &view),
             noise_counts: (var / self.bands.len() as f64).sqrt(),
             gamma_per_band: gamma,
             etendue_m2_sr: camera.etendue_m2_sr(distance_m),
@@ -316,7 +317,7 @@ impl Study {
             acquisition_s: camera.acquisition_s(self.bands.len()),
             footprint_m: distance_m.map(|z| camera.footprint_m(z)),
             motion_blur_pixels: blur,
-            noise_budget: camera.noise_budget(&self.bands, &signal, &self.view_of(camera)),
+            noise_budget: camera.noise_budget(&self.bands, &view.signal, &view),
             camera: camera.clone(),
         })
     }
@@ -342,27 +343,33 @@ impl Study {
             return Ok(self.brightest_member(&trial.camera));
         }
         let sight = self.sight_at(&trial.camera, trial.distance_m)?;
-        let reading = |surface: &Surface| {
-            let signal = sight.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
-            trial.camera.brightest_reading(&sight.bands, &signal, &sight.view)
-        };
-        Ok(self.targets().map(reading).fold(0.0, f64::max))
+        Ok(self.fullest_reading(&trial.camera, &sight.bands, &sight.view))
     }
 
     /// Counts of the fullest reading that any member of the target's class gives.
     pub(crate) fn brightest_member(&self, camera: &Camera) -> f64 {
+        self.fullest_reading(camera, &self.bands, &self.view_of(camera))
+    }
+
+    /// The same through bands and with a view, which has the signal of the target itself.
+    fn fullest_reading(&self, camera: &Camera, bands: &Bands, view: &View) -> f64 {
+        let own = camera.brightest_reading(&view.signal, view);
+        let others = self.targets().filter(|surface| surface.emissivity != self.target.emissivity);
         let reading = |surface: &Surface| {
-            let signal = self.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
-            camera.brightest_reading(&self.bands, &signal, &self.view_of(camera))
+            let signal = bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
+            camera.brightest_reading(&signal, view)
         };
-        self.targets().map(reading).fold(0.0, f64::max)
+        others.map(reading).fold(own.max(0.0), f64::max)
     }
 
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
     pub(crate) fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
-        let Some(camera) = camera else { return Vec::new() };
-        // Of a class every member must fit into the well.
-        let brightest = self.brightest_member(&camera.camera).max(camera.brightest_reading);
+        camera.map_or_else(Vec::new, |camera| self.spoiled_at(camera, self.brightest_member(&camera.camera)))
+    }
+
+    /// The same where the fullest reading of a member of the target's class is so many counts: of a class every member must fit into the well.
+    fn spoiled_at(&self, camera: &CameraResult, brightest: f64) -> Vec<Shortfall> {
+        let brightest = brightest.max(camera.brightest_reading);
         self.spoiled_by(&camera.camera, self.scenario.target.distance_m, brightest)
     }
 

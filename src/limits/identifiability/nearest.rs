@@ -84,6 +84,11 @@ pub struct NearestSolver<'a> {
     tolerance: Option<f64>,
 }
 
+/// What searches have computed of their bands that other searches in the same bands can use, whatever they look for there: it makes them
+/// quicker, and changes nothing that they find.
+#[derive(Debug, Default)]
+pub struct Searched(Option<EmissionTable>);
+
 impl<'a> NearestSolver<'a> {
     /// A solver for one set of bands, surroundings, unknowns and ranges of the alternative's state.
     #[must_use]
@@ -106,6 +111,18 @@ impl<'a> NearestSolver<'a> {
     #[must_use]
     pub fn proving(self, relative_tolerance: f64) -> Self {
         Self { tolerance: Some(relative_tolerance), ..self }
+    }
+
+    /// The same solver with what others in the same bands have computed.
+    #[must_use]
+    pub fn knowing(self, searched: Searched) -> Self {
+        Self { table: searched.0, ..self }
+    }
+
+    /// What its searches have computed, for others in the same bands.
+    #[must_use]
+    pub fn searched(self) -> Searched {
+        Searched(self.table)
     }
 
     /// Nearest distance per √photon in the limit of shot noise. Priors count as among `photons` photons.

@@ -200,7 +200,7 @@ mod tests {
     };
 
     fn camera() -> Camera {
-        let mut preset = presets::find("flir-boson-640-14mm").unwrap();
+        let mut preset = presets::find("flir-boson-640-14mm").unwrap().clone();
         preset.figures.f_number = Some(1.0);
         preset.camera().unwrap().checked().unwrap()
     }

@@ -80,9 +80,14 @@ impl Bands {
     /// Lowest and highest node, cm⁻¹.
     #[must_use]
     pub fn range_cm1(&self) -> (f64, f64) {
-        let low = self.nodes_cm1.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = self.nodes_cm1.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        (low, high)
+        // They ascend within a band, and bands may overlap.
+        let ends = |ends: &[usize]| {
+            Some([*self.nodes_cm1.get(ends[0])?, *self.nodes_cm1.get(ends[1].checked_sub(1)?)?])
+        };
+        let of_bands = self.first_node.windows(2).filter_map(ends);
+        of_bands.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [first, last]| {
+            (low.min(first), high.max(last))
+        })
     }
 
     /// Whether every band has just one node, so that samples map to bands one to one.

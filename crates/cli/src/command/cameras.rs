@@ -38,7 +38,7 @@ pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
         presets::all()?.iter().cloned().chain(OwnCameras::from_files(&global.cameras)?.presets).collect();
     let find = |name: &String| {
         let own = all.iter().find(|camera| camera.file.is_some() && camera.name == *name);
-        own.map_or_else(|| presets::find(name), |own| Ok(own.clone()))
+        own.map_or_else(|| presets::find(name).cloned(), |own| Ok(own.clone()))
     };
     let known = all.len();
     match &args.action {

@@ -25,9 +25,9 @@ pub(super) fn run(args: &ServeArgs, global: &Global) -> Result<ExitCode> {
     let written = args.scenario.as_ref().map(|path| global.written(path)).transpose()?;
     let (begin, begin_rule) = match written {
         Some(written) if matches!(command_for(&written), Ok(Some("rule"))) => {
-            (init::size(), Some(written.text))
+            (init::size(), Some(written.text.to_string()))
         }
-        Some(written) => (written.text, None),
+        Some(written) => (written.text.to_string(), None),
         None => (init::size(), None),
     };
     let page = if begin_rule.is_some() { "rules" } else { "" };

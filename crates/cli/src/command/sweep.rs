@@ -304,7 +304,7 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
         let own = std::env::current_exe().and_then(|path| sha256_of_file(&path)).ok().flatten();
         program.push_str(&own.unwrap_or_default());
     }
-    let mut parts = vec![program, question.name().to_owned(), file.text.clone()];
+    let mut parts = vec![program, question.name().to_owned(), file.text.to_string()];
     let home = file
         .path
         .as_deref()

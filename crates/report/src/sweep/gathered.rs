@@ -125,9 +125,8 @@ impl Gathered {
         let failed = |row: usize| {
             self.status.get(row).and_then(Option::as_ref).and_then(|status| status.as_ref().err())
         };
-        columns.push(column("status", &|row| {
-            Cell::Text(if failed(row).is_some() { "error" } else { "ok" }.into())
-        }));
+        let [ok, error] = ["ok", "error"].map(|status| Cell::Text(status.into()));
+        columns.push(column("status", &|row| if failed(row).is_some() { error.clone() } else { ok.clone() }));
         columns.push(column("message", &|row| {
             failed(row).map_or(Cell::Empty, |message| Cell::Text(message.as_str().into()))
         }));

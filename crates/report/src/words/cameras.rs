@@ -268,7 +268,7 @@ mod tests {
     /// A camera whose every figure is stated: what the built-in ones do not show.
     #[test]
     fn a_full_well_and_its_bits_are_shown() {
-        let mut preset = hadar::instrument::presets::find("flir-a325sc").unwrap();
+        let mut preset = hadar::instrument::presets::find("flir-a325sc").unwrap().clone();
         let figures = &mut preset.figures;
         (figures.full_well, figures.quantisation_bits) = (Some(1e7), Some(14));
         (figures.read_noise_counts, figures.dark_rate_per_s) = (Some(360.0), Some(3.3e5));

@@ -148,7 +148,7 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
             // What is set over the file stands on no line of it.
             let is_set =
                 source.settings.iter().any(|set| set.covers(key) || set.is_in(key) || within(&set.key, key));
-            if source.lines.contains_key(key) || is_set {
+            if source.line(key).is_some() || is_set {
                 return Ok(key.to_owned());
             }
             let known = source.lines.keys().map(String::as_str);

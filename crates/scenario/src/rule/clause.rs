@@ -205,7 +205,10 @@ fn relaid(source: &Source, key: &str) -> Source {
         let kept = of.iter().filter(|(full, _)| !replaced.contains(&head(full)));
         Arc::new(kept.map(|(full, value)| (full.clone(), value.clone())).chain(own).collect())
     }
-    Source { lines: lay(&source.lines, key), texts: lay(&source.texts, key), ..source.clone() }
+    let mut source = source.clone();
+    source.with_settings_among();
+    (source.lines, source.texts) = (lay(&source.lines, key), lay(&source.texts, key));
+    source
 }
 
 /// Whether a table of the clause itself has a key.

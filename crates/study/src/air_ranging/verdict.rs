@@ -43,7 +43,7 @@ impl AirRangingStudy {
         let scene = self.scene()?;
         let signal = scene.evaluate(scene.emissivity, &self.state(distance_m), &[], &[], false)?.signal;
         let view = View { signal: signal.clone(), ..View::at(Some(distance_m)) };
-        Ok(self.camera.brightest_reading(&self.bands, &signal, &view))
+        Ok(self.camera.brightest_reading(&signal, &view))
     }
 
     /// What a verdict rests on: what nobody stated of camera and scene, and what is not among the unknowns.

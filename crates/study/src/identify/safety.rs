@@ -41,6 +41,9 @@ impl Study {
     /// # Errors
     /// As [`Study::identify`].
     pub(crate) fn safety(&self, pairs: &[PairResult]) -> Result<Vec<SafetyOfTarget>> {
+        if self.safety_specs().next().is_none() {
+            return Ok(Vec::new());
+        }
         let class = self.classes.first().map(|answer| &answer.target);
         let target = class.map_or(&self.target.name, |class| &class.name);
         let members = class.into_iter().flat_map(|class| &class.members);

@@ -5,6 +5,7 @@ use hadar::error::{Error, Result};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::figures::{self, Part, TABLE};
+use hadar::instrument::presets::Preset;
 use hadar::instrument::{Camera, CameraSpec};
 use hadar_scenario::{MaterialRef, Scenario};
 
@@ -65,7 +66,7 @@ pub(super) fn check_range(scenario: &Scenario, range: &StateRange) -> Result<()>
 pub(super) fn fill(
     scenario: &mut Scenario,
     alternatives: &[String],
-    camera: Option<&Camera>,
+    camera: Option<(&Camera, &Preset)>,
     range: &StateRange,
 ) {
     if scenario.alternatives.materials.is_none() {
@@ -74,8 +75,8 @@ pub(super) fn fill(
     }
     scenario.alternatives.temperature_range_k = Some(range.temperature_k);
     scenario.alternatives.lighting_range = Some(range.lighting);
-    if let (Some(spec), Some(camera)) = (scenario.camera.as_mut(), camera) {
-        *spec = with_filed_noise(spec);
+    if let (Some(spec), Some((camera, stated))) = (scenario.camera.as_mut(), camera) {
+        *spec = with_filed_noise(spec, stated);
         // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
         // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
         let used = CameraSpec::of(camera);

@@ -44,14 +44,15 @@ impl Study {
                 Error::out_of_range("statistical distance", self.required, "", "between 1e-9 and 1e9");
             return Err(error.at(self.scenario.place("requirement.distance")));
         }
-        let radiance = self.photon_radiance();
+        let (signal, counting) = self.seen();
+        let radiance: f64 = signal.iter().sum();
         if !(radiance > 0.0 && radiance.is_finite()) {
             let expected = "above 0: a warmer scene, or bands at lower wavenumbers";
             let unit = "photons s^-1 m^-2 sr^-1";
             return Err(Error::out_of_range("photon radiance of the target", radiance, unit, expected)
                 .at(self.scenario.place("target.temperature")));
         }
-        let Some(counting) = self.counting() else { return Ok(()) };
+        let Some(counting) = counting else { return Ok(()) };
         let photons = counting.counts_per_radiance * radiance;
         let noise = counting.var_added.iter().copied().fold(0.0, f64::max).sqrt();
         let refused = |found: String| {

@@ -72,7 +72,7 @@ impl Study {
     }
 
     fn small_target(&self, camera: &Camera) -> Option<Warning> {
-        let fill = self.view_of(camera).fill;
+        let fill = self.fill(camera, self.scenario.target.distance_m);
         (fill < 1.0).then_some(Warning::TargetSmallerThanPixel { fill })
     }
 

@@ -17,6 +17,8 @@ pub(in crate::physics::material) struct Deferred {
     entries: Vec<Entry>,
     classes: Vec<(String, LibraryClass)>,
     made: Vec<OnceLock<Material>>,
+    /// What each is made of, once somebody notes what is used.
+    definitions: Vec<OnceLock<Arc<[u8]>>>,
 }
 
 impl Deferred {
@@ -28,7 +30,8 @@ impl Deferred {
         let read = manifest(text, path)?;
         let classes = classes::of(read.class, path, Path::new(""))?;
         let made = read.material.iter().map(|_| OnceLock::new()).collect();
-        Ok(Self { text, path, entries: read.material, classes, made })
+        let definitions = read.material.iter().map(|_| OnceLock::new()).collect();
+        Ok(Self { text, path, entries: read.material, classes, made, definitions })
     }
 
     /// Names of the materials, in the order of the entries.
@@ -75,7 +78,10 @@ impl Deferred {
     /// As [`Deferred::material`].
     pub(in crate::physics::material) fn named(&self, index: usize) -> Result<&Material> {
         let material = self.material(index)?;
-        inputs::built_in("material", material.name(), || self.definition(index).into_bytes());
+        inputs::built_in("material", material.name(), || {
+            let made_of = || self.definition(index).into_bytes().into();
+            self.definitions.get(index).map_or_else(made_of, |slot| Arc::clone(slot.get_or_init(made_of)))
+        });
         Ok(material)
     }
 

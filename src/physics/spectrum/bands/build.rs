@@ -191,10 +191,14 @@ impl Bands {
                     return Err(Error::out_of_range("number of band samples", count, "", "below 10^7"));
                 }
                 let width = (piece[1] - piece[0]) / count;
-                for i in 0..count as usize {
-                    let node = (i as f64 + 0.5).mul_add(width, piece[0]);
-                    nodes.push(node);
-                    weights.push(width * transmittance(shape, node));
+                let node = |i: usize| (i as f64 + 0.5).mul_add(width, piece[0]);
+                nodes.extend((0..count as usize).map(node));
+                match shape {
+                    Shape::TopHat => weights.resize(nodes.len(), width),
+                    Shape::Filter(_) => {
+                        let new = nodes.get(weights.len()..).unwrap_or_default();
+                        weights.extend(new.iter().map(|node| width * transmittance(shape, *node)));
+                    }
                 }
             }
             first_node.push(nodes.len());

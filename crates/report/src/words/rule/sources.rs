@@ -81,7 +81,7 @@ pub(super) fn figures_of_cameras(answer: &RuleAnswer) -> Vec<[String; 4]> {
             let own = rule.own_document(index).map(|named| named.map(str::to_owned));
             let known = || {
                 let known = presets::find(preset).ok()?;
-                known.document.or_else(|| known.provenance.into_iter().next())
+                known.document.as_ref().or(known.provenance.first()).cloned()
             };
             let from = own.unwrap_or_else(known).unwrap_or_else(|| behind(rule, &rule.cameras[index].key));
             rows.push([camera.name.clone(), "preset".into(), preset.clone(), from]);
