@@ -15,9 +15,8 @@
 //! | σ_T | `frame_noise` | h² w² σ² | t |
 //!
 //! so that the mean of N frames has σ_TVH²/(Nhw) + σ_VH²/(hw) + σ_TV²/(Nh) + σ_TH²/(Nw) + σ_V²/h + σ_H²/w + σ_T²/N + σ_S². They are
-//! stated in K as the NETD is; the NETD of one pixel holds what changes from frame to frame, so that this counts for an object
-//! alone, and σ = K dN/dT counts of a reading follows at its conditions. A pattern that is a new one after
-//! the time τ has (2τ/t)(1 − (τ/t)(1 − exp(−t/τ))) of its variance left in the mean over t.
+//! stated in K as the NETD is, beside it and for one pixel as for many, and σ = K dN/dT counts of a reading follows at its conditions. A
+//! pattern that is a new one after the time τ has (2τ/t)(1 − (τ/t)(1 − exp(−t/τ))) of its variance left in the mean over t.
 //!
 //! Assumptions: the terms are independent, also between bands (each filter has a pattern of its own); a pattern is an offset, the
 //! same at all signals. Offsets that are one pattern in all bands take away one direction of the spectrum alone.
@@ -58,7 +57,7 @@ impl Camera {
         let [rows, columns] = view.extent.sides();
         let pixels = rows * columns;
         let mut lines = Vec::new();
-        for (term, var) in self.pattern_terms().filter(|(term, _)| term.is_fixed || view.of_object) {
+        for (term, var) in self.pattern_terms() {
             let [of_row, of_column] = term.of_each;
             let alike = (if of_row { 1.0 } else { rows }) * (if of_column { 1.0 } else { columns });
             lines.push(BandLine {
@@ -85,8 +84,8 @@ impl Camera {
     }
 
     /// Variance that the counts of a pixel have in common with its row, with its column and with the whole picture, counts², in each of so many
-    /// bands: what stays, and what changes from frame to frame, which the noise of a pixel holds. What a pixel has for itself is the noise of a
-    /// camera whose pattern is [`Pattern::of_pixels`], less that.
+    /// bands: what stays, and what changes from frame to frame. What a pixel has for itself is the noise of a camera whose pattern is
+    /// [`Pattern::of_pixels`].
     #[must_use]
     pub fn var_in_common(&self, bands: usize) -> [[f64; 2]; 3] {
         let mut common = [[0.0; 2]; 3];
@@ -150,7 +149,7 @@ mod tests {
 
     /// Deviation of the mean over an object in K: that of the sum over its pixels, over what 1 K makes of it.
     fn sigma_k(camera: &Camera, extent: Extent, labels: &[&str]) -> f64 {
-        let view = View { extent, of_object: true, ..View::at(None) };
+        let view = View { extent, ..View::at(None) };
         let lines = camera.added_noise(&bands(), &view);
         let var: f64 =
             lines.iter().filter(|line| labels.contains(&line.label)).map(|line| line.var_counts[0]).sum();
@@ -243,7 +242,7 @@ mod tests {
     fn more_readings_are_never_worse_and_patterns_never_better() {
         let bands = bands();
         let quality = |camera: &Camera, extent: Extent| {
-            let counting = camera.counting(&bands, &View { extent, of_object: true, ..View::at(None) });
+            let counting = camera.counting(&bands, &View { extent, ..View::at(None) });
             counting.counts_per_radiance / counting.var_added[0].sqrt()
         };
         let with = |sigmas_k: [f64; 7], drift_s: Option<f64>, frames: u32| {

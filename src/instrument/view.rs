@@ -123,8 +123,6 @@ pub struct View {
     pub fill: f64,
     /// Pixels of the object that see the same and whose counts are added up.
     pub extent: Extent,
-    /// Whether it is an object, whose pixels share noise from frame to frame that the NETD of one of them holds.
-    pub of_object: bool,
     /// Other light on the pixel.
     pub light: Vec<Light>,
     /// Signal of the target in each band where it fills the pixel, photons s⁻¹ m⁻² sr⁻¹: what the noise of an
@@ -151,7 +149,6 @@ impl View {
             distance_m,
             fill: 1.0,
             extent: Extent::ONE,
-            of_object: false,
             light: Vec::new(),
             signal: Vec::new(),
             open_widths_cm1: Vec::new(),

@@ -300,10 +300,7 @@ impl RenderStudy {
     ) -> Result<Picture> {
         let (shape, surfaces) = (view.shape(), self.staged.scene.surfaces().len());
         let common = self.camera.var_in_common(shape.bands());
-        // The noise of a pixel holds what its row, column and frame have from frame to frame.
-        let held: f64 = common.iter().map(|[_, temporal]| temporal).sum();
-        let var: Vec<f64> =
-            (0..shape.bands()).map(|band| (self.alone.var_added(band) - held).max(0.0)).collect();
+        let var: Vec<f64> = (0..shape.bands()).map(|band| self.alone.var_added(band)).collect();
         let noisy = !matches!(camera_noise(&self.alone, shape.bands()), NoiseVariance::None);
         // A pattern of one array in every band: what a row, a column and the picture have in common.
         let [of_row, of_column, of_all] = common.map(|[fixed, temporal]| (fixed + temporal).sqrt());

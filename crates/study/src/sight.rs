@@ -203,7 +203,6 @@ impl Study {
     fn view(&self, camera: &Camera, [near, far]: [Seen<'_>; 2]) -> View {
         let mut view = View::at(far.distance_m);
         view.extent = self.extent(camera, far.distance_m);
-        view.of_object = self.scenario.is_of_object();
         view.fill = self.fill(camera, near.distance_m);
         if !far.air.is_empty() {
             let open = camera.received(&self.open_bands);

@@ -183,6 +183,11 @@ mod tests {
         let boxes = table(&mut (0..20).map(|i| 700.0 + 50.0 * f64::from(i / 2) + f64::from(i % 2)));
         let few = table(&mut [700.0, 701.0, 702.0, 1300.0, 1301.0].into_iter());
         assert!((0..600).all(|i| boxes.check_gap(701.0 + 0.5 * f64::from(i)).is_ok()));
-        assert!(few.check_gap(1000.0).is_ok());
+        // Three even steps are the fewest that say so: 8, 8.1, 8.2, 13.9 and 14 um made d = 29 of 0.4.
+        let fewer = table(&mut [700.0, 701.0, 1300.0, 1301.0].into_iter());
+        assert!(few.check_gap(1000.0).is_err() && fewer.check_gap(1000.0).is_ok());
+        // A last row far behind the others has none beside it.
+        let last = table(&mut [700.0, 701.0, 702.0, 703.0, 1300.0].into_iter());
+        assert!(last.check_gap(1000.0).is_ok());
     }
 }

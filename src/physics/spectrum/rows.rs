@@ -25,14 +25,14 @@ pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Resu
     Ok(())
 }
 
-/// A step that is so many times as wide as all of so many on either side is a gap.
+/// A step that is so many times as wide as all of up to so many on either side is a gap, where there is one on each side and so many of both.
 const WIDE: f64 = 5.0;
 const BESIDE: usize = 3;
 /// Share of a gap at either end that still is its row: wavenumbers of files are rounded.
 const EDGE: f64 = 1e-3;
 
-/// Gaps of a spectrum: rows more than 5 times as far apart as any of the three steps on either side. What was measured at even steps was not measured
-/// between them; a table of a few rows by hand has no steps.
+/// Gaps of a spectrum: rows more than 5 times as far apart as any of the three steps on either side, near an end of those that there are. What was
+/// measured at even steps was not measured between them; a table of a few rows by hand has no steps.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gaps(Vec<[f64; 2]>);
 
@@ -48,12 +48,15 @@ impl Gaps {
     #[must_use]
     pub fn of(rows_cm1: &[f64]) -> Self {
         let widest = |rows: &[f64]| rows.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        let gap = |rows: &[f64]| {
-            let (before, after) = rows.split_at(BESIDE + 1);
-            let (a, b) = (before[BESIDE], after[0]);
-            (b - a > WIDE * widest(before).max(widest(after))).then_some([a, b])
+        let gap = |at: usize| {
+            let (before, after) = rows_cm1.split_at_checked(at)?;
+            let before = before.get(at.saturating_sub(BESIDE + 1)..)?;
+            let after = after.get(..after.len().min(BESIDE + 1))?;
+            let (a, b) = (*before.last()?, *after.first()?);
+            let has_steps = before.len().min(after.len()) > 1 && before.len() + after.len() > BESIDE + 1;
+            (has_steps && b - a > WIDE * widest(before).max(widest(after))).then_some([a, b])
         };
-        Self(rows_cm1.windows(2 * (BESIDE + 1)).filter_map(gap).collect())
+        Self((1..rows_cm1.len()).filter_map(gap).collect())
     }
 
     /// Refuses a wavenumber that lies in one.

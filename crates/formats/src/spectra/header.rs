@@ -68,6 +68,11 @@ const LETTERS: &[(&str, Option<Quantity>)] = &[
     ("a", None),
 ];
 const PERCENT: &[&str] = &["percent", "pct", "prozent", "percentage"];
+/// Words beside a quantity that say of what size its unit is.
+const SCALES: &[&str] = &[
+    "ppm", "ppt", "permille", "promille", "permil", "mille", "100", "1000", "10000", "1e2", "1e3", "1e4",
+    "10e2", "10e3",
+];
 /// Words beside a quantity that change nothing of it.
 const IDLE: &[&str] = &[
     "spectral",
@@ -260,7 +265,8 @@ fn axis_named(name: &str) -> Option<&'static str> {
 
 /// What a column of values holds.
 pub(super) fn values(cell: &str) -> Meaning {
-    let kebab = kebab_case(cell);
+    let kebab =
+        kebab_case(&cell.to_lowercase().replace("per cent", "percent").replace("per-cent", "percent"));
     let mut words: Vec<&str> = kebab.split('-').filter(|word| !word.is_empty()).collect();
     let percent = cell.contains('%') || words.iter().any(|word| PERCENT.contains(word));
     words.retain(|word| !PERCENT.contains(word));
@@ -275,6 +281,9 @@ pub(super) fn values(cell: &str) -> Meaning {
     let is_said = any(EMISSIVITY) || any(REFLECTANCE) || any(OTHER);
     if DEVIATION.contains(last) || is_said && any(DEVIATION) {
         return Meaning::Deviation;
+    }
+    if is_scaled(cell, is_said && !percent) {
+        return Meaning::Unclear;
     }
     // `1 - emissivity` is none.
     if cell.to_lowercase().contains("a.u.")
@@ -326,6 +335,42 @@ pub(super) fn values(cell: &str) -> Meaning {
         // A name, in which nothing of a quantity is.
         _ => of(None, name),
     }
+}
+
+/// Whether a header states a factor, as in `emissivity*100`, `(x100)`, `[1e-2]`, `ppm`; where it does not say a quantity, one that no name has.
+fn is_scaled(cell: &str, is_said: bool) -> bool {
+    let lower = cell.to_lowercase();
+    let digit_after = |sign: char| {
+        lower.match_indices(sign).any(|(at, sign)| {
+            lower
+                .get(at + sign.len()..)
+                .is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()))
+        })
+    };
+    if lower.contains('‰') || digit_after('*') || digit_after('×') {
+        return true;
+    }
+    let of_ten = |word: &str| {
+        word.strip_prefix('1')
+            .is_some_and(|zeros| !zeros.is_empty() && zeros.bytes().all(|byte| byte == b'0'))
+    };
+    let mut words = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
+    if words.clone().any(|word| word.strip_prefix('x').or(word.strip_suffix('x')).is_some_and(of_ten)) {
+        return true;
+    }
+    // `1e-2`, `e-2`, `10^-2`.
+    let power = |sign: &str| {
+        lower.match_indices(sign).any(|(at, sign)| {
+            let before = lower.get(..at).and_then(|rest| rest.chars().next_back());
+            let after = lower.get(at + sign.len()..).and_then(|rest| rest.chars().next());
+            before.is_none_or(|c| !c.is_alphabetic()) && after.is_some_and(|c| c.is_ascii_digit())
+        })
+    };
+    is_said
+        && (lower.contains(['*', '×', '^'])
+            || words.any(|word| SCALES.contains(&word))
+            || power("e-")
+            || power("e+"))
 }
 
 /// Whether a letter stands in a header as a quantity: in brackets, beside a sign of percent, or as none of the alphabet's.
@@ -554,6 +599,20 @@ mod tests {
             ("T-shirt emissivity", of(Emissivity, false, "t-shirt")),
             ("Reflectance (0-1)", of(Reflectance, false, "")),
             ("emissivity_300K", of(Emissivity, false, "emissivity-300k")),
+            ("emissivity (per cent)", of(Emissivity, true, "")),
+            ("emissivity (0-100 %)", of(Emissivity, true, "emissivity-0-100")),
+            ("emissivity*100", Meaning::Unclear),
+            ("100*emissivity", Meaning::Unclear),
+            ("emissivity × 100", Meaning::Unclear),
+            ("emissivity (x100)", Meaning::Unclear),
+            ("emissivity [1e-2]", Meaning::Unclear),
+            ("emissivity_e-2", Meaning::Unclear),
+            ("emissivity 10^-2", Meaning::Unclear),
+            ("emissivity ppm", Meaning::Unclear),
+            ("emissivity (‰)", Meaning::Unclear),
+            ("gold (‰)", Meaning::Unclear),
+            ("gold *100", Meaning::Unclear),
+            ("emissivity of e-glass", of(Emissivity, false, "emissivity-of-e-glass")),
         ] {
             assert_eq!(values(header), meaning, "{header}");
         }
