@@ -9,6 +9,7 @@ pub mod correlation;
 pub mod cube;
 pub mod demand;
 pub mod error;
+pub(crate) mod few;
 pub mod grid;
 pub mod inputs;
 pub mod lattice_points;

@@ -97,7 +97,7 @@ pub use base::{
     aligned, allowed, correlation, cube, demand, error, grid, inputs, lattice_points, minimum, order,
     parallel, radiance_unit, random, root, simd, statistics, stop, sum, units, words,
 };
-pub(crate) use base::{best_first, box_least_squares, wide};
+pub(crate) use base::{best_first, box_least_squares, few, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 

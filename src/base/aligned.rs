@@ -1,25 +1,30 @@
 //! Slices of doubles that start at a cache line, their memory used again.
 //!
 //! A loop over spectra is short: fetching and clearing memory for each of them can take as long as what is done with it. What is given
-//! back stays with its thread, up to 64 slices, for the next one of the same size.
+//! back stays with its thread, up to 32 slices of each of eight sizes, for the next one of the same size.
 
 use crate::simd::LANES;
 use std::cell::RefCell;
 
-/// How many a thread keeps, and doubles of one at most.
-const KEPT: usize = 64;
-const LONGEST: usize = 1 << 15;
+/// How many of one size a thread keeps, of how many sizes, and doubles of one at most.
+const KEPT: usize = 32;
+const SIZES: usize = 8;
+const LONGEST: usize = 1 << 14;
+
+/// Slices of one size.
+struct Spare {
+    size: usize,
+    slices: Vec<Vec<f64>>,
+}
 
 thread_local! {
-    static SPARE: RefCell<Vec<Vec<f64>>> = const { RefCell::new(Vec::new()) };
+    static SPARE: RefCell<Vec<Spare>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Memory for so many doubles, whatever they are: what was given back before, if any fits.
 fn taken(size: usize) -> Vec<f64> {
-    let spare = |spare: &RefCell<Vec<Vec<f64>>>| {
-        let mut spare = spare.borrow_mut();
-        let place = spare.iter().rposition(|one| one.len() == size)?;
-        Some(spare.swap_remove(place))
+    let spare = |spare: &RefCell<Vec<Spare>>| {
+        spare.borrow_mut().iter_mut().find(|spare| spare.size == size)?.slices.pop()
     };
     SPARE.try_with(spare).ok().flatten().unwrap_or_else(|| vec![0.0; size])
 }
@@ -77,6 +82,14 @@ impl Aligned {
         }
         filled[count..].fill(0.0);
         filled
+    }
+
+    /// The same of a slice.
+    pub fn padded(len: usize, values: &[f64]) -> Self {
+        let mut padded = Self::unset(len);
+        padded[..values.len()].copy_from_slice(values);
+        padded[values.len()..].fill(0.0);
+        padded
     }
 
     /// Changes the length; what the values are afterwards is not said.
@@ -137,10 +150,16 @@ impl Drop for Aligned {
         // Where the thread ends there is nobody to keep it for.
         let _ = SPARE.try_with(|spare| {
             let mut spare = spare.borrow_mut();
-            if spare.len() == KEPT {
-                spare.swap_remove(0);
+            match spare.iter_mut().find(|spare| spare.size == storage.len()) {
+                Some(own) if own.slices.len() < KEPT => own.slices.push(storage),
+                Some(_) => {}
+                None => {
+                    if spare.len() == SIZES {
+                        spare.remove(0);
+                    }
+                    spare.push(Spare { size: storage.len(), slices: vec![storage] });
+                }
             }
-            spare.push(storage);
         });
     }
 }
@@ -168,11 +187,14 @@ mod tests {
 
     #[test]
     fn a_thread_keeps_no_more_than_it_may() {
+        drop((1..3 * SIZES).map(|size| Aligned::zeros(1000 * size)).collect::<Vec<_>>());
         drop((0..3 * KEPT).map(|_| Aligned::zeros(100)).collect::<Vec<_>>());
         drop(Aligned::zeros(2 * LONGEST));
         SPARE.with(|spare| {
             let spare = spare.borrow();
-            assert!(spare.len() == KEPT && spare.iter().all(|one| one.len() <= LONGEST));
+            let own = spare.iter().find(|spare| spare.size == spaced(100) + LANES - 1);
+            assert_eq!(own.map(|own| own.slices.len()), Some(KEPT));
+            assert!(spare.len() <= SIZES && spare.iter().all(|one| one.size <= LONGEST));
         });
     }
 }

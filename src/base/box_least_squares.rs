@@ -10,15 +10,15 @@
 //!
 //! Source: Nocedal and Wright, 'Numerical Optimization' (2006), section 16.5.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use crate::few::{Few, FewColumns};
 
 /// Attempts at the multiplier of the sum constraint; a handful are enough.
 const ATTEMPTS: usize = 200;
 
 /// The problem: H, g, bounds, and the members and limit of the sum constraint.
 pub(crate) struct BoxLeastSquares<'a> {
-    pub(crate) hessian: &'a DMatrix<f64>,
-    pub(crate) gradient: &'a DVector<f64>,
+    pub(crate) hessian: &'a FewColumns,
+    pub(crate) gradient: &'a [f64],
     pub(crate) lower: &'a [f64],
     pub(crate) upper: &'a [f64],
     pub(crate) summed: &'a [bool],
@@ -27,20 +27,21 @@ pub(crate) struct BoxLeastSquares<'a> {
 
 impl BoxLeastSquares<'_> {
     /// The minimiser, or `None` if H is not positive definite.
-    pub(crate) fn solve(&self) -> Option<DVector<f64>> {
+    pub(crate) fn solve(&self) -> Option<Few> {
         let free = self.in_box(self.gradient)?;
         if self.summed_part(&free) <= self.sum_limit {
             return Some(free);
         }
         let tilted = |multiplier: f64| {
-            let mut gradient = self.gradient.clone();
+            let mut gradient = Few::from(self.gradient);
             for (value, &member) in gradient.iter_mut().zip(self.summed) {
                 *value += if member { multiplier } else { 0.0 };
             }
             self.in_box(&gradient)
         };
-        let excess = |step: &DVector<f64>| self.summed_part(step) - self.sum_limit;
-        let (mut low, mut high) = (0.0, self.gradient.amax().max(f64::MIN_POSITIVE));
+        let excess = |step: &[f64]| self.summed_part(step) - self.sum_limit;
+        let (mut low, mut high) =
+            (0.0, self.gradient.iter().fold(f64::MIN_POSITIVE, |most, g| g.abs().max(most)));
         let mut above = excess(&free);
         let mut step = tilted(high)?;
         let mut below = excess(&step);
@@ -79,17 +80,17 @@ impl BoxLeastSquares<'_> {
         Some(step)
     }
 
-    fn summed_part(&self, step: &DVector<f64>) -> f64 {
+    fn summed_part(&self, step: &[f64]) -> f64 {
         step.iter().zip(self.summed).filter(|(_, member)| **member).map(|(value, _)| value).sum()
     }
 
     /// The minimiser in the box alone.
-    fn in_box(&self, gradient: &DVector<f64>) -> Option<DVector<f64>> {
+    fn in_box(&self, gradient: &[f64]) -> Option<Few> {
         crate::stop::check();
         let n = gradient.len();
-        let mut step = DVector::zeros(n);
+        let mut step = Few::zeros(n);
         // A variable that stands at a bound it is pushed against starts fixed.
-        let mut fixed: Vec<bool> = (0..n)
+        let mut fixed: Few<bool> = (0..n)
             .map(|i| {
                 (self.lower[i] >= 0.0 && gradient[i] > 0.0) || (self.upper[i] <= 0.0 && gradient[i] < 0.0)
             })
@@ -118,10 +119,10 @@ impl BoxLeastSquares<'_> {
                 fixed[i] = true;
                 continue;
             }
-            let slope = self.hessian * &step + gradient;
+            let slope = |i: usize| (0..n).map(|j| self.hessian[(i, j)] * step[j]).sum::<f64>() + gradient[i];
             let release = (0..n)
                 .filter(|&i| fixed[i])
-                .map(|i| (i, if step[i] <= self.lower[i] { -slope[i] } else { slope[i] }))
+                .map(|i| (i, if step[i] <= self.lower[i] { -slope(i) } else { slope(i) }))
                 .filter(|&(i, gain)| gain > 0.0 && self.lower[i] < self.upper[i])
                 .max_by(|a, b| a.1.total_cmp(&b.1));
             match release {
@@ -133,39 +134,63 @@ impl BoxLeastSquares<'_> {
     }
 
     /// Minimum over the free variables with the others held where they are.
-    fn free_minimum(
-        &self,
-        gradient: &DVector<f64>,
-        held: &DVector<f64>,
-        fixed: &[bool],
-    ) -> Option<DVector<f64>> {
-        let free: Vec<usize> = (0..fixed.len()).filter(|&i| !fixed[i]).collect();
-        let mut goal = held.clone();
-        if free.is_empty() {
-            return Some(goal);
-        }
-        let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| self.hessian[(free[i], free[j])]);
-        let right = DVector::from_fn(free.len(), |i, _| {
+    fn free_minimum(&self, gradient: &[f64], held: &[f64], fixed: &[bool]) -> Option<Few> {
+        let free: Few<usize> = (0..fixed.len()).filter(|&i| !fixed[i]).collect();
+        let mut goal = Few::from(held);
+        let matrix = FewColumns::from_fn(free.len(), free.len(), |i, j| self.hessian[(free[i], free[j])]);
+        let right = (0..free.len()).map(|i| {
             let pull: f64 =
                 (0..fixed.len()).filter(|&j| fixed[j]).map(|j| self.hessian[(free[i], j)] * held[j]).sum();
             -gradient[free[i]] - pull
         });
-        let solution = Cholesky::new(matrix)?.solve(&right);
-        for (i, value) in free.iter().zip(solution.iter()) {
+        let solution = solved(matrix, right.collect())?;
+        for (i, value) in free.iter().zip(&*solution) {
             goal[*i] = *value;
         }
         Some(goal)
     }
 }
 
+/// H⁻¹x by Cholesky's factor, or `None` if H is not positive definite.
+fn solved(mut matrix: FewColumns, mut x: Few) -> Option<Few> {
+    let n = x.len();
+    for j in 0..n {
+        for k in 0..j {
+            let factor = matrix[(j, k)];
+            for i in j..n {
+                matrix[(i, j)] -= factor * matrix[(i, k)];
+            }
+        }
+        let square = matrix[(j, j)];
+        if square.is_nan() || square <= 0.0 {
+            return None;
+        }
+        matrix[(j, j)] = square.sqrt();
+        let pivot = matrix[(j, j)];
+        matrix[j][j + 1..].iter_mut().for_each(|x| *x /= pivot);
+    }
+    for j in 0..n {
+        x[j] /= matrix[(j, j)];
+        for i in j + 1..n {
+            x[i] -= x[j] * matrix[(i, j)];
+        }
+    }
+    for j in (0..n).rev() {
+        let later: f64 = (j + 1..n).map(|i| matrix[(i, j)] * x[i]).sum();
+        x[j] = (x[j] - later) / matrix[(j, j)];
+    }
+    Some(x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::{DMatrix, DVector};
 
     fn solve(lower: &[f64], upper: &[f64], sum_limit: f64) -> Vec<f64> {
         // ½(p₁² + 2p₂²) + p₁p₂/2 − p₁ − p₂: free minimum at (6/7, 2/7).
-        let hessian = DMatrix::from_row_slice(2, 2, &[1.0, 0.5, 0.5, 2.0]);
-        let gradient = DVector::from_row_slice(&[-1.0, -1.0]);
+        let hessian = FewColumns::from_fn(2, 2, |i, j| [[1.0, 0.5], [0.5, 2.0]][i][j]);
+        let gradient = [-1.0, -1.0];
         let summed = [true, true];
         let step = BoxLeastSquares {
             hessian: &hessian,
@@ -175,7 +200,7 @@ mod tests {
             summed: &summed,
             sum_limit,
         };
-        step.solve().unwrap().as_slice().to_vec()
+        step.solve().unwrap().to_vec()
     }
 
     #[test]
@@ -206,21 +231,22 @@ mod tests {
                     0.1_f64.powi(case % 4) * draw() + f64::from(u8::from(i == j)) * 1e-3
                 }
             });
-            let hessian = root.transpose() * root;
+            let square = root.transpose() * root;
+            let hessian = FewColumns::from_fn(3, 3, |i, j| square[(i, j)]);
             let gradient = DVector::from_fn(3, |_, _| draw());
             let (lower, upper) = ([-0.3, -0.4, -0.5], [0.6, 0.5, 0.4]);
             let summed = [true, true, false];
             let sum_limit = if case % 2 == 0 { 0.0 } else { 0.2 };
             let problem = BoxLeastSquares {
                 hessian: &hessian,
-                gradient: &gradient,
+                gradient: gradient.as_slice(),
                 lower: &lower,
                 upper: &upper,
                 summed: &summed,
                 sum_limit,
             };
-            let step = problem.solve().unwrap();
-            let model = |p: &DVector<f64>| 0.5 * p.dot(&(&hessian * p)) + gradient.dot(p);
+            let step = DVector::from_row_slice(&problem.solve().unwrap());
+            let model = |p: &DVector<f64>| 0.5 * p.dot(&(&square * p)) + gradient.dot(p);
             let least = model(&step);
             assert!(step[0] + step[1] <= sum_limit + 1e-12, "{case}");
             for scale in [1.0, 0.1, 1e-2, 1e-3] {

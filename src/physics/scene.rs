@@ -20,6 +20,7 @@ pub use jacobian::{Jacobian, Parameter};
 
 use crate::error::{Error, Result, check};
 use crate::planck;
+use crate::simd::dispatched;
 use crate::sum::Compensated;
 
 /// Temperature of the blackbody that given spectra are shares of, times the hottest of their brightness.
@@ -38,7 +39,7 @@ pub struct EnvironmentObject {
 }
 
 /// What the target may be doing: all that is unknown about it but its material.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct State {
     /// Target temperature T, K.
     pub temperature_k: f64,
@@ -48,6 +49,19 @@ pub struct State {
     pub gain: f64,
     /// Temperatures Tₖ of the environment objects, K.
     pub environment_k: Vec<f64>,
+}
+
+impl Clone for State {
+    fn clone(&self) -> Self {
+        Self { lighting: self.lighting.clone(), environment_k: self.environment_k.clone(), ..*self }
+    }
+
+    /// In the memory of the other one.
+    fn clone_from(&mut self, other: &Self) {
+        (self.temperature_k, self.gain) = (other.temperature_k, other.gain);
+        self.lighting.clone_from(&other.lighting);
+        self.environment_k.clone_from(&other.environment_k);
+    }
 }
 
 /// Nodes of the spectral axis and the objects that light the target, with their radiances computed once.
@@ -234,9 +248,19 @@ pub fn check_emissivity(emissivity: &[f64], nodes: usize) -> Result<()> {
     if emissivity.len() != nodes {
         return Err(Error::Length { what: "emissivity".into(), found: emissivity.len(), expected: nodes });
     }
-    check::each(
-        emissivity,
-        |value| (0.0..=1.0).contains(&value),
-        |value| check::unit_interval("emissivity", value),
-    )
+    if are_shares(emissivity) {
+        return Ok(());
+    }
+    emissivity.iter().try_for_each(|value| check::unit_interval("emissivity", *value).map(drop))
+}
+
+dispatched! {
+    /// Whether all are from 0 to 1.
+    fn are_shares<'a>(values: &'a [f64]) -> bool {
+        let mut all = true;
+        for value in values {
+            all &= (0.0..=1.0).contains(value);
+        }
+        all
+    }
 }

@@ -25,11 +25,11 @@ use super::nearest::StateRange;
 use super::space::{Quadratic, StateSpace, set, value};
 use crate::aligned::Aligned;
 use crate::error::{Result, check};
+use crate::few::Few;
 use crate::fisher::Unknowns;
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
 use crate::spectrum::Bands;
 use crate::statistics::Statistics;
-use nalgebra::DVector;
 
 /// A fit ends when another step is expected to raise ln L by less than this.
 pub const GAIN: f64 = 1e-9;
@@ -182,11 +182,11 @@ impl<'a> MaximumLikelihood<'a> {
         &mut self,
         task: &Task<'_>,
         (state, loss): (&State, f64),
-        mut step: DVector<f64>,
+        mut step: Few,
         gain: f64,
     ) -> Option<(State, f64, Quadratic)> {
         for share in SHARES {
-            step *= share;
+            step.iter_mut().for_each(|change| *change *= share);
             let moved = self.space.moved(state, &step);
             let next = self.loss(task, &moved);
             if next < loss - SUFFICIENT * gain {

@@ -7,9 +7,9 @@
 
 use crate::box_least_squares::BoxLeastSquares;
 use crate::error::{Error, Result, check};
+use crate::few::{Few, FewColumns};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::scene::{Parameter, State};
-use nalgebra::{DMatrix, DVector};
 
 /// Largest |ln G′|, and the range of Tₖ′ (K): of searches and of what is proved of them.
 pub(in crate::limits) const LARGEST_LN_GAIN: f64 = 14.0;
@@ -64,9 +64,9 @@ impl StateRange {
 /// Half a cost to second order at a state: gradient, positive semidefinite part, and all of the second derivatives.
 #[derive(Debug, Clone)]
 pub(super) struct Quadratic {
-    pub(super) gradient: DVector<f64>,
-    pub(super) gauss_newton: DMatrix<f64>,
-    pub(super) hessian: DMatrix<f64>,
+    pub(super) gradient: Few,
+    pub(super) gauss_newton: FewColumns,
+    pub(super) hessian: FewColumns,
 }
 
 /// What is free in the alternative's state, and how far.
@@ -95,24 +95,24 @@ impl StateSpace {
         state: &State,
         damping: f64,
         hold_temperature: bool,
-    ) -> Option<DVector<f64>> {
+    ) -> Option<Few> {
         self.damped(&at.hessian, at, state, damping, hold_temperature)
             .or_else(|| self.damped(&at.gauss_newton, at, state, damping, hold_temperature))
     }
 
     fn damped(
         &self,
-        matrix: &DMatrix<f64>,
+        matrix: &FewColumns,
         at: &Quadratic,
         state: &State,
         damping: f64,
         hold_temperature: bool,
-    ) -> Option<DVector<f64>> {
+    ) -> Option<Few> {
         let n = self.parameters.len();
-        let (mut lower, mut upper) = (vec![0.0; n], vec![0.0; n]);
-        let mut summed = vec![false; n];
+        let (mut lower, mut upper) = (Few::zeros(n), Few::zeros(n));
+        let mut summed = Few::filled(false, n);
         // Unit diagonal: parameters of any unit become comparable.
-        let scale: Vec<f64> =
+        let scale: Few =
             (0..n).map(|i| at.gauss_newton[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
         let mut lit = 0.0;
         for (i, parameter) in self.parameters.iter().enumerate() {
@@ -128,15 +128,14 @@ impl StateSpace {
         }
         let sum_limit = (self.lighting_sum() - lit).max(0.0);
         // The sum constraint is written for unscaled steps, so all lighting columns share one scale.
-        let shared = scale.iter().zip(&summed).filter(|(_, s)| **s).map(|(s, _)| *s).fold(0.0, f64::max);
-        let scale: Vec<f64> =
-            scale.iter().zip(&summed).map(|(s, lit)| if *lit { shared } else { *s }).collect();
-        let mut hessian = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
+        let shared = scale.iter().zip(&*summed).filter(|(_, s)| **s).map(|(s, _)| *s).fold(0.0, f64::max);
+        let scale: Few = scale.iter().zip(&*summed).map(|(s, lit)| if *lit { shared } else { *s }).collect();
+        let mut hessian = FewColumns::from_fn(n, n, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
         for i in 0..n {
             let own = at.gauss_newton[(i, i)] / (scale[i] * scale[i]);
             hessian[(i, i)] += damping * own.max(f64::EPSILON);
         }
-        let gradient = DVector::from_fn(n, |i, _| at.gradient[i] / scale[i]);
+        let gradient: Few = (0..n).map(|i| at.gradient[i] / scale[i]).collect();
         for i in 0..n {
             lower[i] *= scale[i];
             upper[i] *= scale[i];
@@ -180,7 +179,7 @@ impl StateSpace {
         self.unknowns.known_lighting_total().unwrap_or(self.range.lighting_sum)
     }
 
-    pub(super) fn moved(&self, state: &State, step: &DVector<f64>) -> State {
+    pub(super) fn moved(&self, state: &State, step: &[f64]) -> State {
         let mut moved = state.clone();
         for (parameter, change) in self.parameters.iter().zip(step.iter()) {
             let [low, high] = self.bounds(*parameter);
@@ -230,7 +229,7 @@ impl StateSpace {
     }
 
     /// Largest relative change that a step makes.
-    pub(super) fn relative_size(&self, step: &DVector<f64>, state: &State) -> f64 {
+    pub(super) fn relative_size(&self, step: &[f64], state: &State) -> f64 {
         let changes = self.parameters.iter().zip(step.iter());
         changes.map(|(parameter, change)| relative(*parameter, *change, state)).fold(0.0, f64::max)
     }

@@ -6,12 +6,12 @@
 
 use super::terms::Terms;
 use crate::aligned::Aligned;
+use crate::few::FewColumns;
 use crate::identifiability::curvature::{Curvature, curvature_into};
 use crate::identifiability::space::Quadratic;
 use crate::scene::{Jacobian, Parameter, State};
 use crate::simd::{Chunk, LANES, added, dispatched, fold, padded, product};
 use crate::sum::dot;
-use nalgebra::{DMatrix, DVector};
 
 /// Spectra for the second derivative along T.
 #[derive(Debug, Clone)]
@@ -30,8 +30,8 @@ pub(super) fn quadratic(
 ) -> Quadratic {
     let parameters = surface.parameters();
     let n = parameters.len();
-    let gradient = DVector::from_fn(n, |i, _| dot(&terms.pull, surface.column(i)));
-    let (mut expected, mut hessian) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
+    let gradient = (0..n).map(|i| dot(&terms.pull, surface.column(i))).collect();
+    let (mut expected, mut hessian) = (FewColumns::zeros(n, n), FewColumns::zeros(n, n));
     for i in 0..n {
         for j in i..n {
             let (mean, own) = weighed(Pair {

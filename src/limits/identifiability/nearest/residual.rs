@@ -239,11 +239,11 @@ impl<'a> Comparison<'a> {
         crate::stop::check();
         self.separate(target, state, false);
         let lines = self.lines(target);
-        let is_dark = |&w: &usize| {
-            let other = lines.counts * lines.signal[w] + lines.noise[w];
-            other < DARK * lines.root[w] * lines.root[w]
-        };
-        (0..lines.root.len()).filter(is_dark).collect()
+        let Lines { counts, signal, noise, root, .. } = lines;
+        if !any_dark(counts, signal, noise, root) {
+            return Vec::new();
+        }
+        (0..root.len()).filter(|&w| is_dark(counts * signal[w] + noise[w], root[w])).collect()
     }
 
     /// How much more of a parameter makes these bands, taken together, as bright as the target; `None` where it makes them no brighter.
@@ -312,9 +312,11 @@ impl<'a> Comparison<'a> {
             return;
         }
         self.separate_anew(target, state, columns);
-        let mut compared = last.map_or_else(|| state.clone(), |(last, _)| last);
-        compared.clone_from(state);
-        self.compared = Some((compared, columns));
+        let compared = last.map(|(mut last, _)| {
+            last.clone_from(state);
+            last
+        });
+        self.compared = Some((compared.unwrap_or_else(|| state.clone()), columns));
     }
 
     fn separate_anew(&mut self, target: &Target<'_>, state: &State, columns: bool) {
@@ -362,6 +364,23 @@ dispatched! {
         for ((root, signal), noise) in out.iter_mut().zip(signal).zip(noise) {
             *root = (counts * signal + noise).sqrt();
         }
+    }
+}
+
+/// Whether a band is as good as dark, by its N′ + σ² and the target's root.
+#[inline(always)]
+fn is_dark(other: f64, root: f64) -> bool {
+    other < DARK * root * root
+}
+
+dispatched! {
+    /// Whether any band is.
+    fn any_dark<'a>(counts: f64, signal: &'a [f64], noise: &'a [f64], root: &'a [f64]) -> bool {
+        let mut any = false;
+        for ((signal, noise), root) in signal.iter().zip(noise).zip(root) {
+            any |= is_dark(counts * signal + noise, *root);
+        }
+        any
     }
 }
 

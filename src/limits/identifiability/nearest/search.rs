@@ -21,6 +21,7 @@ use self::fit::{Fit, Fitted};
 use self::table::{Emission, Thinned, step_at};
 use self::whitened::Whitened;
 use super::residual::{Comparison, Target};
+use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
 use crate::identifiability::space::value;
 use crate::order;
@@ -179,12 +180,12 @@ impl Comparison<'_> {
             .collect();
         let objects = own.lighting.len();
         let surroundings = self.target.surroundings();
-        let mut scattered: Vec<Vec<f64>> =
+        let mut scattered: Vec<Aligned> =
             (0..objects).map(|k| whitened.scattered(thinned, &surroundings.object_signal(k, own))).collect();
         // Scattered light of factors that are known.
-        let mut known = vec![0.0; whitened.signal.len()];
+        let mut known = Aligned::zeros(whitened.signal.len());
         for k in (0..objects).filter(|k| !lit.contains(k)) {
-            for (known, scattered) in known.iter_mut().zip(&scattered[k]) {
+            for (known, scattered) in known.iter_mut().zip(&*scattered[k]) {
                 *known += own.lighting[k] * scattered;
             }
         }

@@ -155,6 +155,24 @@ dispatched! {
 }
 
 dispatched! {
+    /// factor·ε·spectrum, ε = 1 where there is none.
+    pub(super) fn scaled_into<'a>(factor: f64, emissivity: Option<&'a [f64]>, spectrum: &'a [f64], out: &'a mut [f64]) {
+        match emissivity {
+            None => {
+                for (out, spectrum) in out.iter_mut().zip(spectrum) {
+                    *out = factor * spectrum;
+                }
+            }
+            Some(emissivity) => {
+                for ((out, spectrum), e) in out.iter_mut().zip(spectrum).zip(emissivity) {
+                    *out = factor * e * spectrum;
+                }
+            }
+        }
+    }
+}
+
+dispatched! {
     /// out += factor·ε·spectrum, ε = 1 where there is none.
     pub(super) fn add_scaled<'a>(factor: f64, emissivity: Option<&'a [f64]>, spectrum: &'a [f64], out: &'a mut [f64]) {
         match emissivity {

@@ -1,6 +1,6 @@
 //! The blackbody radiances that a [`Jacobian`] is made of, and differences between those of two.
 
-use super::kernels::add_scaled;
+use super::kernels::{add_scaled, scaled_into};
 use super::{Jacobian, Parameter, Sampling};
 use crate::planck::{self, Beside, NearPair};
 use crate::scene::State;
@@ -67,10 +67,13 @@ impl Jacobian<'_> {
         self.temperature_k = f64::NAN;
         let beside = Beside { value: &mut self.value, slope: &mut self.slope, difference };
         planck::beside_into(nu, (other.temperature_k, &other.value), state.temperature_k, beside);
-        self.lit.fill(0.0);
+        if self.surroundings.objects.is_empty() {
+            self.lit.fill(0.0);
+        }
         for (k, (object, factor)) in self.surroundings.objects.iter().zip(&state.lighting).enumerate() {
             let base = &self.base[k * nodes..(k + 1) * nodes];
-            add_scaled(*factor, object.emissivity.as_deref(), base, &mut self.lit);
+            let put = if k == 0 { scaled_into } else { add_scaled };
+            put(*factor, object.emissivity.as_deref(), base, &mut self.lit);
         }
         self.see(emissivity, state.gain);
         self.differentiate(emissivity, emissivity, state, parameters, lighting_total_known);
@@ -113,7 +116,9 @@ impl Jacobian<'_> {
         out: &mut [f64],
     ) {
         let nodes = out.len();
-        out.fill(0.0);
+        if self.surroundings.objects.is_empty() {
+            out.fill(0.0);
+        }
         for (k, object) in self.surroundings.objects.iter().enumerate() {
             let span = k * nodes..(k + 1) * nodes;
             let emissivity = object.emissivity.as_deref();
@@ -121,8 +126,9 @@ impl Jacobian<'_> {
             let change = factor - other_factor;
             let (t, other_k) = (state.environment_k[k], other_state.environment_k[k]);
             let base = &self.base[span.clone()];
+            let put = if k == 0 { scaled_into } else { add_scaled };
             if t == other_k {
-                add_scaled(if magnitudes { change.abs() } else { change }, emissivity, base, out);
+                put(if magnitudes { change.abs() } else { change }, emissivity, base, out);
                 continue;
             }
             let nu = &self.surroundings.nodes_cm1;
@@ -139,7 +145,7 @@ impl Jacobian<'_> {
                 };
                 *apart = if magnitudes { a.abs() + b.abs() } else { a + b };
             }
-            add_scaled(1.0, emissivity, &apart, out);
+            put(1.0, emissivity, &apart, out);
         }
     }
 }

@@ -2,10 +2,11 @@
 
 use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
+use super::groups::{neighbours_summed, products_summed};
 use super::priors::PriorAt;
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
-use super::vectors::{Weights, neighbours_summed, products_summed, pulls_into, weights_into};
+use super::vectors::{Weights, differences_into, pulls_into, weights_into};
 use super::view::View;
 use crate::aligned::Aligned;
 use crate::identifiability::nearest::blackbodies::rounded;
@@ -33,12 +34,10 @@ impl Minimum {
         crate::stop::check();
         let bands = view.sources.bands.len();
         let [root, other, pull] = [&self.root, &self.other, &self.pull].map(|x| &x[..bands]);
-        if other.contains(&0.0) {
+        let mut differences = Aligned::unset(bands);
+        if !differences_into(pull, root, other, &mut differences) {
             return None;
         }
-        // r(y + s) = N − N₀, and −p s = r.
-        let pairs = pull.iter().zip(root.iter().zip(other));
-        let differences = Aligned::filled(bands, pairs.map(|(p, (y, s))| -p * s * (y + s)));
         let differences = neighbours_summed(&differences, count);
         let mut other = products_summed([other; 2], count);
         other.iter_mut().for_each(|s| *s = s.sqrt());
@@ -83,7 +82,7 @@ impl Prover<'_, '_> {
         let others = (1..count).map(|s| self.all.spectrum(s, temperature_of(state, s)));
         let spectra: Vec<Spectrum> = std::iter::once(own).chain(others).collect();
         let bands = self.all.root.len();
-        let [mut pull, mut seen, mut kept] = [(); 3].map(|()| Aligned::zeros(bands));
+        let [mut pull, mut seen, mut kept] = [(); 3].map(|()| Aligned::unset(bands));
         pulls_into(&residual, &other, &self.all.root, [&mut pull, &mut seen, &mut kept]);
         let priors: Vec<PriorAt> = self.all.priors.at(state).collect();
         let of_priors: f64 = priors.iter().map(|prior| prior.residual * prior.residual).sum();

@@ -15,15 +15,17 @@
 //! falls below d² by no more than ¼‖F⁻ᵀĝ‖² + Σλ·slack: a lower bound of the whole box, and d² but for what the minimum is off.
 
 use super::amplitudes::{Amplitudes, Pieces, Ray};
+use super::groups::whole;
 use super::hull::{Hull, Quadratic};
 use super::orthogonal::{add, back_substitute, inner, orthonormalise, reduce, reduced};
 use super::priors::PriorAt;
 use super::sources::{Sources, Spectrum};
 use super::vectors::{
-    Weights, add_into, add_root_into, add_size_into, add_square_into, product_into, square_of_quotient,
-    weights_into, whole,
+    Weights, add_into, add_root_into, add_size_into, add_square_into, largest_quotient, least_above_nothing,
+    product_into, sizes_into, square_of_quotient, weights_into,
 };
 use crate::aligned::Aligned;
+use crate::few::{Few, FewColumns};
 use crate::sum::dot;
 
 /// η at most.
@@ -68,12 +70,6 @@ impl Minimum {
         let of_priors: f64 = self.priors.iter().map(|prior| prior.residual * prior.residual).sum();
         (0.25 * square_of_quotient(&self.pull, weight) + of_priors).sqrt()
     }
-
-    /// The least y.
-    fn least_root(&self) -> f64 {
-        crate::stop::check();
-        self.root.iter().copied().filter(|y| *y > 0.0).fold(f64::INFINITY, f64::min)
-    }
 }
 
 /// The two ends of a box along one source, also relative to T*, and the least amplitude in it.
@@ -88,16 +84,15 @@ pub(super) struct Reach {
 /// Columns of the quadratic: amplitudes that may change, then sources of unknown temperature.
 struct Columns<'m> {
     minimum: &'m Minimum,
-    lit: Vec<usize>,
+    lit: Few<usize>,
     axes: Vec<(usize, Reach)>,
     /// p·column, with ½‖W⁻¹p‖, and R of the weighted columns.
-    linear: Vec<f64>,
+    linear: Few,
     length: f64,
-    triangle: Vec<Vec<f64>>,
-    lengths: Vec<f64>,
+    triangle: FewColumns,
     /// QᵀWA″ with what is left of it, and ‖WA‴‖, of every source of unknown temperature.
-    bent: Vec<Vec<f64>>,
-    third: Vec<f64>,
+    bent: FewColumns,
+    third: Few,
 }
 
 /// What a box around a minimum has come to.
@@ -120,19 +115,22 @@ pub(super) fn close(
     let count = minimum.spectra.len();
     // Light of a known factor changes with the gain alone: it is part of the first column.
     let varies = |s: usize| s.checked_sub(1).map_or(allowed.gain_free, |k| allowed.tied(k).is_none());
-    let lit: Vec<usize> = (0..count).filter(|&s| varies(s)).collect();
+    let lit: Few<usize> = (0..count).filter(|&s| varies(s)).collect();
     let axes: Vec<(usize, Reach)> = (0..count).filter_map(|s| Some((s, reach[s]?))).collect();
-    let mut first = minimum.spectra[0].counts.clone();
+    let mut first = None;
     for (k, spectrum) in minimum.spectra[1..].iter().enumerate() {
-        if let Some(factor) = allowed.tied(k) {
-            add_into(factor, &spectrum.counts, &mut first);
+        if let (true, Some(factor)) = (allowed.gain_free, allowed.tied(k)) {
+            let first = first.get_or_insert_with(|| minimum.spectra[0].counts.clone());
+            add_into(factor, &spectrum.counts, first);
         }
     }
+    let first = first.as_ref().unwrap_or(&minimum.spectra[0].counts);
     let raw: Vec<&[f64]> =
         (lit.iter().map(|&s| if s == 0 { &first[..] } else { &minimum.spectra[s].counts }))
             .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
             .collect();
-    let pull_sizes = Aligned::filled(minimum.pull.len(), minimum.pull.iter().map(|p| p.abs()));
+    let mut pull_sizes = Aligned::unset(minimum.pull.len());
+    sizes_into(&minimum.pull, &mut pull_sizes);
     let priors = minimum.priors.iter().map(|prior| prior.entries(&lit, axes.iter().map(|(s, _)| *s)));
     let priors: Vec<Vec<f64>> = priors.collect();
     let along_priors = |i: usize| {
@@ -140,33 +138,33 @@ pub(super) fn close(
         rows.map(|(prior, entries)| prior.residual * entries[i]).sum::<f64>()
     };
     let linear = raw.iter().enumerate();
-    let linear: Vec<f64> =
-        linear.map(|(i, column)| dot(&minimum.pull, column) + 2.0 * along_priors(i)).collect();
+    let linear: Few = linear.map(|(i, column)| dot(&minimum.pull, column) + 2.0 * along_priors(i)).collect();
     let bends: Vec<[Aligned; 2]> = axes
         .iter()
         .map(|&(s, Reach { faces, .. })| sources.bend(s, minimum.spectra[s].temperature_k, faces))
         .collect();
     let pulled: Vec<[f64; 2]> =
         bends.iter().map(|[bend, third]| [dot(&minimum.pull, bend), dot(&pull_sizes, third)]).collect();
-    let mut weight = minimum.weight.clone();
-    let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
-    let length = minimum.shift(&weight);
-    let (triangle, lengths, bent, third) = Default::default();
-    let mut columns = Columns { minimum, lit, axes, linear, length, triangle, lengths, bent, third };
-    let bands = weight.len();
+    let is_far = minimum.reach > SMALL * least_above_nothing(&minimum.root);
+    let rounds = if is_far && !axes.is_empty() { WEIGHTS } else { 0 };
+    let length = minimum.shift(&minimum.weight);
+    let (triangle, bent, third) = Default::default();
+    let mut columns = Columns { minimum, lit, axes, linear, length, triangle, bent, third };
+    let bands = minimum.weight.len();
     let size = whole(bands + priors.len());
     let mut basis: Vec<Aligned> = raw.iter().map(|_| Aligned::unset(size)).collect();
-    let mut turns: Vec<[Aligned; 2]> = bends.iter().map(|_| [(); 2].map(|()| Aligned::zeros(size))).collect();
-    let mut closed = None;
+    let mut turns: Vec<[Aligned; 2]> = bends.iter().map(|_| [(); 2].map(|()| Aligned::unset(size))).collect();
+    turns.iter_mut().flatten().for_each(|turn| turn[bands..].fill(0.0));
+    let (mut closed, mut better) = (None, None);
     for round in 0..=rounds {
+        let weight = better.as_ref().unwrap_or(&minimum.weight);
         for (i, (column, out)) in raw.iter().zip(&mut basis).enumerate() {
-            product_into(column, &weight, out);
+            product_into(column, weight, out);
             out[bands..].fill(0.0);
             out[bands..].iter_mut().zip(&priors).for_each(|(out, entries)| *out = entries[i]);
         }
         let pairs = bends.iter().flatten().zip(turns.iter_mut().flatten());
-        pairs.for_each(|(spectrum, out)| product_into(spectrum, &weight, out));
-        columns.lengths = basis.iter().map(|column| dot(column, column).sqrt()).collect();
+        pairs.for_each(|(spectrum, out)| product_into(spectrum, weight, out));
         let bent: Vec<&[f64]> = turns.iter().map(|[bend, _]| &bend[..]).collect();
         let by_products = reduced(&basis, &bent);
         let is_orthonormal = by_products.is_none();
@@ -179,8 +177,8 @@ pub(super) fn close(
         if !is_orthonormal {
             orthonormalise(&mut basis, &columns.triangle);
         }
-        let Some(better) = columns.weighed(&weight, &basis, &turns) else { break };
-        weight = better;
+        let Some(now) = columns.weighed(weight, &basis, &turns) else { break };
+        better = Some(now);
     }
     closed
 }
@@ -189,13 +187,12 @@ impl Columns<'_> {
     /// The bound by these columns; `None` if the quadratic is not convex in the box.
     fn closed(&self, pulled: &[[f64; 2]], allowed: &Amplitudes, enough: f64) -> Option<Closed> {
         // |ĝ·w| is known only with the multipliers, which hang on K: what comes out must be within what was put in.
-        let mut shifted = vec![0.0; self.axes.len()];
+        let mut shifted = Few::zeros(self.axes.len());
         for _ in 0..3 {
             let factor = self.factor(&self.loss(pulled, &shifted)?)?;
             let (fall, rest) = self.fall(&factor, &self.limits(allowed));
-            let now: Vec<f64> =
-                self.bent.iter().map(|bent| self.along_amplitudes(bent, &rest).abs()).collect();
-            if now.iter().zip(&shifted).all(|(now, assumed)| now <= assumed) || self.axes.is_empty() {
+            let now: Few = self.bent.iter().map(|bent| self.along_amplitudes(bent, &rest).abs()).collect();
+            if now.iter().zip(&*shifted).all(|(now, assumed)| now <= assumed) || self.axes.is_empty() {
                 let lower = self.minimum.cost - fall;
                 if lower >= enough || !self.axes.is_empty() {
                     return Some(self.moved(lower, &factor, &rest));
@@ -222,7 +219,7 @@ impl Columns<'_> {
     }
 
     /// η, and K_j of every source of unknown temperature.
-    fn loss(&self, pulled: &[[f64; 2]], shifted: &[f64]) -> Option<(f64, Vec<f64>)> {
+    fn loss(&self, pulled: &[[f64; 2]], shifted: &[f64]) -> Option<(f64, Few)> {
         crate::stop::check();
         let n = self.axes.len() as f64;
         let turn = (0..self.axes.len()).map(|j| self.turned(j) / self.own(j)).fold(0.0, f64::max);
@@ -246,14 +243,13 @@ impl Columns<'_> {
         crate::stop::check();
         let Minimum { root, other, reach, cost, .. } = self.minimum;
         let (reach, cost) = (*reach, *cost);
-        let bands = root.iter().zip(other).filter(|(_, s)| **s > 0.0);
         let of_priors = if self.minimum.priors.is_empty() { 0.0 } else { 1.0 };
-        let largest = bands.map(|(y, s)| y / s).fold(of_priors, f64::max).sqrt();
+        let largest = largest_quotient(root, other, of_priors).sqrt();
         let (n, amplitudes) = (self.axes.len(), self.lit.len());
         // Lengths of the rows of R⁻¹ of the slopes: |y_j| is no more than that times what is along all slopes.
-        let mut rows = vec![0.0; n];
+        let mut rows = Few::zeros(n);
         for k in 0..n {
-            let mut x = vec![0.0; n];
+            let mut x = Few::zeros(n);
             for i in (0..=k).rev() {
                 let later: f64 =
                     (i + 1..=k).map(|j| self.triangle[amplitudes + j][amplitudes + i] * x[j]).sum();
@@ -274,7 +270,7 @@ impl Columns<'_> {
             all = all.min(square.sqrt() + shift_along + turned * all / (1.0 - turned));
         }
         let along = all / (1.0 - turned);
-        let changes: Vec<f64> = rows.iter().map(|row| row.sqrt() * along).collect();
+        let changes: Few = rows.iter().map(|row| row.sqrt() * along).collect();
         let mut steady = all + turned * along;
         let [mut shares, mut most] = [(); 2].map(|()| Aligned::zeros(weight.len()));
         basis.iter().for_each(|column| add_square_into(column, &mut shares));
@@ -293,8 +289,8 @@ impl Columns<'_> {
 
     /// ‖Qᵀh‖, Rᵀ Qᵀh = ½ p·columns.
     fn pulled_along(&self) -> f64 {
-        let mut along: Vec<f64> = Vec::with_capacity(self.linear.len());
-        for (linear, above) in self.linear.iter().zip(&self.triangle) {
+        let mut along = Few::default();
+        for (linear, above) in self.linear.iter().zip(self.triangle.iter()) {
             let k = along.len();
             along.push((0.5 * linear - inner(&above[..k], &along)) / above[k]);
         }
@@ -303,22 +299,23 @@ impl Columns<'_> {
 
     /// F of (1 − η)RᵀR − K, column by column, if that is positive semidefinite: K stands at the slopes alone, so that of R only
     /// the triangle that is left of them once all amplitudes are fitted changes.
-    fn factor(&self, (share, loss): &(f64, Vec<f64>)) -> Option<Vec<Vec<f64>>> {
+    fn factor(&self, (share, loss): &(f64, Few)) -> Option<FewColumns> {
         crate::stop::check();
         let amplitudes = self.lit.len();
         let root = (1.0 - share).sqrt();
-        let mut factor: Vec<Vec<f64>> =
-            self.triangle.iter().map(|column| column.iter().map(|x| root * x).collect()).collect();
+        let mut factor = self.triangle.clone();
+        factor.values_mut().iter_mut().for_each(|x| *x *= root);
         let n = loss.len();
         let entry = |i: usize, j: usize| {
             let [a, b] = [i, j].map(|i| &factor[amplitudes + i][amplitudes..]);
             inner(a, b) - if i == j { loss[i] } else { 0.0 }
         };
-        let mut rest: Vec<f64> = (0..n * n).map(|place| entry(place / n, place % n)).collect();
+        let mut rest: Few = (0..n * n).map(|place| entry(place / n, place % n)).collect();
         for k in 0..n {
             let pivot = rest[k * n + k];
             let own = factor[amplitudes + k][amplitudes + k];
-            if !(pivot > KEPT * own * own && own > LEFT * self.lengths[amplitudes + k]) {
+            let all = &self.triangle[amplitudes + k];
+            if !(pivot > KEPT * own * own && own > LEFT * inner(all, all).sqrt()) {
                 return None;
             }
             let diagonal = pivot.sqrt();
@@ -344,7 +341,7 @@ impl Columns<'_> {
         let mut put = |terms: &[(usize, f64)], both: bool| {
             let slack = terms.iter().map(|&(s, value)| value * amplitudes[s]).sum::<f64>();
             let slack = if both { slack.abs() } else { slack.max(0.0) };
-            let (mut along, mut terms_of) = (vec![0.0_f64; size], vec![0.0_f64; size]);
+            let (mut along, mut terms_of) = (Few::zeros(size), Few::zeros(size));
             for &(s, value) in terms {
                 let tied = s.checked_sub(1).and_then(|k| allowed.tied(k));
                 let (s, value) = tied.map_or((s, value), |factor| (0, factor * value));
@@ -354,7 +351,7 @@ impl Columns<'_> {
                 }
             }
             // What cancels but for rounding is no limit.
-            along.iter_mut().zip(terms_of).for_each(|(along, of)| {
+            along.iter_mut().zip(&*terms_of).for_each(|(along, of)| {
                 if along.abs() <= CANCELLED * of {
                     *along = 0.0;
                 }
@@ -373,13 +370,13 @@ impl Columns<'_> {
             put(&terms, allowed.sum_known);
         }
         if let Some(place) = place(0).filter(|_| amplitudes[0] >= allowed.gain_cap * (1.0 - NEAR)) {
-            let mut along = vec![0.0; size];
+            let mut along = Few::zeros(size);
             along[place] = -1.0;
             limits.push(Limit { along, slack: (allowed.gain_cap - amplitudes[0]).max(0.0), both: false });
         }
         for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
             for (value, _) in [(1.0, down_k), (-1.0, up_k)].into_iter().filter(|(_, room)| **room == 0.0) {
-                let mut along = vec![0.0; size];
+                let mut along = Few::zeros(size);
                 along[self.lit.len() + j] = value;
                 limits.push(Limit { along, slack: 0.0, both: false });
             }
@@ -388,22 +385,22 @@ impl Columns<'_> {
     }
 
     /// What the quadratic falls below d² by at most, and F⁻ᵀĝ.
-    fn fall(&self, factor: &[Vec<f64>], limits: &[Limit]) -> (f64, Vec<f64>) {
-        let solve = |right: &[f64]| -> Vec<f64> {
-            let mut out = vec![0.0; right.len()];
+    fn fall(&self, factor: &FewColumns, limits: &[Limit]) -> (f64, Few) {
+        let solve = |right: &[f64]| -> Few {
+            let mut out = Few::zeros(right.len());
             for k in 0..right.len() {
                 out[k] = (right[k] - inner(&factor[k][..k], &out[..k])) / factor[k][k];
             }
             out
         };
         let mut rest = solve(&self.linear);
-        let columns: Vec<Vec<f64>> = limits.iter().map(|limit| solve(&limit.along)).collect();
+        let columns: Vec<Few> = limits.iter().map(|limit| solve(&limit.along)).collect();
         let mut used: Vec<usize> = (0..limits.len()).collect();
         loop {
             let (triangle, along) =
                 reduce(&mut used.iter().map(|&i| columns[i].clone()).collect::<Vec<_>>(), &[&rest]);
             let n = used.len();
-            let mut multipliers = along[0][..n].to_vec();
+            let mut multipliers = Few::from(&along[0][..n]);
             back_substitute(|row, column| triangle[column][row], &mut multipliers);
             let negative = (0..n).filter(|&k| !limits[used[k]].both && multipliers[k] < 0.0);
             if let Some(worst) = negative.min_by(|&a, &b| multipliers[a].total_cmp(&multipliers[b])) {
@@ -423,22 +420,22 @@ impl Columns<'_> {
     /// ĝ·w: ĝ = Fᵀ`rest`, and R w = `bent` in the columns of the amplitudes.
     fn along_amplitudes(&self, bent: &[f64], rest: &[f64]) -> f64 {
         let n = self.lit.len();
-        let mut w = bent[..n].to_vec();
+        let mut w = Few::from(&bent[..n]);
         back_substitute(|row, column| self.triangle[column][row], &mut w);
         // The amplitudes' columns of F are those of R but for √(1 − η) ≤ 1.
         let gradient = (0..n).map(|k| inner(&self.triangle[k][..=k], &rest[..=k]));
-        gradient.zip(&w).map(|(g, w)| g * w).sum()
+        gradient.zip(&*w).map(|(g, w)| g * w).sum()
     }
 
     /// Where the quadratic is least: Fz = −½F⁻ᵀĝ.
-    fn moved(&self, lower: f64, factor: &[Vec<f64>], rest: &[f64]) -> Closed {
-        let mut z: Vec<f64> = rest.iter().map(|x| -0.5 * x).collect();
+    fn moved(&self, lower: f64, factor: &FewColumns, rest: &[f64]) -> Closed {
+        let mut z: Few = rest.iter().map(|x| -0.5 * x).collect();
         for k in (0..z.len()).rev() {
             let later: f64 = (k + 1..z.len()).map(|j| factor[j][k] * z[j]).sum();
             z[k] = (z[k] - later) / factor[k][k];
         }
         let mut amplitudes = self.minimum.amplitudes.clone();
-        for (&s, change) in self.lit.iter().zip(&z) {
+        for (&s, change) in self.lit.iter().zip(&*z) {
             amplitudes[s] += if change.is_finite() { *change } else { 0.0 };
         }
         for k in 1..amplitudes.len() {
@@ -491,7 +488,7 @@ impl Columns<'_> {
 
 /// A limit a·z ≥ −slack that the minimum is near to, or with `both` a·z = 0.
 struct Limit {
-    along: Vec<f64>,
+    along: Few,
     slack: f64,
     both: bool,
 }

@@ -1,7 +1,8 @@
 //! Few long columns made orthonormal, so that nearly dependent ones keep their digits.
 
-use super::vectors::add_into;
+use super::vectors::{add_into, divide};
 use crate::aligned::Aligned;
+use crate::few::{Few, FewColumns};
 use crate::sum::dot;
 use std::ops::{Deref, DerefMut};
 
@@ -35,7 +36,7 @@ pub(super) fn back_substitute(entry: impl Fn(usize, usize) -> f64, x: &mut [f64]
 }
 
 /// R column by column, and of each other column what lies along the basis, followed by what is left of its length.
-type Reduced = (Vec<Vec<f64>>, Vec<Vec<f64>>);
+type Reduced = (FewColumns, FewColumns);
 
 /// Makes columns orthonormal (Gram and Schmidt, again where much cancels) and gives the triangle R of columns = QR, column by
 /// column, what depends on earlier columns left out, and for each of `others` Qᵀother followed by what is left of its length.
@@ -43,10 +44,10 @@ type Reduced = (Vec<Vec<f64>>, Vec<Vec<f64>>);
 /// Source: L. Giraud et al., Numerische Mathematik 101, 87 (2005), doi:10.1007/s00211-005-0615-4: twice is enough.
 pub(super) fn reduce<C: DerefMut<Target = [f64]>>(columns: &mut [C], others: &[&[f64]]) -> Reduced {
     let size = columns.len();
-    let mut triangle = vec![vec![0.0; size]; size];
-    for (k, above) in triangle.iter_mut().enumerate() {
+    let mut triangle = FewColumns::zeros(size, size);
+    for k in 0..size {
         let (done, rest) = columns.split_at_mut(k);
-        let column = &mut rest[0];
+        let (column, above) = (&mut rest[0], &mut triangle[k]);
         let before = dot(column, column).sqrt();
         let left = take_out(done, column, before, above);
         if !before.is_finite() {
@@ -54,19 +55,17 @@ pub(super) fn reduce<C: DerefMut<Target = [f64]>>(columns: &mut [C], others: &[&
             above[k] = f64::NAN;
         } else if left > DEPENDENT * before {
             above[k] = left;
-            column.iter_mut().for_each(|x| *x /= left);
+            divide(column, left);
         } else {
             column.fill(0.0);
         }
     }
-    let reduced = others.iter().map(|other| {
-        let mut rest = other.to_vec();
-        let mut along = vec![0.0; size + 1];
+    let mut reduced = FewColumns::zeros(size + 1, others.len());
+    for (i, other) in others.iter().enumerate() {
+        let mut rest = Few::from(*other);
         let before = dot(other, other).sqrt();
-        along[size] = take_out(columns, &mut rest, before, &mut along);
-        along
-    });
-    let reduced = reduced.collect();
+        reduced[i][size] = take_out(columns, &mut rest, before, &mut reduced[i]);
+    }
     (triangle, reduced)
 }
 
@@ -74,47 +73,39 @@ pub(super) fn reduce<C: DerefMut<Target = [f64]>>(columns: &mut [C], others: &[&
 pub(super) fn reduced(columns: &[Aligned], others: &[&[f64]]) -> Option<Reduced> {
     let size = columns.len();
     // Cholesky's factor, column by column; of the others the same column without its end.
-    let along = |column: &[f64], triangle: &[Vec<f64>], count: usize| -> Vec<f64> {
-        let mut above = vec![0.0; size + 1];
-        for j in 0..count {
+    let fit = |column: &[f64], triangle: &FewColumns, above: &mut [f64]| {
+        for j in 0..above.len() {
             let rest = dot(&columns[j], column) - inner(&triangle[j][..j], &above[..j]);
             above[j] = rest / triangle[j][j];
         }
-        above
-    };
-    let left = |column: &[f64], above: &[f64]| {
         let square = dot(column, column);
-        let rest = square - inner(above, above);
-        (rest, square)
+        (square - inner(above, above), square)
     };
-    let mut triangle: Vec<Vec<f64>> = Vec::with_capacity(size);
+    let mut triangle = FewColumns::zeros(size, size);
     for (k, column) in columns.iter().enumerate() {
-        let mut above = along(column, &triangle, k);
-        let (rest, square) = left(column, &above);
+        let mut above = Few::zeros(k);
+        let (rest, square) = fit(column, &triangle, &mut above);
         if !(rest > CANCELLED * square && rest.is_finite()) {
             return None;
         }
-        above[k] = rest.sqrt();
-        above.truncate(size);
-        triangle.push(above);
+        triangle[k][..k].copy_from_slice(&above);
+        triangle[k][k] = rest.sqrt();
     }
-    let others = others.iter().map(|other| {
-        let mut above = along(other, &triangle, size);
-        let (rest, square) = left(other, &above);
+    let mut reduced = FewColumns::zeros(size + 1, others.len());
+    for (i, other) in others.iter().enumerate() {
+        let (rest, square) = fit(other, &triangle, &mut reduced[i][..size]);
         // No less than it is.
-        above[size] = (rest.max(0.0) + ROUNDING * square).sqrt();
-        above
-    });
-    let others = others.collect();
-    Some((triangle, others))
+        reduced[i][size] = (rest.max(0.0) + ROUNDING * square).sqrt();
+    }
+    Some((triangle, reduced))
 }
 
 /// Makes columns orthonormal by their triangle.
-pub(super) fn orthonormalise(columns: &mut [Aligned], triangle: &[Vec<f64>]) {
+pub(super) fn orthonormalise(columns: &mut [Aligned], triangle: &FewColumns) {
     for (k, above) in triangle.iter().enumerate() {
         let (done, rest) = columns.split_at_mut(k);
         done.iter().zip(above).for_each(|(column, part)| add_into(-part, column, &mut rest[0]));
-        rest[0].iter_mut().for_each(|x| *x /= above[k]);
+        divide(&mut rest[0], above[k]);
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
+use super::groups::{neighbours_summed, whole};
 use super::priors::Priors;
 use super::sources::Sources;
-use super::vectors::{neighbours_summed, whole};
+use super::vectors::scale;
 use super::view::View;
 use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
@@ -74,9 +75,10 @@ impl<'a, 'm> Prover<'a, 'm> {
         let sources =
             Sources::new(comparison, target, |parameter, range| priors.within_reach(parameter, range));
         let signal = comparison.target.signal();
-        let in_chunks = |bands: &[f64]| Aligned::filled(whole(signal.len()), bands.iter().copied());
-        let counts = Aligned::filled(whole(signal.len()), signal.iter().map(|s| target.counts * s));
-        let bands = [in_chunks(comparison.root()), counts, in_chunks(comparison.noise())];
+        let [root, mut counts, noise] = [comparison.root(), signal, comparison.noise()]
+            .map(|bands| Aligned::padded(whole(bands.len()), bands));
+        scale(&mut counts, target.counts);
+        let bands = [root, counts, noise];
         let unknown_lighting = space.unknowns.contains(Nuisance::Lighting);
         let known_total = space.unknowns.known_lighting_total();
         let lit = target.state.lighting.iter().enumerate();

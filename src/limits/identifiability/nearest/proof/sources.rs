@@ -14,9 +14,8 @@
 //! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
 //! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
-use super::vectors::{
-    by_place, multiply, neighbours_summed, product_into, products_by_place_into, products_summed, whole,
-};
+use super::groups::{by_place, neighbours_summed, products_by_place_into, products_summed, whole};
+use super::vectors::{multiply, product_into, rest_into, scale};
 use crate::aligned::Aligned;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::blackbodies::{Blackbodies, Blackbody};
@@ -101,7 +100,7 @@ impl<'a> Sources<'a> {
         let surroundings = comparison.target.surroundings();
         let unknown = |nuisance| space.unknowns.contains(nuisance);
         let gain = if unknown(Nuisance::Gain) { 1.0 } else { target.state.gain };
-        let scale = target.counts * gain;
+        let per_share = target.counts * gain;
         let bands = comparison.target.bands();
         let weights = bands.one_node_per_band().then(|| bands.weights_cm1());
         let strength = |share: Aligned| -> Aligned {
@@ -109,7 +108,7 @@ impl<'a> Sources<'a> {
             if let Some(weights) = weights {
                 multiply(&mut strength, weights);
             }
-            strength.iter_mut().for_each(|strength| *strength *= scale);
+            scale(&mut strength, per_share);
             strength
         };
         let span = |nuisance, parameter, range: [f64; 2], known: f64| {
@@ -127,7 +126,8 @@ impl<'a> Sources<'a> {
         };
         let objects = surroundings.objects().iter().zip(&target.state.environment_k).enumerate();
         let lights = objects.map(|(k, (object, &known))| {
-            let mut lit = Aligned::filled(other.len(), other.iter().map(|e| 1.0 - e));
+            let mut lit = Aligned::unset(other.len());
+            rest_into(other, &mut lit);
             if let Some(own) = &object.emissivity {
                 multiply(&mut lit, own);
             }

@@ -7,7 +7,7 @@ use super::amplitudes::Amplitudes;
 use super::metric::Metric;
 use super::priors::Priors;
 use super::sources::{Source, Sources, Spectrum};
-use super::vectors::largest_share;
+use super::vectors::{brightest_into, largest_share};
 use crate::aligned::Aligned;
 use crate::sum::dot;
 use std::cell::OnceCell;
@@ -127,9 +127,9 @@ impl<'a> View<'a> {
     /// The counts that each band can have within reach.
     pub(super) fn brightest(&self) -> &[f64] {
         self.brightest.get_or_init(|| {
-            let bands = self.root.iter().zip(&self.noise);
-            let most = bands.map(|(y, v)| (y + self.reach) * (y + self.reach) * (1.0 + 1e-9) - v);
-            Aligned::filled(self.root.len(), most)
+            let mut most = Aligned::unset(self.root.len());
+            brightest_into(&self.root, &self.noise, self.reach, &mut most);
+            most
         })
     }
 

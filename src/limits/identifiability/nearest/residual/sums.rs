@@ -4,11 +4,11 @@
 //! Σ h S′ᵢS′ⱼ and Σ p S′_TT. They are added in lanes over blocks of bands and compensated from block to block
 //! ([`crate::sum`]), so that their error does not grow with the number of bands.
 
+use crate::few::{Few, FewColumns};
 use crate::identifiability::space::Quadratic;
 use crate::scene::Jacobian;
 use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, padded, product};
 use crate::sum::Compensated;
-use nalgebra::{DMatrix, DVector};
 
 /// Columns that are worked on together; more of them go two by two.
 const TOGETHER: usize = 4;
@@ -49,7 +49,7 @@ pub(super) fn cost(lines: Lines<'_>) -> f64 {
 /// All sums, for the columns of a surface.
 pub(super) fn sums(lines: Lines<'_>, surface: &Jacobian<'_>) -> Sums {
     let n = surface.parameters().len();
-    let (gradient, gauss_newton) = (DVector::zeros(n), DMatrix::zeros(n, n));
+    let (gradient, gauss_newton) = (Few::zeros(n), FewColumns::zeros(n, n));
     let quadratic = Quadratic { gradient, hessian: gauss_newton.clone(), gauss_newton };
     let mut sums = Sums { cost: 0.0, curvature: 0.0, quadratic };
     if n <= TOGETHER {

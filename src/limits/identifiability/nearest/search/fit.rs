@@ -8,10 +8,10 @@ use super::table::Emission;
 use super::whitened::Whitened;
 use crate::aligned::Aligned;
 use crate::box_least_squares::BoxLeastSquares;
+use crate::few::FewColumns;
 use crate::scene::State;
 use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, product};
 use crate::sum::dot;
-use nalgebra::{DMatrix, DVector};
 
 /// Cost of a fit, and half its derivative along T′.
 #[derive(Debug, Clone, Copy)]
@@ -23,12 +23,12 @@ pub(super) struct Fitted {
 /// The unknowns besides T′, fitted by least squares at each T′.
 pub(super) struct Fit {
     /// Whitened scattered light of the unknown factors, and whose they are.
-    pub(super) free: Vec<Vec<f64>>,
+    pub(super) free: Vec<Aligned>,
     pub(super) lit: Vec<usize>,
     /// w² and centre of the prior of each, where the gain is known; w = 0 for none.
     pub(super) priors: Vec<[f64; 2]>,
     /// Whitened scattered light of the others.
-    pub(super) known: Vec<f64>,
+    pub(super) known: Aligned,
     pub(super) range: [f64; 2],
     /// What the unknown factors may sum to.
     pub(super) sum_limit: f64,
@@ -97,7 +97,7 @@ impl Fit {
         for column in &self.free {
             add(&mut goal, -own.gain * low, column);
         }
-        let columns: Vec<&[f64]> = self.free.iter().map(Vec::as_slice).collect();
+        let columns: Vec<&[f64]> = self.free.iter().map(|column| &**column).collect();
         let limit = (self.sum_limit - low * n as f64).max(0.0);
         let priors: Vec<[f64; 2]> =
             self.priors.iter().map(|[square, centre]| [*square, centre - low]).collect();
@@ -159,7 +159,7 @@ fn least_squares(
 ) -> Vec<f64> {
     let n = columns.len();
     let [square, centre] = [0, 1].map(|part| move |i: usize| priors.get(i).map_or(0.0, |prior| prior[part]));
-    let gram = DMatrix::from_fn(n, n, |i, j| {
+    let gram = FewColumns::from_fn(n, n, |i, j| {
         scale * scale * dot(columns[i], columns[j]) + if i == j { square(i) } else { 0.0 }
     });
     let size = (0..n).map(|i| gram[(i, i)]).fold(0.0, f64::max);
@@ -173,16 +173,16 @@ fn least_squares(
     if n == 1 {
         return vec![(-pull[0] * size / gram[(0, 0)]).clamp(0.0, upper.min(sum_limit))];
     }
-    let hessian = DMatrix::from_fn(n, n, |i, j| gram[(i, j)] / size + if i == j { 1e-13 } else { 0.0 });
+    let hessian = FewColumns::from_fn(n, n, |i, j| gram[(i, j)] / size + if i == j { 1e-13 } else { 0.0 });
     let step = BoxLeastSquares {
         hessian: &hessian,
-        gradient: &DVector::from_vec(pull),
+        gradient: &pull,
         lower: &vec![0.0; n],
         upper: &vec![upper; n],
         summed: &vec![true; n],
         sum_limit,
     };
-    step.solve().map_or_else(|| vec![0.0; n], |step| step.as_slice().to_vec())
+    step.solve().map_or_else(|| vec![0.0; n], |step| step.to_vec())
 }
 
 fn add(to: &mut [f64], factor: f64, column: &[f64]) {
