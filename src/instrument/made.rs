@@ -11,7 +11,7 @@ use super::assumed::{Assumed, PAPER_RANGE_CM1};
 use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, every_figure};
 use super::noise::NetdConditions;
 use super::pattern::{Pattern, PatternFigures};
-use super::presets::{Missing, Preset};
+use super::presets::{Missing, NoiseCamera, Preset};
 use super::{Camera, CameraSpec, Efficiency, EfficiencyCurve, NoiseSpec, Readout};
 
 /// Temperature of the blackbody at which figures are quoted where none is stated, K.
@@ -297,31 +297,6 @@ impl Preset {
         }
         let optics_efficiency = optics_efficiency.taken();
         Ok(Required { exposure_s, pixel_m, f_number, focal_length_m, optics_efficiency })
-    }
-}
-
-/// Figures of a camera that a noise hangs on, each stated or not.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoiseCamera {
-    /// Exposure of one frame, s.
-    pub exposure_s: Option<f64>,
-    /// Number of frames in a second, Hz.
-    pub frame_rate_hz: Option<f64>,
-    /// f-number of the lens.
-    pub f_number: Option<f64>,
-    /// Side of a square pixel, m.
-    pub pixel_m: Option<f64>,
-    /// Efficiency of the optics, but for what depends on wavenumber; 1 where it is not stated.
-    pub optics_efficiency: f64,
-}
-
-impl NoiseCamera {
-    /// Those of what is stated.
-    #[must_use]
-    pub fn of(figures: &CameraSpec) -> Self {
-        let CameraSpec { exposure_s, frame_rate_hz, f_number, pixel_m, .. } = *figures;
-        let optics_efficiency = figures.optics_efficiency.taken();
-        Self { exposure_s, frame_rate_hz, f_number, pixel_m, optics_efficiency }
     }
 }
 

@@ -7,7 +7,6 @@
 #[cfg(feature = "library")]
 use super::Camera;
 use super::figures::{self, NOISES, Part, Row};
-use super::made::NoiseCamera;
 use super::{CameraSpec, EfficiencyCurve, NoiseSpec, Price};
 use crate::error::Error;
 #[cfg(feature = "library")]
@@ -90,6 +89,31 @@ pub struct Preset {
     /// Noise over wavenumber, read from the file of the figures.
     #[serde(skip)]
     pub noise_table: Option<NoiseSpec>,
+}
+
+/// Figures of a camera that a noise hangs on, each stated or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseCamera {
+    /// Exposure of one frame, s.
+    pub exposure_s: Option<f64>,
+    /// Number of frames in a second, Hz.
+    pub frame_rate_hz: Option<f64>,
+    /// f-number of the lens.
+    pub f_number: Option<f64>,
+    /// Side of a square pixel, m.
+    pub pixel_m: Option<f64>,
+    /// Efficiency of the optics, but for what depends on wavenumber; 1 where it is not stated.
+    pub optics_efficiency: f64,
+}
+
+impl NoiseCamera {
+    /// Those of what is stated.
+    #[must_use]
+    pub fn of(figures: &CameraSpec) -> Self {
+        let CameraSpec { exposure_s, frame_rate_hz, f_number, pixel_m, .. } = *figures;
+        let optics_efficiency = figures.optics_efficiency.taken();
+        Self { exposure_s, frame_rate_hz, f_number, pixel_m, optics_efficiency }
+    }
 }
 
 /// The keys of all figures that a camera cannot do without and nobody has given, in the order of the table.

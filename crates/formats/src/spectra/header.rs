@@ -265,8 +265,7 @@ fn axis_named(name: &str) -> Option<&'static str> {
 
 /// What a column of values holds.
 pub(super) fn values(cell: &str) -> Meaning {
-    let kebab =
-        kebab_case(&cell.to_lowercase().replace("per cent", "percent").replace("per-cent", "percent"));
+    let kebab = format!("-{}-", kebab_case(cell)).replace("-per-cent-", "-percent-");
     let mut words: Vec<&str> = kebab.split('-').filter(|word| !word.is_empty()).collect();
     let percent = cell.contains('%') || words.iter().any(|word| PERCENT.contains(word));
     words.retain(|word| !PERCENT.contains(word));
@@ -600,6 +599,9 @@ mod tests {
             ("Reflectance (0-1)", of(Reflectance, false, "")),
             ("emissivity_300K", of(Emissivity, false, "emissivity-300k")),
             ("emissivity (per cent)", of(Emissivity, true, "")),
+            ("Per cent Reflectance", of(Reflectance, true, "")),
+            ("supper-centre emissivity", of(Emissivity, false, "supper-centre")),
+            ("CrystalGlass emissivity", of(Emissivity, false, "crystal-glass")),
             ("emissivity (0-100 %)", of(Emissivity, true, "emissivity-0-100")),
             ("emissivity*100", Meaning::Unclear),
             ("100*emissivity", Meaning::Unclear),
