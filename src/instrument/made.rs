@@ -300,6 +300,16 @@ impl Preset {
     }
 }
 
+impl NoiseCamera {
+    /// Those of what is stated.
+    #[must_use]
+    pub fn of(figures: &CameraSpec) -> Self {
+        let CameraSpec { exposure_s, frame_rate_hz, f_number, pixel_m, .. } = *figures;
+        let optics_efficiency = figures.optics_efficiency.taken();
+        Self { exposure_s, frame_rate_hz, f_number, pixel_m, optics_efficiency }
+    }
+}
+
 /// What every camera has.
 struct Required {
     exposure_s: f64,

@@ -106,16 +106,6 @@ pub struct NoiseCamera {
     pub optics_efficiency: f64,
 }
 
-impl NoiseCamera {
-    /// Those of what is stated.
-    #[must_use]
-    pub fn of(figures: &CameraSpec) -> Self {
-        let CameraSpec { exposure_s, frame_rate_hz, f_number, pixel_m, .. } = *figures;
-        let optics_efficiency = figures.optics_efficiency.taken();
-        Self { exposure_s, frame_rate_hz, f_number, pixel_m, optics_efficiency }
-    }
-}
-
 /// The keys of all figures that a camera cannot do without and nobody has given, in the order of the table.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Missing(pub Vec<&'static str>);
