@@ -3,6 +3,9 @@
 //! `wavelength (um)`, `Wavelength [µm]`, `nm`, `wavenumber_cm1`, `cm-1`, `λ / µm`, `frequency (THz)`; `emissivity`, `Reflectance (%)`,
 //! `%R`, `skin_reflectance`. What is not stated is taken only where nothing else is possible ([`unit_of_range`]).
 
+mod factor;
+
+use self::factor::is_scaled;
 use crate::spectral_unit::SpectralUnit;
 use hadar::error::{Error, Result};
 use hadar::words::kebab_case;
@@ -68,11 +71,6 @@ const LETTERS: &[(&str, Option<Quantity>)] = &[
     ("a", None),
 ];
 const PERCENT: &[&str] = &["percent", "pct", "prozent", "percentage"];
-/// Words beside a quantity that say of what size its unit is.
-const SCALES: &[&str] = &[
-    "ppm", "ppt", "permille", "promille", "permil", "mille", "100", "1000", "10000", "1e2", "1e3", "1e4",
-    "10e2", "10e3",
-];
 /// Words beside a quantity that change nothing of it.
 const IDLE: &[&str] = &[
     "spectral",
@@ -334,42 +332,6 @@ pub(super) fn values(cell: &str) -> Meaning {
         // A name, in which nothing of a quantity is.
         _ => of(None, name),
     }
-}
-
-/// Whether a header states a factor, as in `emissivity*100`, `(x100)`, `[1e-2]`, `ppm`; where it does not say a quantity, one that no name has.
-fn is_scaled(cell: &str, is_said: bool) -> bool {
-    let lower = cell.to_lowercase();
-    let digit_after = |sign: char| {
-        lower.match_indices(sign).any(|(at, sign)| {
-            lower
-                .get(at + sign.len()..)
-                .is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()))
-        })
-    };
-    if lower.contains('‰') || digit_after('*') || digit_after('×') {
-        return true;
-    }
-    let of_ten = |word: &str| {
-        word.strip_prefix('1')
-            .is_some_and(|zeros| !zeros.is_empty() && zeros.bytes().all(|byte| byte == b'0'))
-    };
-    let mut words = lower.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty());
-    if words.clone().any(|word| word.strip_prefix('x').or(word.strip_suffix('x')).is_some_and(of_ten)) {
-        return true;
-    }
-    // `1e-2`, `e-2`, `10^-2`.
-    let power = |sign: &str| {
-        lower.match_indices(sign).any(|(at, sign)| {
-            let before = lower.get(..at).and_then(|rest| rest.chars().next_back());
-            let after = lower.get(at + sign.len()..).and_then(|rest| rest.chars().next());
-            before.is_none_or(|c| !c.is_alphabetic()) && after.is_some_and(|c| c.is_ascii_digit())
-        })
-    };
-    is_said
-        && (lower.contains(['*', '×', '^'])
-            || words.any(|word| SCALES.contains(&word))
-            || power("e-")
-            || power("e+"))
 }
 
 /// Whether a letter stands in a header as a quantity: in brackets, beside a sign of percent, or as none of the alphabet's.

@@ -7,7 +7,7 @@ use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, Band, LineFigure, Pictures, Series, Style};
 use crate::shown::Shown;
 use crate::table::{Table, number, optional};
-use crate::words::calibrate::response::SHADED;
+use crate::words::calibrate::response::shaded;
 use hadar::error::Result;
 use hadar_formats::cube::{npy_map, write_npy_to};
 use hadar_study::calibrate::{ResponseFound, ResponseRow};
@@ -106,27 +106,38 @@ fn figure(result: &ResponseFound) -> Plot {
     let of = |pick: &dyn Fn(&ResponseRow) -> f64| {
         result.response.iter().map(|row| pick(row) / peak).collect::<Vec<f64>>()
     };
-    let (values, sigma, typical) = (of(&|row| row.response), of(&|row| row.sigma), of(&|row| row.typical));
-    let edge = |sign: f64| -> Vec<f64> {
-        values.iter().zip(&sigma).map(|(value, sigma)| value + sign * 1.96 * sigma).collect()
+    let (values, typical) = (of(&|row| row.response), of(&|row| row.typical));
+    let edges = |sigma: &dyn Fn(&ResponseRow) -> f64| {
+        let sigma = of(sigma);
+        let edge =
+            |sign: f64| values.iter().zip(&sigma).map(|(value, sigma)| value + sign * 1.96 * sigma).collect();
+        [edge(-1.0), edge(1.0)]
     };
-    let (low, high) = (edge(-1.0), edge(1.0));
+    let ([low, high], [low_kinked, high_kinked]) = (edges(&|row| row.sigma), edges(&|row| row.sigma_kinked));
     let table = Table::of_columns([
         ("wavenumber_cm1", &x),
         ("response_over_peak", &values),
         ("low_95", &low),
         ("high_95", &high),
+        ("low_95_kinked", &low_kinked),
+        ("high_95_kinked", &high_kinked),
         ("typical", &typical),
     ]);
-    let figure = LineFigure::new(
+    let mut figure = LineFigure::new(
         format!("Response: {} of {} values are determined by the readings", result.determined, x.len()),
         wavenumber_axis(&x),
         Axis::linear("response (peak: 1)"),
     )
-    .subtitle(SHADED)
-    .band(Band::new("95 %", x.clone(), low, high).colour(1))
-    .series(Series::line("known beforehand", x.clone(), typical).style(Style::Dashed).colour(6))
-    .series(Series::line("estimated", x, values).style(Style::Marked).colour(1));
+    .subtitle(shaded(result));
+    // Where readings do not fit, no interval holds.
+    if !result.misfit {
+        figure = figure
+            .band(Band::new("95 % if the response has kinks", x.clone(), low_kinked, high_kinked).colour(6))
+            .band(Band::new("95 %", x.clone(), low, high).colour(1));
+    }
+    let figure = figure
+        .series(Series::line("known beforehand", x.clone(), typical).style(Style::Dashed).colour(6))
+        .series(Series::line("estimated", x, values).style(Style::Marked).colour(1));
     Plot { name: "response".into(), figure: figure.into(), table }
 }
 

@@ -104,4 +104,9 @@ pub fn text(result: &ResponseFound) -> String {
 }
 
 /// Below the picture of the response.
-pub(crate) const SHADED: &str = "Shaded: 95 %, of the readings together with what is known beforehand.";
+pub(crate) fn shaded(result: &ResponseFound) -> &'static str {
+    match result.misfit {
+        true => "The readings do not fit a response: no interval holds, and none is shown.",
+        false => "Shaded: 95 %, of the readings together with what is known beforehand.",
+    }
+}
